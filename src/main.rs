@@ -1,0 +1,3 @@
+//! The `benchdog` command.
+
+fn main() {}

@@ -1,0 +1,99 @@
+//! A gripper on an edge of the board, as the few numbers that a planner chooses.
+
+use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
+
+use super::frames::Pose;
+
+/// An edge of the board's rectangle, named by the outward axis of O.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Edge {
+    /// The edge at +x_O.
+    PlusX,
+    /// The edge at -x_O.
+    MinusX,
+    /// The edge at +y_O.
+    PlusY,
+    /// The edge at -y_O.
+    MinusY,
+}
+
+impl Edge {
+    /// All four edges, counter-clockwise from +x_O.
+    pub const ALL: [Self; 4] = [Self::PlusX, Self::PlusY, Self::MinusX, Self::MinusY];
+
+    /// The unit vector in O that points out of the board across this edge.
+    pub fn outward_o(self) -> Vector3<f64> {
+        match self {
+            Self::PlusX => Vector3::x(),
+            Self::MinusX => -Vector3::x(),
+            Self::PlusY => Vector3::y(),
+            Self::MinusY => -Vector3::y(),
+        }
+    }
+
+    /// Distance from the board's centre to the edge, and half the edge's length, m.
+    pub fn reach_and_half_length_m(self, size_m: [f64; 3]) -> (f64, f64) {
+        match self {
+            Self::PlusX | Self::MinusX => (size_m[0] / 2.0, size_m[1] / 2.0),
+            Self::PlusY | Self::MinusY => (size_m[1] / 2.0, size_m[0] / 2.0),
+        }
+    }
+}
+
+/// One gripper on one edge (METHOD section 2): z_G in the plane of the board pointing inward, y_G along +-z_O, centred
+/// in the thickness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeGrasp {
+    /// The edge that is held.
+    pub edge: Edge,
+    /// Place along the edge, m, from its middle; positive counter-clockwise as seen from +z_O.
+    pub along_m: f64,
+    /// How far G lies inside the edge, measured along the edge's normal, m.
+    pub depth_m: f64,
+    /// Turn of the gripper about z_O away from the edge's normal, rad.
+    pub angle_rad: f64,
+    /// The finger axis y_G along -z_O instead of +z_O.
+    pub flipped: bool,
+}
+
+impl EdgeGrasp {
+    /// The gripper's pose on a board of this size, X_OG.
+    pub fn x_og(&self, size_m: [f64; 3]) -> Pose {
+        let outward = self.edge.outward_o();
+        let along = Vector3::z().cross(&outward);
+        let (reach_m, _) = self.edge.reach_and_half_length_m(size_m);
+        let position = outward * (reach_m - self.depth_m) + along * self.along_m;
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.angle_rad);
+        let z_g = turn * -outward;
+        let y_g = if self.flipped { -Vector3::z() } else { Vector3::z() };
+        let rotation = Rotation3::from_basis_unchecked(&[y_g.cross(&z_g), y_g, z_g]);
+        Isometry3::from_parts(position.into(), UnitQuaternion::from_rotation_matrix(&rotation))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fingers_point_inward_and_straddle_the_thickness() {
+        for edge in Edge::ALL {
+            for flipped in [false, true] {
+                let grasp = EdgeGrasp { edge, along_m: 0.05, depth_m: 0.035, angle_rad: 0.3, flipped };
+                let x_og = grasp.x_og([0.5, 0.4, 0.03]);
+                let z_g = x_og.rotation * Vector3::z();
+                let y_g = x_og.rotation * Vector3::y();
+                // cos(0.3): the turn of the gripper; rounding only.
+                assert!((z_g.dot(&-edge.outward_o()) - 0.3_f64.cos()).abs() < 1e-14);
+                assert!((y_g.z.abs() - 1.0).abs() < 1e-14);
+                assert_eq!(x_og.translation.vector.z, 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn depth_is_measured_from_the_edge() {
+        let grasp = EdgeGrasp { edge: Edge::PlusY, along_m: 0.0, depth_m: 0.035, angle_rad: 0.0, flipped: false };
+        assert!((grasp.x_og([0.5, 0.4, 0.03]).translation.vector - Vector3::new(0.0, 0.165, 0.0)).norm() < 1e-15);
+    }
+}

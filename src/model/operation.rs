@@ -1,0 +1,103 @@
+//! The forceful operation: the wrench that the tool exerts on the board, and where (the paper's tuple `(°f, X_OT)`).
+
+use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    frames::{Pose, PoseRecord, WrenchSchema, pose},
+    wrench::Wrench,
+};
+
+/// What the person does to the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum OperationKind {
+    /// A force along the tool's axis, into the board. The roll of the tool is free: a spindle is symmetric.
+    Drill,
+    /// A force along the blade's edge, in the plane of the face.
+    Cut,
+    /// Any wrench at any tool pose.
+    Wrench,
+}
+
+impl OperationKind {
+    /// True when the roll of the tool about its axis is the person's choice.
+    pub fn roll_is_free(self) -> bool {
+        self == Self::Drill
+    }
+}
+
+/// A forceful operation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Operation {
+    /// What is done.
+    pub kind: OperationKind,
+    /// The wrench that the tool exerts on the object, about the tool tip, in O axes.
+    #[schemars(with = "WrenchSchema")]
+    pub wrench_o: Wrench,
+    /// The tool tip's frame in O: z_T out of the tool into the material; for a blade x_T is the cutting direction.
+    #[serde(with = "pose")]
+    #[schemars(with = "PoseRecord")]
+    pub x_ot: Pose,
+}
+
+impl Operation {
+    /// Drilling at a point of the worked face: `force_n` along `z_T = -z_O`, `x_T = x_O` until a roll is chosen
+    /// (METHOD section 2).
+    pub fn drill(point_m: [f64; 2], force_n: f64, thickness_m: f64) -> Self {
+        let x_ot = tool_on_face(point_m, Vector3::x(), thickness_m);
+        Self { kind: OperationKind::Drill, wrench_o: Wrench::from_force(Vector3::new(0.0, 0.0, -force_n)), x_ot }
+    }
+
+    /// Cutting at a point of the worked face: `force_n` along `direction_o`, which is `x_T`; `z_T = -z_O`.
+    /// `direction_o` must be a unit vector in the plane of the face.
+    pub fn cut(point_m: [f64; 2], direction_o: Vector3<f64>, force_n: f64, thickness_m: f64) -> Self {
+        let x_ot = tool_on_face(point_m, direction_o, thickness_m);
+        Self { kind: OperationKind::Cut, wrench_o: Wrench::from_force(direction_o * force_n), x_ot }
+    }
+
+    /// The operation with the tool turned by `roll_rad` about its own axis z_T.
+    pub fn rolled(&self, roll_rad: f64) -> Self {
+        let roll = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), roll_rad);
+        Self { x_ot: self.x_ot * roll, ..*self }
+    }
+
+    /// The wrench about the object's origin in O axes: `(f, m + p_OT x f)`.
+    pub fn wrench_about_object(&self) -> Wrench {
+        self.wrench_o.about(&self.x_ot.translation.vector)
+    }
+}
+
+/// The tool tip's frame on the worked face: x_T as given, z_T = -z_O.
+fn tool_on_face(point_m: [f64; 2], x_t: Vector3<f64>, thickness_m: f64) -> Pose {
+    let z_t = -Vector3::z();
+    let rotation = Rotation3::from_basis_unchecked(&[x_t, z_t.cross(&x_t), z_t]);
+    Isometry3::from_parts(
+        Vector3::new(point_m[0], point_m[1], thickness_m / 2.0).into(),
+        UnitQuaternion::from_rotation_matrix(&rotation),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drill_pushes_into_the_face() {
+        let drill = Operation::drill([0.1, -0.1], 15.0, 0.03);
+        assert_eq!(drill.wrench_o.force_n, Vector3::new(0.0, 0.0, -15.0));
+        assert_eq!(drill.x_ot.translation.vector, Vector3::new(0.1, -0.1, 0.015));
+        let z_t = drill.x_ot.rotation * Vector3::z();
+        assert!((z_t + Vector3::z()).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_blade_moves_along_its_own_x() {
+        let direction = Vector3::new(-0.6, 0.8, 0.0);
+        let cut = Operation::cut([0.12, 0.0], direction, 30.0, 0.03);
+        assert!((cut.x_ot.rotation * Vector3::x() - direction).norm() < 1e-15);
+        assert!((cut.wrench_o.force_n - direction * 30.0).norm() < 1e-14);
+    }
+}

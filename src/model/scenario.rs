@@ -1,0 +1,327 @@
+//! The resolved scenario: every figure that a plan, a simulation and a verdict depend on, with every default filled in.
+//!
+//! A scenario file may leave most of this out; `crate::scenario` reads, checks and completes it. A plan carries the
+//! resolved form, so that anyone can recompute every figure from the plan's file alone.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{operation::Operation, verdict::VerdictKind};
+
+/// A scenario with every default filled in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// The file format, 1.
+    pub format: u32,
+    /// A name for tables and file names.
+    pub name: String,
+    /// The robot, with the figures of its description that the result depends on.
+    pub robot: RobotFigures,
+    /// The person.
+    pub human: Person,
+    /// The tool in the person's hand.
+    pub tool: Tool,
+    /// The board.
+    pub object: Board,
+    /// The forceful operation.
+    pub operation: Operation,
+    /// How comfort is measured.
+    pub comfort: ComfortSettings,
+    /// How the hold is planned.
+    pub planner: PlannerSettings,
+    /// The grippers.
+    pub grip: Grip,
+    /// The simulation.
+    pub simulation: SimulationSettings,
+    /// What the hold must keep to.
+    pub limits: Limits,
+    /// What the author expects.
+    pub expect: Expectation,
+}
+
+/// The robot's name and those of its figures that the stability and the simulation use.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotFigures {
+    /// The name of a built-in robot, or the path of a description file.
+    pub description: String,
+    /// One entry an arm, in the description's order.
+    pub arms: Vec<ArmFigures>,
+}
+
+/// Figures of one arm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArmFigures {
+    /// The arm's name.
+    pub name: String,
+    /// The arm's joints, from the base outward.
+    pub joints: Vec<String>,
+    /// Stiffness of each joint's position control, N m/rad.
+    pub stiffness_nm_rad: Vec<f64>,
+    /// Damping of each joint's position control, N m s/rad.
+    pub damping_nm_s_rad: Vec<f64>,
+    /// The largest torque of each joint, N m.
+    pub effort_nm: Vec<f64>,
+    /// The pads of the arm's gripper.
+    pub pads: Vec<PadFigures>,
+}
+
+/// One pad of a gripper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PadFigures {
+    /// The pad's name, such as `upper`.
+    pub name: String,
+    /// Its full sides along x_G and z_G, m.
+    pub size_m: [f64; 2],
+    /// Where its centre lies along x_G and z_G, m.
+    pub centre_m: [f64; 2],
+}
+
+/// Male or female: selects strengths and segment masses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Sex {
+    /// Male.
+    Male,
+    /// Female.
+    Female,
+}
+
+/// The hand that works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Hand {
+    /// The right hand.
+    Right,
+    /// The left hand: the mirror image of the right, tool included.
+    Left,
+}
+
+/// The person who works.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Person {
+    /// Standing height, m.
+    pub height_m: f64,
+    /// Body mass, kg.
+    pub mass_kg: f64,
+    /// Selects strengths and segment masses.
+    pub sex: Sex,
+    /// The hand that holds the tool.
+    pub hand: Hand,
+    /// Strength percentile, 0 to 100 exclusive.
+    pub percentile: f64,
+}
+
+/// The tool in the hand: mass and the tip's frame T in the right hand's frame H.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tool {
+    /// Mass, kg; it acts at the palm.
+    pub mass_kg: f64,
+    /// Position of the tip in H, m.
+    pub tip_h_m: [f64; 3],
+    /// Rotation R_HT, unit quaternion, scalar last.
+    pub rotation_xyzw: [f64; 4],
+}
+
+/// The board, a box.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Board {
+    /// Width, height and thickness along x_O, y_O, z_O, m.
+    pub size_m: [f64; 3],
+    /// Density, kg/m^3.
+    pub density_kg_m3: f64,
+    /// The material's name.
+    pub material: String,
+}
+
+impl Board {
+    /// Mass of the board, kg.
+    pub fn mass_kg(&self) -> f64 {
+        self.size_m.iter().product::<f64>() * self.density_kg_m3
+    }
+}
+
+/// How the person answers a hold, when it is scored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PersonAnswer {
+    /// The best feasible answer.
+    Most,
+    /// The mean over all feasible answers of a uniform grid.
+    Average,
+}
+
+/// The form of the peripersonal metric (METHOD section 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PeripersonalForm {
+    /// The smallest distance.
+    Min,
+    /// The mean distance.
+    Mean,
+    /// The mean weighted towards close points.
+    Weighted,
+}
+
+/// Which sign decides between the two strengths of a joint (METHOD section 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum StrengthDirection {
+    /// The sign of the motion that the wrench drives, as the paper has it.
+    Paper,
+    /// The sign of the joint's torque.
+    Torque,
+}
+
+/// How comfort is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ComfortSettings {
+    /// Best or mean answer of the person.
+    pub person: PersonAnswer,
+    /// Form of the peripersonal metric.
+    pub peripersonal: PeripersonalForm,
+    /// Which sign selects a strength.
+    pub direction: StrengthDirection,
+    /// Weight of the regularised muscular comfort.
+    pub weight_muscular: f64,
+    /// Weight of the peripersonal comfort, 1/m.
+    pub weight_peripersonal: f64,
+}
+
+impl Default for ComfortSettings {
+    /// METHOD section 5: the weights of the paper's combined metric, 64 being the number of body points.
+    fn default() -> Self {
+        Self {
+            person: PersonAnswer::Most,
+            peripersonal: PeripersonalForm::Weighted,
+            direction: StrengthDirection::Paper,
+            weight_muscular: 1.0,
+            weight_peripersonal: 64.0,
+        }
+    }
+}
+
+/// What a planner maximises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PlannerKind {
+    /// Both comforts.
+    Comfort,
+}
+
+impl std::fmt::Display for PlannerKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Comfort => "comfort",
+        })
+    }
+}
+
+/// Which stability a plan must show (METHOD section 6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum StabilityKind {
+    /// The load factor of the cone program alone, as the paper has it.
+    Paper,
+    /// Also the compliant load factor and the predicted deflection.
+    Compliant,
+}
+
+/// How the hold is planned.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct PlannerSettings {
+    /// The objective.
+    pub kind: PlannerKind,
+    /// The stability that a plan must show.
+    pub stability: StabilityKind,
+    /// Seed of the search.
+    pub seed: u64,
+    /// A plan file to judge in place of planning, relative to the scenario's file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<String>,
+}
+
+impl Default for PlannerSettings {
+    fn default() -> Self {
+        Self { kind: PlannerKind::Comfort, stability: StabilityKind::Compliant, seed: 1, plan: None }
+    }
+}
+
+/// The grippers' squeeze and friction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Grip {
+    /// Force with which each finger is pushed, N.
+    pub force_n: f64,
+    /// Coulomb friction between pad and board.
+    pub friction: f64,
+}
+
+impl Default for Grip {
+    /// METHOD section 7.
+    fn default() -> Self {
+        Self { force_n: 30.0, friction: 0.6 }
+    }
+}
+
+/// The simulation's phases and step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SimulationSettings {
+    /// Time under gravity alone before the load, s.
+    pub settle_s: f64,
+    /// Time in which the load grows from nothing to the whole wrench, s.
+    pub ramp_s: f64,
+    /// Time under the whole wrench, s.
+    pub hold_s: f64,
+    /// Time after the load is taken away, s.
+    pub release_s: f64,
+    /// Time step, s.
+    pub timestep_s: f64,
+}
+
+impl Default for SimulationSettings {
+    fn default() -> Self {
+        Self { settle_s: 0.5, ramp_s: 1.0, hold_s: 1.0, release_s: 0.5, timestep_s: 0.002 }
+    }
+}
+
+/// What the hold must keep to (METHOD section 8).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Translation of a hand on the board, mm.
+    pub slip_mm: f64,
+    /// Rotation of a hand on the board, degrees.
+    pub slip_deg: f64,
+    /// Displacement of the tool point of the board, mm.
+    pub deflection_mm: f64,
+    /// Rate of slip in the second half of the hold, mm/s.
+    pub creep_mm_s: f64,
+    /// Demanded joint torque over its limit.
+    pub torque_ratio: f64,
+    /// The load factor that a plan must be predicted to stand.
+    pub load_factor: f64,
+}
+
+/// What the author of a scenario expects of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Expectation {
+    /// The verdict that counts as success.
+    pub verdict: VerdictKind,
+}
+
+impl Default for Expectation {
+    fn default() -> Self {
+        Self { verdict: VerdictKind::Holds }
+    }
+}

@@ -1,0 +1,105 @@
+//! The trace: what happened in a simulation, step by step. The judge and the recording see this and nothing else of the
+//! physics.
+
+use super::{frames::Pose, wrench::Wrench};
+
+/// A part of the simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// Under gravity alone; the state at its end is the reference.
+    Settle,
+    /// The load grows.
+    Ramp,
+    /// Under the whole load.
+    Hold,
+    /// The load is gone.
+    Release,
+}
+
+impl Phase {
+    /// The phase's name in tables and recordings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Settle => "settle",
+            Self::Ramp => "ramp",
+            Self::Hold => "hold",
+            Self::Release => "release",
+        }
+    }
+
+    /// True while the tool's wrench acts.
+    pub fn is_loaded(self) -> bool {
+        matches!(self, Self::Ramp | Self::Hold)
+    }
+}
+
+/// A simulated hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// The arms, in the order of every sample's `arms`.
+    pub arms: Vec<ArmTrace>,
+    /// Position of the tool point on the board, in O, m.
+    pub p_ot_m: nalgebra::Vector3<f64>,
+    /// One sample a step, the first at time 0. The sample's forces are those of the step that led to it.
+    pub samples: Vec<Sample>,
+}
+
+/// What stays the same about an arm during a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmTrace {
+    /// The arm's name.
+    pub name: String,
+    /// The arm's joints, in the order of every sample.
+    pub joints: Vec<String>,
+    /// The largest torque of each joint, N m.
+    pub effort_nm: Vec<f64>,
+    /// The pads, in the order of every sample.
+    pub pads: Vec<String>,
+    /// Force with which each finger is pushed, N.
+    pub grip_force_n: f64,
+}
+
+/// The state after one step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// Time since the start, s.
+    pub time_s: f64,
+    /// The part of the simulation.
+    pub phase: Phase,
+    /// The multiple of the operation's wrench that acts.
+    pub load_factor: f64,
+    /// The tool's wrench on the board about the tool point, world axes.
+    pub tool_wrench_w: Wrench,
+    /// The board's pose.
+    pub x_wo: Pose,
+    /// One entry an arm.
+    pub arms: Vec<ArmSample>,
+}
+
+/// The state of one arm after one step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmSample {
+    /// Joint angles, rad.
+    pub q_rad: Vec<f64>,
+    /// Travel of each finger from its closed limit, m.
+    pub finger_m: Vec<f64>,
+    /// Torque that the position control asked for, N m.
+    pub torque_demanded_nm: Vec<f64>,
+    /// Torque after the effort limit, N m.
+    pub torque_applied_nm: Vec<f64>,
+    /// Pose of the hand on the board: the frame with the gripper's axes at the centre between its pads, in O.
+    pub x_oc: Pose,
+    /// One entry a pad.
+    pub pads: Vec<PadSample>,
+}
+
+/// The state of one pad after one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PadSample {
+    /// Force of the pad on the board along the pad's normal, N.
+    pub normal_force_n: f64,
+    /// Wrench of the pad on the board about the pad's centre, world axes.
+    pub wrench_w: Wrench,
+    /// The pad's centre, world, m.
+    pub p_wp_m: nalgebra::Vector3<f64>,
+}

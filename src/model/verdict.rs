@@ -1,0 +1,117 @@
+//! The verdict: what became of a hold, with every figure that decided it.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What became of a hold. The first limit that was crossed names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum VerdictKind {
+    /// Every limit was kept.
+    Holds,
+    /// A hand slid on the board.
+    Slips,
+    /// A hand turned on the board.
+    Pivots,
+    /// A pad lost its squeeze.
+    Opens,
+    /// The board fell.
+    Drops,
+    /// A joint was asked for more torque than it has.
+    Saturates,
+    /// The tool point of the board gave way.
+    Deflects,
+    /// A hand kept sliding under the steady load.
+    Creeps,
+    /// There is no plan.
+    Infeasible,
+    /// The simulation broke down, so nothing can be said.
+    NoVerdict,
+}
+
+impl VerdictKind {
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Slips => "slips",
+            Self::Pivots => "pivots",
+            Self::Opens => "opens",
+            Self::Drops => "drops",
+            Self::Saturates => "saturates",
+            Self::Deflects => "deflects",
+            Self::Creeps => "creeps",
+            Self::Infeasible => "infeasible",
+            Self::NoVerdict => "no_verdict",
+        }
+    }
+}
+
+impl std::fmt::Display for VerdictKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// The verdict on one scenario or plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Verdict {
+    /// The file format, 1.
+    pub format: u32,
+    /// The scenario's or plan's name.
+    pub name: String,
+    /// What became of the hold.
+    pub verdict: VerdictKind,
+    /// What the author expected.
+    pub expected: VerdictKind,
+    /// True when the two agree and a verdict was possible.
+    pub met: bool,
+    /// Every limit, with what was found; empty when there was nothing to simulate.
+    pub checks: Vec<Check>,
+    /// The first limit that was crossed.
+    pub first_failure: Option<Failure>,
+    /// Largest torque over limit of each joint.
+    pub peak_torque_ratio: BTreeMap<String, f64>,
+    /// Why there is no plan or no verdict, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// Versions of Benchdog and of the engines that decided.
+    pub versions: BTreeMap<String, String>,
+    /// Seed of the planner.
+    pub seed: u64,
+    /// SHA-256 of the trace: equal fingerprints, equal simulations, bit by bit. Empty when nothing was simulated.
+    pub fingerprint: String,
+}
+
+/// One limit and what was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Check {
+    /// What was measured, such as `slip`.
+    pub name: String,
+    /// The worst value found.
+    pub value: f64,
+    /// The limit.
+    pub limit: f64,
+    /// `limit - value`: how much is left.
+    pub margin: f64,
+    /// The unit of all three.
+    pub unit: String,
+    /// True when the limit was kept.
+    pub passed: bool,
+}
+
+/// The first crossing of a limit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Failure {
+    /// The check that failed.
+    pub check: String,
+    /// When, since the start of the simulation, s.
+    pub time_s: f64,
+    /// The multiple of the operation's wrench that acted then.
+    pub load_factor: f64,
+}

@@ -1,0 +1,9 @@
+//! The robot: a URDF and a description file beside it, read into a tree of links with arms and grippers.
+//!
+//! Robots are data. Nothing here names one: a robot is a URDF (kinematics, inertia, primitive geometry) and a TOML
+//! description (arms, grippers, pads, stiffness, allowed collisions, body points). This module knows nothing of boards,
+//! persons or plans.
+
+pub mod tree;
+
+pub use tree::{Arm, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Pad, PlacedShape, Robot, RobotError, Shape};

@@ -1,0 +1,221 @@
+//! What a robot is made of, as plain data.
+
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
+
+use crate::model::frames::Pose;
+
+/// A robot: a tree of links, the arms that can hold something, and figures that no URDF carries.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// The name or path by which it was loaded.
+    pub description: String,
+    /// Parents before children; the first is the root, whose frame is the world W.
+    pub links: Vec<Link>,
+    /// Parents before children.
+    pub joints: Vec<Joint>,
+    /// The arms that can hold a board, in the description's order.
+    pub arms: Vec<Arm>,
+    /// Pairs of links (indices, smaller first) that may overlap: neighbours, and primitives larger than the part.
+    pub allowed_collisions: Vec<[usize; 2]>,
+    /// Points spread over the robot's surface, for the peripersonal metric.
+    pub body_points: Vec<BodyPoint>,
+    /// Height of the floor in W, m.
+    pub floor_z_m: f64,
+}
+
+/// A rigid part.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// The URDF's name.
+    pub name: String,
+    /// The joint that carries it, an index into [`Robot::joints`]; none for the root.
+    pub parent_joint: Option<usize>,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Centre of mass in the link's frame, m.
+    pub com_l: Vector3<f64>,
+    /// Inertia about the centre of mass in axes of the link's frame, kg m^2.
+    pub inertia_l: Matrix3<f64>,
+    /// Primitive geometry, for collisions and for pictures alike.
+    pub shapes: Vec<PlacedShape>,
+}
+
+/// A primitive in its link.
+#[derive(Clone, Debug)]
+pub struct PlacedShape {
+    /// Pose of the shape's centre in the link's frame.
+    pub x_ls: Pose,
+    /// The primitive.
+    pub shape: Shape,
+    /// Colour, red green blue alpha, 0 to 1.
+    pub rgba: [f64; 4],
+}
+
+/// A primitive about its own centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A box of these half sides, m.
+    Box {
+        /// Half sides along x, y, z, m.
+        half_m: [f64; 3],
+    },
+    /// A cylinder about z.
+    Cylinder {
+        /// Radius, m.
+        radius_m: f64,
+        /// Half its length, m.
+        half_length_m: f64,
+    },
+    /// A sphere.
+    Sphere {
+        /// Radius, m.
+        radius_m: f64,
+    },
+}
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Not at all.
+    Fixed,
+    /// Turns about its axis.
+    Revolute,
+    /// Slides along its axis.
+    Prismatic,
+}
+
+/// A joint between a link and its parent link.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// The URDF's name.
+    pub name: String,
+    /// How it moves.
+    pub kind: JointKind,
+    /// Index of the parent link.
+    pub parent_link: usize,
+    /// Index of the child link.
+    pub child_link: usize,
+    /// Pose of the joint's frame in the parent link's; the child link's frame at position 0.
+    pub x_pj: Pose,
+    /// Axis in the joint's frame.
+    pub axis_j: Unit<Vector3<f64>>,
+    /// Smallest position, rad or m.
+    pub lower: f64,
+    /// Largest position, rad or m.
+    pub upper: f64,
+}
+
+/// A serial chain from the root to a gripper.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// The description's name, such as `left`.
+    pub name: String,
+    /// Its moving joints, indices into [`Robot::joints`], from the base outward.
+    pub joints: Vec<usize>,
+    /// The largest torque of each joint, N m: the description's where it overrides the URDF's.
+    pub effort_nm: Vec<f64>,
+    /// Stiffness of each joint's position control, N m/rad.
+    pub stiffness_nm_rad: Vec<f64>,
+    /// Damping of each joint's position control, N m s/rad.
+    pub damping_nm_s_rad: Vec<f64>,
+    /// What it holds with.
+    pub gripper: Gripper,
+}
+
+/// A parallel gripper: two coupled fingers that close on each other along y_G.
+#[derive(Clone, Debug)]
+pub struct Gripper {
+    /// The link whose frame is G: z out of the gripper, fingers opening along y.
+    pub frame_link: usize,
+    /// The link that the finger joints hang on.
+    pub palm_link: usize,
+    /// The finger on the +y_G side, then the one on the -y_G side.
+    pub fingers: [Finger; 2],
+    /// Gap between the pads when closed and when open, m; what is thinner or thicker cannot be held.
+    pub opening_m: [f64; 2],
+    /// The largest force with which each finger can be pushed, N.
+    pub max_force_n: f64,
+}
+
+/// One finger and its pad.
+#[derive(Clone, Debug)]
+pub struct Finger {
+    /// The prismatic joint that moves it, an index into [`Robot::joints`].
+    pub joint: usize,
+    /// Its pad.
+    pub pad: Pad,
+}
+
+/// The flat face of a finger that touches the board, a rectangle normal to y_G.
+#[derive(Clone, Debug)]
+pub struct Pad {
+    /// The description's name of the finger.
+    pub name: String,
+    /// The link that the pad is part of.
+    pub link: usize,
+    /// Full sides along x_G and z_G, m.
+    pub size_m: [f64; 2],
+    /// Centre along x_G and z_G, m.
+    pub centre_m: [f64; 2],
+    /// Distance of the face from the plane y_G = 0 when the finger's travel is 0, m; it grows with the travel.
+    pub offset_m: f64,
+}
+
+impl Gripper {
+    /// Travel of a finger, from its closed limit, at which the gap between the pads is `gap_m`:
+    /// the pad's face is then `gap_m / 2` from the plane y_G = 0.
+    pub fn travel_for_gap_m(&self, finger: usize, gap_m: f64) -> f64 {
+        gap_m / 2.0 - self.fingers[finger].pad.offset_m
+    }
+
+    /// Which pad is which on a board: `upper` lies on the worked face (+z_O), `lower` on the other.
+    pub fn pad_name(&self, finger: usize, x_og: &Pose) -> &'static str {
+        let y_g_in_o = x_og.rotation * Vector3::y();
+        let finger_is_up = (finger == 0) == (y_g_in_o.z > 0.0);
+        if finger_is_up { "upper" } else { "lower" }
+    }
+
+    /// The centre between the pads in G: the point about which a hand grasps.
+    pub fn grasp_point_g(&self) -> Vector3<f64> {
+        let [x, z] = self.fingers[0].pad.centre_m;
+        Vector3::new(x, 0.0, z)
+    }
+}
+
+/// A point on the robot's surface.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyPoint {
+    /// The link that it moves with.
+    pub link: usize,
+    /// Position in the link's frame, m.
+    pub p_l: Point3<f64>,
+}
+
+/// Why a robot could not be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum RobotError {
+    /// A file could not be read.
+    #[error("failed to read {path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// The cause.
+        source: std::io::Error,
+    },
+    /// Neither a built-in robot nor a file.
+    #[error("found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file")]
+    Unknown {
+        /// What was asked for.
+        found: String,
+        /// The built-in names.
+        builtin: String,
+    },
+    /// A description or URDF that cannot be used.
+    #[error("{file}: {problem}")]
+    Invalid {
+        /// The file.
+        file: String,
+        /// Line, key, what was found and what was expected.
+        problem: String,
+    },
+}
