@@ -27,5 +27,6 @@
 #![forbid(unsafe_code)]
 
 pub mod collision;
+pub mod judge;
 pub mod model;
 pub mod robot;

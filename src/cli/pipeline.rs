@@ -1,6 +1,6 @@
 //! The main path: scenario -> plan -> simulation -> judgement -> verdict, for one scenario.
 
-use std::time::Instant;
+use std::{collections::BTreeMap, time::Instant};
 
 use super::{exit::CliError, versions::versions};
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
     model::{
         FORMAT,
         plan::Plan,
-        scenario::{Expectation, Scenario},
+        scenario::Scenario,
         trace::Trace,
         verdict::{Verdict, VerdictKind},
     },
@@ -55,7 +55,7 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
     let trace = sim::simulate(robot, &plan, scenario.grip.friction, &scenario.simulation)
         .map_err(|source| CliError::Simulation { name: plan.name.clone(), source })?;
     let judgement = judge(&trace, &scenario.limits);
-    let verdict = verdict(scenario, &judgement);
+    let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, scenario.planner.seed, versions());
     Ok(Run { verdict, plan: Some(plan), simulated: Some((trace, judgement)) })
 }
 
@@ -71,41 +71,18 @@ pub fn timed_plan(scenario: &Scenario, robot: &Robot) -> PlanOutcome {
     outcome
 }
 
-fn verdict(scenario: &Scenario, judgement: &Judgement) -> Verdict {
-    Verdict {
-        verdict: judgement.verdict,
-        met: is_met(judgement.verdict, scenario.expect),
-        checks: judgement.checks.clone(),
-        first_failure: judgement.first_failure.clone(),
-        peak_torque_ratio: judgement.peak_torque_ratio.clone(),
-        reason: judgement.reason.clone(),
-        fingerprint: judgement.fingerprint.clone(),
-        ..blank_verdict(scenario)
-    }
-}
-
+/// The verdict on a scenario that has no plan.
 fn infeasible(scenario: &Scenario, reason: String) -> Verdict {
-    let verdict = VerdictKind::Infeasible;
-    Verdict { verdict, met: is_met(verdict, scenario.expect), reason: Some(reason), ..blank_verdict(scenario) }
-}
-
-/// Without a verdict there is nothing that could meet an expectation.
-fn is_met(verdict: VerdictKind, expect: Expectation) -> bool {
-    verdict == expect.verdict && verdict != VerdictKind::NoVerdict
-}
-
-/// What every verdict on a scenario says, whatever became of it.
-fn blank_verdict(scenario: &Scenario) -> Verdict {
     Verdict {
         format: FORMAT,
         name: scenario.name.clone(),
-        verdict: VerdictKind::NoVerdict,
+        verdict: VerdictKind::Infeasible,
         expected: scenario.expect.verdict,
-        met: false,
+        met: scenario.expect.verdict == VerdictKind::Infeasible,
         checks: Vec::new(),
         first_failure: None,
-        peak_torque_ratio: Default::default(),
-        reason: None,
+        peak_torque_ratio: BTreeMap::new(),
+        reason: Some(reason),
         versions: versions(),
         seed: scenario.planner.seed,
         fingerprint: String::new(),

@@ -6,6 +6,7 @@
 
 pub mod frames;
 pub mod grasp;
+pub mod measures;
 pub mod operation;
 pub mod plan;
 pub mod scenario;

@@ -86,12 +86,87 @@ pub struct Verdict {
     pub fingerprint: String,
 }
 
+impl Verdict {
+    /// The check of this kind; none when it was not made.
+    pub fn check(&self, kind: CheckKind) -> Option<&Check> {
+        self.checks.iter().find(|check| check.name == kind)
+    }
+}
+
+/// What a hold is checked for (METHOD section 8), in the order of tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CheckKind {
+    /// Largest translation of a hand on the board, mm.
+    Slip,
+    /// Largest rotation of a hand on the board, degrees.
+    SlipRotation,
+    /// Largest displacement of the tool point of the board, mm.
+    Deflection,
+    /// Rate of slip in the second half of the hold, mm/s.
+    Creep,
+    /// Largest demanded joint torque over its limit.
+    TorqueRatio,
+    /// Longest time that a pad went almost without squeeze, ms.
+    PadOpen,
+    /// Longest time that no pad touched the board, ms.
+    ContactLost,
+    /// Slip beyond which the board counts as dropped, mm.
+    Drop,
+}
+
+impl CheckKind {
+    /// The name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slip => "slip",
+            Self::SlipRotation => "slip_rotation",
+            Self::Deflection => "deflection",
+            Self::Creep => "creep",
+            Self::TorqueRatio => "torque_ratio",
+            Self::PadOpen => "pad_open",
+            Self::ContactLost => "contact_lost",
+            Self::Drop => "drop",
+        }
+    }
+
+    /// The unit of its value, limit and margin; `1` for a ratio.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Slip | Self::Deflection | Self::Drop => "mm",
+            Self::SlipRotation => "deg",
+            Self::Creep => "mm/s",
+            Self::TorqueRatio => "1",
+            Self::PadOpen | Self::ContactLost => "ms",
+        }
+    }
+
+    /// The verdict on a hold whose first crossed limit this is.
+    pub fn verdict(self) -> VerdictKind {
+        match self {
+            Self::Slip => VerdictKind::Slips,
+            Self::SlipRotation => VerdictKind::Pivots,
+            Self::Deflection => VerdictKind::Deflects,
+            Self::Creep => VerdictKind::Creeps,
+            Self::TorqueRatio => VerdictKind::Saturates,
+            Self::PadOpen => VerdictKind::Opens,
+            Self::ContactLost | Self::Drop => VerdictKind::Drops,
+        }
+    }
+}
+
+impl std::fmt::Display for CheckKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
 /// One limit and what was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Check {
-    /// What was measured, such as `slip`.
-    pub name: String,
+    /// What was measured.
+    pub name: CheckKind,
     /// The worst value found.
     pub value: f64,
     /// The limit.
@@ -109,7 +184,7 @@ pub struct Check {
 #[serde(deny_unknown_fields)]
 pub struct Failure {
     /// The check that failed.
-    pub check: String,
+    pub check: CheckKind,
     /// When, since the start of the simulation, s.
     pub time_s: f64,
     /// The multiple of the operation's wrench that acted then.

@@ -1,0 +1,77 @@
+//! What a reader of a recording wants to jump to: the phases and the first crossing of each limit.
+
+use nalgebra::Point3;
+
+use super::checks::Finding;
+use crate::model::{
+    measures::{Event, EventKind},
+    trace::{Phase, Sample, Trace},
+    verdict::CheckKind,
+};
+
+/// Phases and crossings, in the order of time.
+pub(super) fn events(trace: &Trace, judged: &[Sample], findings: &[Finding]) -> Vec<Event> {
+    let mut events = phase_events(trace);
+    events.extend(findings.iter().filter_map(|finding| crossing_event(judged, finding)));
+    in_order(events)
+}
+
+/// Phases and the end of a trace that allows no verdict.
+pub(super) fn events_without_verdict(trace: &Trace, reason: &str) -> Vec<Event> {
+    let mut events = phase_events(trace);
+    let time_s = trace.samples.last().map_or(0.0, |sample| sample.time_s);
+    events.push(Event { time_s, kind: EventKind::BrokeDown, text: format!("no verdict: {reason}") });
+    in_order(events)
+}
+
+fn in_order(mut events: Vec<Event>) -> Vec<Event> {
+    // Stable: a phase goes before the limits that were crossed at its first sample.
+    events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    events
+}
+
+fn phase_events(trace: &Trace) -> Vec<Event> {
+    let first = trace.samples.first().into_iter();
+    let changes = trace.samples.windows(2).filter(|pair| pair[0].phase != pair[1].phase).map(|pair| &pair[1]);
+    first
+        .chain(changes)
+        .map(|sample| Event {
+            time_s: sample.time_s,
+            kind: EventKind::Phase,
+            text: match sample.phase {
+                Phase::Settle => "settle: the board's weight alone".to_owned(),
+                Phase::Ramp => format!("ramp: the load grows; the tool point sagged {:.2} mm", sag_mm(trace, sample)),
+                Phase::Hold => format!("hold: the whole load, factor {:.2}", sample.load_factor),
+                Phase::Release => "release: the load is gone".to_owned(),
+            },
+        })
+        .collect()
+}
+
+/// How far the tool point moved under gravity until this sample, mm.
+fn sag_mm(trace: &Trace, sample: &Sample) -> f64 {
+    let tool_point_w = |sample: &Sample| sample.x_wo * Point3::from(trace.p_ot_m);
+    trace.samples.first().map_or(0.0, |first| 1e3 * (tool_point_w(sample) - tool_point_w(first)).norm())
+}
+
+fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
+    let crossing = finding.crossing.as_ref()?;
+    let sample = &judged[crossing.sample];
+    let happened = match finding.check.name {
+        CheckKind::Slip => "slides past",
+        CheckKind::SlipRotation => "turns past",
+        CheckKind::Deflection => "the tool point gives way past",
+        CheckKind::Creep => "keeps sliding faster than",
+        CheckKind::TorqueRatio => "is asked for more than its torque times",
+        CheckKind::PadOpen => "has been open for more than",
+        CheckKind::ContactLost => "no pad touches the board: past",
+        CheckKind::Drop => "has lost the board: past",
+    };
+    let unit = match finding.check.name {
+        CheckKind::TorqueRatio => String::new(),
+        _ => format!(" {}", finding.check.unit),
+    };
+    let what = if crossing.what.is_empty() { String::new() } else { format!("{} ", crossing.what) };
+    let text = format!("{what}{happened} {}{unit} at load factor {:.2}", finding.check.limit, sample.load_factor);
+    Some(Event { time_s: sample.time_s, kind: EventKind::LimitCrossed, text })
+}

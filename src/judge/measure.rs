@@ -1,0 +1,59 @@
+//! The measured series of a trace.
+
+use crate::model::{
+    frames::Pose,
+    measures::{HandMeasures, JointMeasures, Measures},
+    trace::{Sample, Trace},
+};
+
+/// Slip, deflection and torque ratios (METHOD section 8) of every sample from the reference on:
+///
+/// - slip of a hand: `|p_OC(t) - p_OC(ref)|` and the angle of `R_OC(ref)' R_OC(t)`, C between the hand's pads;
+/// - deflection: `|X_WO(t) p_OT - X_WO(ref) p_OT|`, T the tool point;
+/// - torque ratio of a joint: `|tau_demanded| / tau_max`.
+///
+/// `reference` is an index into the trace's samples.
+pub(super) fn measures(trace: &Trace, reference: usize) -> Measures {
+    let samples = &trace.samples[reference..];
+    let tool_point_w = |sample: &Sample| sample.x_wo * nalgebra::Point3::from(trace.p_ot_m);
+    Measures {
+        time_s: samples.iter().map(|sample| sample.time_s).collect(),
+        hands: (0..trace.arms.len()).map(|arm| hand_measures(trace, samples, arm)).collect(),
+        deflection_mm: samples
+            .iter()
+            .map(|sample| 1e3 * (tool_point_w(sample) - tool_point_w(&samples[0])).norm())
+            .collect(),
+        joints: (0..trace.arms.len()).flat_map(|arm| joint_measures(trace, samples, arm)).collect(),
+    }
+}
+
+fn hand_measures(trace: &Trace, samples: &[Sample], arm: usize) -> HandMeasures {
+    let x_oc = |sample: &Sample| -> Pose { sample.arms[arm].x_oc };
+    let start = x_oc(&samples[0]);
+    HandMeasures {
+        name: trace.arms[arm].name.clone(),
+        slip_mm: samples
+            .iter()
+            .map(|sample| 1e3 * (x_oc(sample).translation.vector - start.translation.vector).norm())
+            .collect(),
+        slip_deg: samples
+            .iter()
+            .map(|sample| start.rotation.angle_to(&x_oc(sample).rotation).to_degrees())
+            .collect(),
+    }
+}
+
+fn joint_measures<'a>(
+    trace: &'a Trace,
+    samples: &'a [Sample],
+    arm: usize,
+) -> impl Iterator<Item = JointMeasures> + 'a {
+    let effort_nm = &trace.arms[arm].effort_nm;
+    trace.arms[arm].joints.iter().enumerate().map(move |(joint, name)| JointMeasures {
+        name: name.clone(),
+        torque_ratio: samples
+            .iter()
+            .map(|sample| sample.arms[arm].torque_demanded_nm[joint].abs() / effort_nm[joint])
+            .collect(),
+    })
+}

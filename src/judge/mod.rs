@@ -1,0 +1,170 @@
+//! The judge: a trace against its limits (METHOD section 8).
+//!
+//! A pure function. It must never know how a trace was made, what a planner predicted or what the author expects: a
+//! verdict that depended on any of these would prove nothing.
+
+mod checks;
+mod events;
+mod fingerprint;
+mod measure;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+
+pub use fingerprint::fingerprint;
+
+use crate::model::{
+    FORMAT,
+    measures::{Event, Measures},
+    scenario::Limits,
+    trace::{Phase, Sample, Trace},
+    verdict::{Check, Failure, Verdict, VerdictKind},
+};
+
+/// What the judge says about a trace.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// What became of the hold.
+    pub verdict: VerdictKind,
+    /// Every limit, with what was found; empty without a verdict.
+    pub checks: Vec<Check>,
+    /// The first limit that was crossed.
+    pub first_failure: Option<Failure>,
+    /// Largest torque over limit of each joint, from the reference to the end of the load.
+    pub peak_torque_ratio: BTreeMap<String, f64>,
+    /// Why there is no verdict, in words.
+    pub reason: Option<String>,
+    /// SHA-256 of the trace.
+    pub fingerprint: String,
+    /// Phases and crossed limits, in the order of time.
+    pub events: Vec<Event>,
+    /// The series behind the checks; empty when the trace is malformed.
+    pub measures: Measures,
+}
+
+impl Judgement {
+    /// The verdict's file form, with what the judge itself must not know.
+    pub fn to_verdict(
+        &self,
+        name: &str,
+        expected: VerdictKind,
+        seed: u64,
+        versions: BTreeMap<String, String>,
+    ) -> Verdict {
+        Verdict {
+            format: FORMAT,
+            name: name.to_owned(),
+            verdict: self.verdict,
+            expected,
+            met: self.verdict == expected && self.verdict != VerdictKind::NoVerdict,
+            checks: self.checks.clone(),
+            first_failure: self.first_failure.clone(),
+            peak_torque_ratio: self.peak_torque_ratio.clone(),
+            reason: self.reason.clone(),
+            versions,
+            seed,
+            fingerprint: self.fingerprint.clone(),
+        }
+    }
+}
+
+/// Judges a simulated hold.
+///
+/// The reference is the last sample of settling. What is judged reaches from there to the end of the load; the release
+/// is not. A value at its limit keeps it. The earliest crossing names the verdict; of several at the same sample, the
+/// loss of the board goes before the contacts (pad, slip, rotation), and these before torque, deflection and creep.
+pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
+    if let Some(reason) = malformed(trace) {
+        return no_verdict(trace, Measures::default(), reason);
+    }
+    let reference = reference(trace);
+    let measures = measure::measures(trace, reference);
+    let judged = judged(trace, reference);
+    if let Some(reason) = undecidable(trace, judged) {
+        return no_verdict(trace, measures, reason);
+    }
+    let findings = checks::findings(trace, judged, &measures, limits);
+    let first = checks::first_failure(&findings);
+    Judgement {
+        verdict: first.map_or(VerdictKind::Holds, |(finding, _)| finding.check.name.verdict()),
+        first_failure: first.map(|(finding, crossing)| Failure {
+            check: finding.check.name,
+            time_s: judged[crossing.sample].time_s,
+            load_factor: judged[crossing.sample].load_factor,
+        }),
+        peak_torque_ratio: peak_torque_ratio(&measures, judged.len()),
+        reason: None,
+        fingerprint: fingerprint(trace),
+        events: events::events(trace, judged, &findings),
+        checks: findings.into_iter().map(|finding| finding.check).collect(),
+        measures,
+    }
+}
+
+/// Index of the reference: the last sample of settling, or the first of a trace that never settled.
+fn reference(trace: &Trace) -> usize {
+    trace.samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0)
+}
+
+/// The samples from the reference to the end of the load.
+fn judged(trace: &Trace, reference: usize) -> &[Sample] {
+    let end = trace.samples.iter().rposition(|sample| sample.phase.is_loaded()).map_or(reference, |last| last + 1);
+    &trace.samples[reference..end.max(reference)]
+}
+
+fn peak_torque_ratio(measures: &Measures, count: usize) -> BTreeMap<String, f64> {
+    let peak = |ratios: &[f64]| ratios[..count].iter().copied().fold(0.0, f64::max);
+    measures.joints.iter().map(|joint| (joint.name.clone(), peak(&joint.torque_ratio))).collect()
+}
+
+/// Why a trace cannot be measured: nothing in it, or arms of different shapes.
+fn malformed(trace: &Trace) -> Option<String> {
+    if trace.samples.is_empty() {
+        return Some(trace.broke_down.clone().unwrap_or_else(|| "the trace is empty".to_owned()));
+    }
+    let shapes_agree = |sample: &Sample| {
+        sample.arms.len() == trace.arms.len()
+            && sample.arms.iter().zip(&trace.arms).all(|(found, arm)| {
+                found.torque_demanded_nm.len() == arm.joints.len()
+                    && found.pads.len() == arm.pads.len()
+                    && arm.effort_nm.len() == arm.joints.len()
+            })
+    };
+    let odd = trace.samples.iter().find(|sample| !shapes_agree(sample))?;
+    Some(format!("the sample at {} s does not have one entry an arm, joint and pad", odd.time_s))
+}
+
+/// Why a well-formed trace allows no verdict.
+fn undecidable(trace: &Trace, judged: &[Sample]) -> Option<String> {
+    if trace.broke_down.is_some() {
+        return trace.broke_down.clone();
+    }
+    if let Some(sample) = trace.samples.iter().find(|sample| !fingerprint::sample_is_finite(sample)) {
+        return Some(format!("found a number that is not finite in the sample at {} s", sample.time_s));
+    }
+    if !fingerprint::constants_are_finite(trace) {
+        return Some("found a limit or a tool point that is not finite".to_owned());
+    }
+    let powerless = |arm: &crate::model::trace::ArmTrace| arm.effort_nm.iter().any(|&effort_nm| effort_nm <= 0.0);
+    if let Some(arm) = trace.arms.iter().find(|arm| powerless(arm)) {
+        return Some(format!("found a joint of the {} arm without torque, expected positive limits", arm.name));
+    }
+    if judged.is_empty() {
+        return Some("the load never acted".to_owned());
+    }
+    None
+}
+
+fn no_verdict(trace: &Trace, measures: Measures, reason: String) -> Judgement {
+    Judgement {
+        verdict: VerdictKind::NoVerdict,
+        checks: Vec::new(),
+        first_failure: None,
+        peak_torque_ratio: BTreeMap::new(),
+        fingerprint: fingerprint(trace),
+        events: events::events_without_verdict(trace, &reason),
+        reason: Some(reason),
+        measures,
+    }
+}

@@ -1,0 +1,357 @@
+//! Synthetic traces: every limit crossed on its own, kept exactly, and in competition.
+
+use nalgebra::{Isometry3, Vector3};
+use proptest::prelude::*;
+
+use super::*;
+use crate::model::{
+    frames::Pose,
+    measures::EventKind,
+    trace::{ArmSample, ArmTrace, PadSample},
+    verdict::CheckKind,
+    wrench::Wrench,
+};
+
+const STEP_S: f64 = 0.002;
+const SETTLE: usize = 50;
+const RAMP: usize = 100;
+const HOLD: usize = 100;
+const RELEASE: usize = 50;
+const GRIP_N: f64 = 30.0;
+
+/// Any axis and angle, so that no test depends on frames that happen to be aligned.
+fn crooked() -> Pose {
+    Isometry3::new(Vector3::new(0.5, -0.1, 0.3), Vector3::new(0.3, -0.7, 1.1))
+}
+
+fn limits() -> Limits {
+    Limits {
+        slip_mm: 1.0,
+        slip_deg: 2.0,
+        deflection_mm: 5.0,
+        creep_mm_s: 0.1,
+        torque_ratio: 1.0,
+        load_factor: 1.0,
+    }
+}
+
+fn phase(index: usize) -> Phase {
+    match index {
+        0..SETTLE => Phase::Settle,
+        i if i < SETTLE + RAMP => Phase::Ramp,
+        i if i < SETTLE + RAMP + HOLD => Phase::Hold,
+        _ => Phase::Release,
+    }
+}
+
+/// Index of the reference in [`still`].
+const REFERENCE: usize = SETTLE - 1;
+/// Index of the last judged sample in [`still`].
+const LAST_JUDGED: usize = SETTLE + RAMP + HOLD - 1;
+
+/// A hold in which nothing moves: two arms of two joints and two pads.
+fn still() -> Trace {
+    let arm = |name: &str| ArmTrace {
+        name: name.into(),
+        joints: vec![format!("{name}_s0"), format!("{name}_w1")],
+        effort_nm: vec![50.0, 15.0],
+        pads: vec!["upper".into(), "lower".into()],
+        grip_force_n: GRIP_N,
+    };
+    let pad = PadSample { normal_force_n: GRIP_N, wrench_w: Wrench::default(), p_wp_m: Vector3::zeros() };
+    let arm_sample = ArmSample {
+        q_rad: vec![0.1, -0.2],
+        finger_m: vec![0.01, 0.01],
+        torque_demanded_nm: vec![10.0, -6.0],
+        torque_applied_nm: vec![10.0, -6.0],
+        x_oc: crooked(),
+        pads: vec![pad; 2],
+    };
+    let sample = |index: usize| Sample {
+        time_s: index as f64 * STEP_S,
+        phase: phase(index),
+        load_factor: match phase(index) {
+            Phase::Ramp => (index + 1 - SETTLE) as f64 / RAMP as f64,
+            Phase::Hold => 1.0,
+            _ => 0.0,
+        },
+        tool_wrench_w: Wrench::default(),
+        x_wo: crooked(),
+        arms: vec![arm_sample.clone(); 2],
+    };
+    Trace {
+        arms: vec![arm("left"), arm("right")],
+        p_ot_m: Vector3::new(0.1, 0.05, 0.015),
+        samples: (0..SETTLE + RAMP + HOLD + RELEASE).map(sample).collect(),
+        broke_down: None,
+    }
+}
+
+/// A still hold with `change` applied to every sample from `from` on.
+fn changed(from: usize, change: impl Fn(&mut Sample)) -> Trace {
+    let mut trace = still();
+    trace.samples[from..].iter_mut().for_each(change);
+    trace
+}
+
+fn slide(sample: &mut Sample, arm: usize, by_mm: f64) {
+    sample.arms[arm].x_oc.translation.vector += Vector3::new(0.6, -0.8, 0.0) * (by_mm * 1e-3);
+}
+
+fn turn(sample: &mut Sample, arm: usize, by_deg: f64) {
+    let x_oc = &mut sample.arms[arm].x_oc;
+    x_oc.rotation = nalgebra::UnitQuaternion::new(Vector3::z() * by_deg.to_radians()) * x_oc.rotation;
+}
+
+fn value(judgement: &Judgement, kind: CheckKind) -> f64 {
+    judgement.checks.iter().find(|check| check.name == kind).unwrap().value
+}
+
+/// The verdict, and the index of the sample at which it fell.
+fn outcome(trace: &Trace) -> (VerdictKind, Option<usize>) {
+    let judgement = judge(trace, &limits());
+    let failure = judgement.first_failure;
+    (judgement.verdict, failure.map(|failure| (failure.time_s / STEP_S).round() as usize))
+}
+
+#[test]
+fn a_still_hold_holds_with_every_check_made() {
+    let judgement = judge(&still(), &limits());
+    assert_eq!(judgement.verdict, VerdictKind::Holds);
+    assert_eq!(judgement.first_failure, None);
+    assert_eq!(judgement.checks.len(), 8);
+    assert!(judgement.checks.iter().all(|check| check.passed && check.margin == check.limit - check.value));
+    assert_eq!(judgement.peak_torque_ratio["left_w1"], 6.0 / 15.0);
+    assert_eq!(judgement.measures.time_s[0], REFERENCE as f64 * STEP_S);
+}
+
+#[test]
+fn each_failure_is_named_after_its_own_limit() {
+    let at = SETTLE + 60;
+    assert_eq!(outcome(&changed(at, |s| slide(s, 1, 1.1))), (VerdictKind::Slips, Some(at)));
+    assert_eq!(outcome(&changed(at, |s| turn(s, 0, 2.1))), (VerdictKind::Pivots, Some(at)));
+    assert_eq!(
+        outcome(&changed(at, |s| s.x_wo.translation.vector.z -= 5.1e-3)),
+        (VerdictKind::Deflects, Some(at))
+    );
+    assert_eq!(
+        outcome(&changed(at, |s| s.arms[1].torque_demanded_nm[1] = -15.1)),
+        (VerdictKind::Saturates, Some(at))
+    );
+    assert_eq!(outcome(&changed(at, |s| slide(s, 0, 50.1))), (VerdictKind::Drops, Some(at)));
+    // Fifteen steps of 2 ms are allowed; the sixteenth is one too many.
+    assert_eq!(outcome(&changed(at, |s| s.arms[0].pads[1].normal_force_n = 1.4)), (VerdictKind::Opens, Some(at + 15)));
+}
+
+#[test]
+fn without_any_contact_the_board_drops_at_once() {
+    let at = SETTLE + 10;
+    let release = |pad: &mut PadSample| pad.normal_force_n = 0.0;
+    let all_pads = changed(at, |s| s.arms.iter_mut().flat_map(|arm| &mut arm.pads).for_each(release));
+    assert_eq!(outcome(&all_pads), (VerdictKind::Drops, Some(at)));
+    let one_hand = changed(at, |s| s.arms[0].pads.iter_mut().for_each(release));
+    assert_eq!(outcome(&one_hand), (VerdictKind::Opens, Some(at + 15)));
+}
+
+#[test]
+fn a_board_that_was_never_held_drops_at_the_reference() {
+    let none = changed(0, |s| s.arms.iter_mut().flat_map(|arm| &mut arm.pads).for_each(|pad| pad.normal_force_n = 0.0));
+    assert_eq!(outcome(&none), (VerdictKind::Drops, Some(REFERENCE)));
+}
+
+#[test]
+fn a_value_at_its_limit_passes() {
+    let limits = Limits { slip_mm: 0.25, deflection_mm: 4.0, torque_ratio: 0.5, ..limits() };
+    let mut trace = still();
+    // Powers of two: exact in binary, so that the value is the limit and not one rounding off.
+    for sample in &mut trace.samples {
+        sample.x_wo = Pose::identity();
+        sample.arms.iter_mut().for_each(|arm| arm.x_oc = Pose::identity());
+    }
+    trace.p_ot_m = Vector3::zeros();
+    for sample in &mut trace.samples[SETTLE + 20..] {
+        sample.arms[0].x_oc.translation.vector.x = 0.25e-3;
+        sample.x_wo.translation.vector.y = 4.0e-3;
+        sample.arms[0].torque_demanded_nm[0] = 25.0;
+        sample.arms[0].pads[0].normal_force_n = 0.05 * GRIP_N;
+    }
+    let judgement = judge(&trace, &limits);
+    assert_eq!(judgement.verdict, VerdictKind::Holds);
+    assert_eq!(value(&judgement, CheckKind::Slip), 0.25);
+    assert_eq!(value(&judgement, CheckKind::Deflection), 4.0);
+    assert_eq!(value(&judgement, CheckKind::TorqueRatio), 0.5);
+    assert_eq!(value(&judgement, CheckKind::PadOpen), 0.0);
+}
+
+#[test]
+fn a_pad_may_open_for_thirty_milliseconds() {
+    let open_for = |steps: usize| {
+        let mut trace = still();
+        for sample in &mut trace.samples[SETTLE + 20..SETTLE + 20 + steps] {
+            sample.arms[1].pads[0].normal_force_n = 0.0;
+        }
+        judge(&trace, &limits())
+    };
+    assert_eq!(open_for(15).verdict, VerdictKind::Holds);
+    assert_eq!(value(&open_for(15), CheckKind::PadOpen), 30.0);
+    assert_eq!(open_for(16).verdict, VerdictKind::Opens);
+}
+
+#[test]
+fn the_first_crossing_names_the_verdict_and_ties_go_to_the_contacts() {
+    let mut trace = changed(SETTLE + 50, |s| slide(s, 0, 3.0));
+    trace.samples[SETTLE + 40..].iter_mut().for_each(|s| turn(s, 1, 3.0));
+    assert_eq!(outcome(&trace), (VerdictKind::Pivots, Some(SETTLE + 40)));
+    let judgement = judge(&trace, &limits());
+    assert!(judgement.checks.iter().any(|check| check.name == CheckKind::Slip && !check.passed));
+
+    let tie = changed(SETTLE + 40, |s| {
+        slide(s, 0, 3.0);
+        turn(s, 0, 3.0);
+        s.arms[0].torque_demanded_nm[0] = 60.0;
+    });
+    assert_eq!(outcome(&tie), (VerdictKind::Slips, Some(SETTLE + 40)));
+}
+
+#[test]
+fn a_failure_tells_the_load_that_acted() {
+    let failure = judge(&changed(SETTLE + 59, |s| slide(s, 0, 1.5)), &limits()).first_failure.unwrap();
+    assert_eq!((failure.check, failure.load_factor), (CheckKind::Slip, 0.6));
+    assert_eq!(failure.time_s, (SETTLE + 59) as f64 * STEP_S);
+}
+
+#[test]
+fn settling_and_release_are_not_judged() {
+    let mut trace = changed(LAST_JUDGED + 1, |s| {
+        slide(s, 0, 80.0);
+        s.arms[0].torque_demanded_nm[0] = 500.0;
+    });
+    trace.samples[..REFERENCE].iter_mut().for_each(|s| {
+        slide(s, 0, 80.0);
+        s.arms[1].torque_demanded_nm[0] = 500.0;
+    });
+    let judgement = judge(&trace, &limits());
+    assert_eq!(judgement.verdict, VerdictKind::Holds);
+    assert_eq!(judgement.peak_torque_ratio["left_s0"], 0.2);
+}
+
+/// A slide of constant rate: slip grows linearly from the middle of the hold on.
+fn creeping(rate_mm_s: f64) -> Trace {
+    let mut trace = still();
+    let middle = SETTLE + RAMP + HOLD / 2;
+    for (index, sample) in trace.samples.iter_mut().enumerate().skip(middle) {
+        slide(sample, 1, rate_mm_s * (index - middle) as f64 * STEP_S);
+    }
+    trace
+}
+
+#[test]
+fn creep_is_the_rate_in_the_second_half_of_the_hold() {
+    let judgement = judge(&creeping(0.25), &limits());
+    assert_eq!(judgement.verdict, VerdictKind::Creeps);
+    // Positions of half a metre are good to 1e-16 m; over the tenth of a second of the half hold the rate is good to
+    // 1e-12 mm/s.
+    assert!((value(&judgement, CheckKind::Creep) - 0.25).abs() < 1e-11);
+    assert_eq!(outcome(&creeping(0.25)).1, Some(LAST_JUDGED));
+
+    // A hand that slides early and then stands still does not creep.
+    let early = changed(SETTLE + RAMP + 5, |s| slide(s, 0, 0.9));
+    assert_eq!(value(&judge(&early, &limits()), CheckKind::Creep), 0.0);
+    assert_eq!(judge(&early, &limits()).verdict, VerdictKind::Holds);
+}
+
+#[test]
+fn without_a_hold_there_is_no_creep_to_check() {
+    let mut trace = still();
+    trace.samples.truncate(SETTLE + RAMP);
+    let judgement = judge(&trace, &limits());
+    assert_eq!(judgement.verdict, VerdictKind::Holds);
+    assert!(judgement.checks.iter().all(|check| check.name != CheckKind::Creep));
+}
+
+#[test]
+fn peaks_are_the_largest_demands_whatever_their_sign() {
+    let mut trace = still();
+    trace.samples[SETTLE + 30].arms[1].torque_demanded_nm[0] = -45.0;
+    let judgement = judge(&trace, &limits());
+    assert_eq!(judgement.peak_torque_ratio["right_s0"], 0.9);
+    assert_eq!(judgement.peak_torque_ratio["left_s0"], 0.2);
+    assert_eq!(value(&judgement, CheckKind::TorqueRatio), 0.9);
+}
+
+#[test]
+fn broken_traces_give_no_verdict_and_a_reason() {
+    let reason = |trace: &Trace| {
+        let judgement = judge(trace, &limits());
+        assert_eq!(judgement.verdict, VerdictKind::NoVerdict);
+        assert!(judgement.checks.is_empty());
+        assert_eq!(judgement.events.last().unwrap().kind, EventKind::BrokeDown);
+        judgement.reason.unwrap()
+    };
+    let stopped = Trace { broke_down: Some("a pose was lost at 0.31 s".into()), ..still() };
+    assert_eq!(reason(&stopped), "a pose was lost at 0.31 s");
+    let nan = changed(SETTLE + RAMP, |s| s.arms[0].finger_m[1] = f64::NAN);
+    assert_eq!(reason(&nan), "found a number that is not finite in the sample at 0.3 s");
+    let odd = changed(SETTLE, |s| s.arms.truncate(1));
+    assert_eq!(reason(&odd), "the sample at 0.1 s does not have one entry an arm, joint and pad");
+    assert_eq!(reason(&Trace { samples: Vec::new(), ..still() }), "the trace is empty");
+    let mut unloaded = still();
+    unloaded.samples.truncate(SETTLE);
+    assert_eq!(reason(&unloaded), "the load never acted");
+    let mut weak = still();
+    weak.arms[1].effort_nm[0] = 0.0;
+    assert_eq!(reason(&weak), "found a joint of the right arm without torque, expected positive limits");
+}
+
+#[test]
+fn events_are_the_phases_and_the_first_crossings_in_order() {
+    let trace = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
+    let texts: Vec<_> = judge(&trace, &limits()).events.into_iter().map(|event| event.text).collect();
+    assert_eq!(
+        texts,
+        [
+            "settle: the board's weight alone",
+            "ramp: the load grows; the tool point sagged 0.00 mm",
+            "right hand slides past 1 mm at load factor 0.60",
+            "hold: the whole load, factor 1.00",
+            "release: the load is gone",
+        ]
+    );
+}
+
+#[test]
+fn equal_traces_and_only_they_share_a_fingerprint() {
+    assert_eq!(fingerprint(&still()), fingerprint(&still()));
+    assert_eq!(fingerprint(&still()).len(), 64);
+    let one_bit = changed(LAST_JUDGED, |s| s.load_factor = 1.0 + f64::EPSILON);
+    assert_ne!(fingerprint(&still()), fingerprint(&one_bit));
+    let other_phase = changed(LAST_JUDGED, |s| s.phase = Phase::Hold);
+    assert_ne!(fingerprint(&still()), fingerprint(&other_phase));
+}
+
+proptest! {
+    /// Where the world's or the board's frame lies is a choice, and no figure may depend on it.
+    #[test]
+    fn figures_do_not_depend_on_the_world_frame(
+        shift in prop::array::uniform3(-2.0..2.0_f64), turn_by in prop::array::uniform3(-3.0..3.0_f64),
+        sag_mm in 0.0..4.0_f64, slip_mm in 0.0..0.9_f64, slip_deg in 0.0..1.9_f64,
+    ) {
+        let trace = changed(SETTLE + 60, |s| {
+            slide(s, 0, slip_mm);
+            turn(s, 0, slip_deg);
+            s.x_wo.translation.vector.z -= sag_mm * 1e-3;
+        });
+        let x_vw = Isometry3::new(Vector3::from(shift), Vector3::from(turn_by));
+        let mut moved = trace.clone();
+        moved.samples.iter_mut().for_each(|s| s.x_wo = x_vw * s.x_wo);
+        let (here, there) = (judge(&trace, &limits()), judge(&moved, &limits()));
+        for (a, b) in here.checks.iter().zip(&there.checks) {
+            // Positions of metres, rounded at 1e-15 m, are subtracted: 1e-11 mm leaves a factor of ten.
+            prop_assert!((a.value - b.value).abs() < 1e-11);
+        }
+        prop_assert!((value(&here, CheckKind::Deflection) - sag_mm).abs() < 1e-11);
+        prop_assert!((value(&here, CheckKind::Slip) - slip_mm).abs() < 1e-11);
+        // The angle is twice an arc tangent of numbers near 1: good to 1e-15 rad, or 1e-13 degrees.
+        prop_assert!((value(&here, CheckKind::SlipRotation) - slip_deg).abs() < 1e-12);
+    }
+}
