@@ -28,4 +28,5 @@
 
 pub mod judge;
 pub mod model;
+pub mod report;
 pub mod robot;
