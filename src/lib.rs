@@ -29,4 +29,5 @@
 pub mod collision;
 pub mod judge;
 pub mod model;
+pub mod report;
 pub mod robot;

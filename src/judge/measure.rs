@@ -36,18 +36,11 @@ fn hand_measures(trace: &Trace, samples: &[Sample], arm: usize) -> HandMeasures 
             .iter()
             .map(|sample| 1e3 * (x_oc(sample).translation.vector - start.translation.vector).norm())
             .collect(),
-        slip_deg: samples
-            .iter()
-            .map(|sample| start.rotation.angle_to(&x_oc(sample).rotation).to_degrees())
-            .collect(),
+        slip_deg: samples.iter().map(|sample| start.rotation.angle_to(&x_oc(sample).rotation).to_degrees()).collect(),
     }
 }
 
-fn joint_measures<'a>(
-    trace: &'a Trace,
-    samples: &'a [Sample],
-    arm: usize,
-) -> impl Iterator<Item = JointMeasures> + 'a {
+fn joint_measures<'a>(trace: &'a Trace, samples: &'a [Sample], arm: usize) -> impl Iterator<Item = JointMeasures> + 'a {
     let effort_nm = &trace.arms[arm].effort_nm;
     trace.arms[arm].joints.iter().enumerate().map(move |(joint, name)| JointMeasures {
         name: name.clone(),

@@ -25,14 +25,7 @@ fn crooked() -> Pose {
 }
 
 fn limits() -> Limits {
-    Limits {
-        slip_mm: 1.0,
-        slip_deg: 2.0,
-        deflection_mm: 5.0,
-        creep_mm_s: 0.1,
-        torque_ratio: 1.0,
-        load_factor: 1.0,
-    }
+    Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 5.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 }
 }
 
 fn phase(index: usize) -> Phase {
@@ -130,14 +123,8 @@ fn each_failure_is_named_after_its_own_limit() {
     let at = SETTLE + 60;
     assert_eq!(outcome(&changed(at, |s| slide(s, 1, 1.1))), (VerdictKind::Slips, Some(at)));
     assert_eq!(outcome(&changed(at, |s| turn(s, 0, 2.1))), (VerdictKind::Pivots, Some(at)));
-    assert_eq!(
-        outcome(&changed(at, |s| s.x_wo.translation.vector.z -= 5.1e-3)),
-        (VerdictKind::Deflects, Some(at))
-    );
-    assert_eq!(
-        outcome(&changed(at, |s| s.arms[1].torque_demanded_nm[1] = -15.1)),
-        (VerdictKind::Saturates, Some(at))
-    );
+    assert_eq!(outcome(&changed(at, |s| s.x_wo.translation.vector.z -= 5.1e-3)), (VerdictKind::Deflects, Some(at)));
+    assert_eq!(outcome(&changed(at, |s| s.arms[1].torque_demanded_nm[1] = -15.1)), (VerdictKind::Saturates, Some(at)));
     assert_eq!(outcome(&changed(at, |s| slide(s, 0, 50.1))), (VerdictKind::Drops, Some(at)));
     // Fifteen steps of 2 ms are allowed; the sixteenth is one too many.
     assert_eq!(outcome(&changed(at, |s| s.arms[0].pads[1].normal_force_n = 1.4)), (VerdictKind::Opens, Some(at + 15)));

@@ -1,0 +1,146 @@
+//! The console: a line a scenario, and the figures of a single one. Plain text, so that it can be piped and compared.
+
+use std::path::Path;
+
+use super::{Outcome, explanation};
+use crate::model::verdict::{Check, CheckKind, Verdict};
+
+/// What a table says where there is nothing to say.
+const NOTHING: &str = "-";
+
+/// One line a scenario, then a line for every one that was not as expected, then the count.
+///
+/// The load column is the multiple of the operation that the plan predicts compliant arms to hold.
+pub fn table(outcomes: &[Outcome]) -> String {
+    let header =
+        ["scenario", "verdict", "expected", "result", "slip mm", "slip deg", "deflection mm", "torque", "load"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    rows.extend(outcomes.iter().map(row));
+    let mut text = aligned(&rows, 4);
+    for line in outcomes.iter().filter_map(complaint) {
+        text.push_str(&line);
+        text.push('\n');
+    }
+    text.push_str(&count(outcomes));
+    text
+}
+
+/// The figures of one verdict: every check with value, limit and margin, the hardest working joints, and where the
+/// recording is.
+pub fn details(verdict: &Verdict, recording: Option<&Path>) -> String {
+    let mut text = format!("{}: {}, expected {}: {}\n", verdict.name, verdict.verdict, verdict.expected, met(verdict));
+    if !verdict.checks.is_empty() {
+        let mut rows = vec![["check", "unit", "value", "limit", "margin", ""].map(str::to_owned).to_vec()];
+        rows.extend(verdict.checks.iter().map(check_row));
+        text.push_str(&aligned(&rows, 2));
+    }
+    let mut notes = vec![vec!["because".to_owned(), explanation(verdict)]];
+    if let Some(joints) = hardest_joints(verdict) {
+        notes.push(vec!["torque peaks".to_owned(), joints]);
+    }
+    if let Some(path) = recording {
+        notes.push(vec!["recording".to_owned(), path.display().to_string()]);
+    }
+    text.push_str(&aligned(&notes, 2));
+    text
+}
+
+fn met(verdict: &Verdict) -> &'static str {
+    if verdict.met { "ok" } else { "FAIL" }
+}
+
+fn row(outcome: &Outcome) -> Vec<String> {
+    let (verdict, load) = match outcome {
+        Outcome::Judged { verdict, predicted_load_factor, .. } => (verdict, *predicted_load_factor),
+        Outcome::Crashed { name, .. } => return nothing_but(name, "ERROR"),
+        Outcome::Skipped { name } => return nothing_but(name, "skipped"),
+    };
+    let figure = |value: Option<f64>| value.map_or(NOTHING.to_owned(), |value| format!("{value:.2}"));
+    let checked = |kind| figure(verdict.check(kind).map(|check| check.value));
+    vec![
+        verdict.name.clone(),
+        verdict.verdict.to_string(),
+        verdict.expected.to_string(),
+        met(verdict).to_owned(),
+        checked(CheckKind::Slip),
+        checked(CheckKind::SlipRotation),
+        checked(CheckKind::Deflection),
+        checked(CheckKind::TorqueRatio),
+        figure(load),
+    ]
+}
+
+fn nothing_but(name: &str, result: &str) -> Vec<String> {
+    let mut row = vec![NOTHING.to_owned(); 9];
+    name.clone_into(&mut row[0]);
+    result.clone_into(&mut row[3]);
+    row
+}
+
+fn check_row(check: &Check) -> Vec<String> {
+    let figure = |value: f64| format!("{value:.3}");
+    vec![
+        check.name.to_string(),
+        check.unit.clone(),
+        figure(check.value),
+        figure(check.limit),
+        figure(check.margin),
+        if check.passed { String::new() } else { "FAIL".to_owned() },
+    ]
+}
+
+/// The line that explains an outcome which was not as expected.
+fn complaint(outcome: &Outcome) -> Option<String> {
+    match outcome {
+        Outcome::Judged { verdict, .. } if !verdict.met => Some(format!(
+            "FAIL {}: expected {}, found {}: {}",
+            verdict.name,
+            verdict.expected,
+            verdict.verdict,
+            explanation(verdict)
+        )),
+        Outcome::Crashed { name, message } => Some(format!("ERROR {name}: {message}")),
+        _ => None,
+    }
+}
+
+fn count(outcomes: &[Outcome]) -> String {
+    let number = |is: fn(&Outcome) -> bool| outcomes.iter().filter(|outcome| is(outcome)).count();
+    let parts = [
+        (number(|outcome| matches!(outcome, Outcome::Judged { verdict, .. } if verdict.met)), "ok"),
+        (number(|outcome| matches!(outcome, Outcome::Judged { verdict, .. } if !verdict.met)), "failed"),
+        (number(|outcome| matches!(outcome, Outcome::Crashed { .. })), "crashed"),
+        (number(|outcome| matches!(outcome, Outcome::Skipped { .. })), "skipped"),
+    ];
+    let told: Vec<_> =
+        parts.iter().filter(|part| part.0 > 0).map(|(number, what)| format!("{number} {what}")).collect();
+    let plural = if outcomes.len() == 1 { "" } else { "s" };
+    let tail = if told.is_empty() { String::new() } else { format!(": {}", told.join(", ")) };
+    format!("{} scenario{plural}{tail}\n", outcomes.len())
+}
+
+/// The three hardest working joints, hardest first.
+fn hardest_joints(verdict: &Verdict) -> Option<String> {
+    let mut joints: Vec<_> = verdict.peak_torque_ratio.iter().collect();
+    joints.sort_by(|a, b| b.1.total_cmp(a.1));
+    let told: Vec<_> = joints.iter().take(3).map(|(joint, ratio)| format!("{joint} {ratio:.2}")).collect();
+    (!told.is_empty()).then(|| told.join(", "))
+}
+
+/// Rows as text with two spaces between columns: the first `left` columns aligned left, the others right.
+fn aligned(rows: &[Vec<String>], left: usize) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    let mut text = String::new();
+    for row in rows {
+        let cell = |(column, cell): (usize, &String)| match column < left {
+            true => format!("{cell:<0$}", widths[column]),
+            false => format!("{cell:>0$}", widths[column]),
+        };
+        let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
+        text.push_str(cells.join("  ").trim_end());
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,27 @@
+//! Verdicts as JSON, for programs.
+
+use serde::Serialize;
+
+use super::Outcome;
+use crate::model::verdict::Verdict;
+
+/// One verdict as an object, with a line's end.
+pub fn verdict(verdict: &Verdict) -> String {
+    pretty(verdict)
+}
+
+/// The verdicts of a run as an array, in its order. What crashed or was skipped has no verdict and is not in it.
+pub fn verdicts(outcomes: &[Outcome]) -> String {
+    let judged = |outcome: &'_ Outcome| match outcome {
+        Outcome::Judged { verdict, .. } => Some(verdict.clone()),
+        Outcome::Crashed { .. } | Outcome::Skipped { .. } => None,
+    };
+    pretty(&outcomes.iter().filter_map(judged).collect::<Vec<_>>())
+}
+
+fn pretty(value: &impl Serialize) -> String {
+    // Serialisation into a string fails only for maps with keys that are no strings, and verdicts have none.
+    let mut text = serde_json::to_string_pretty(value).expect("a verdict has only string keys");
+    text.push('\n');
+    text
+}

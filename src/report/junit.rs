@@ -1,0 +1,48 @@
+//! JUnit XML, for a CI job: a failed expectation is a failure, a crash an error, a filtered case skipped.
+
+use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
+
+use super::{Outcome, explanation};
+use crate::model::verdict::Verdict;
+
+/// The outcomes of a run as one test suite. Times are left out: they are the one thing that two equal runs do not
+/// share.
+///
+/// # Errors
+/// When the XML writer fails.
+pub fn document(outcomes: &[Outcome]) -> Result<String, SerializeError> {
+    let mut suite = TestSuite::new("benchdog");
+    suite.add_test_cases(outcomes.iter().map(test_case));
+    let mut report = Report::new("benchdog");
+    report.add_test_suite(suite);
+    report.to_string()
+}
+
+fn test_case(outcome: &Outcome) -> TestCase {
+    let status = match outcome {
+        Outcome::Judged { verdict, .. } if verdict.met => TestCaseStatus::success(),
+        Outcome::Judged { verdict, .. } => failure(verdict),
+        Outcome::Crashed { message, .. } => {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+            status.set_message(message.as_str());
+            status
+        }
+        Outcome::Skipped { .. } => TestCaseStatus::skipped(),
+    };
+    let mut case = TestCase::new(outcome.name(), status);
+    case.set_classname("benchdog");
+    if let Outcome::Judged { verdict, .. } = outcome {
+        let property = |check: &crate::model::verdict::Check| {
+            Property::new(format!("{} [{}]", check.name, check.unit), format!("{:.4}", check.value))
+        };
+        case.add_properties(verdict.checks.iter().map(property));
+    }
+    case
+}
+
+fn failure(verdict: &Verdict) -> TestCaseStatus {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+    status.set_type(verdict.verdict.name());
+    status.set_message(format!("expected {}, found {}: {}", verdict.expected, verdict.verdict, explanation(verdict)));
+    status
+}

@@ -1,0 +1,149 @@
+//! What the user reads, to the letter.
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use super::*;
+use crate::model::verdict::{Check, Failure};
+
+fn check(name: CheckKind, value: f64, limit: f64) -> Check {
+    Check { name, value, limit, margin: limit - value, unit: name.unit().into(), passed: value <= limit }
+}
+
+fn holding() -> Verdict {
+    Verdict {
+        format: 1,
+        name: "drill-center".into(),
+        verdict: VerdictKind::Holds,
+        expected: VerdictKind::Holds,
+        met: true,
+        checks: vec![
+            check(CheckKind::Slip, 0.125, 1.0),
+            check(CheckKind::SlipRotation, 0.5, 2.0),
+            check(CheckKind::Deflection, 1.5, 5.0),
+            check(CheckKind::TorqueRatio, 0.75, 1.0),
+        ],
+        first_failure: None,
+        peak_torque_ratio: BTreeMap::from([("left_s0".into(), 0.25), ("left_w1".into(), 0.75)]),
+        reason: None,
+        versions: BTreeMap::from([("benchdog".into(), "0.1.0".into())]),
+        seed: 1,
+        fingerprint: "00ff".into(),
+    }
+}
+
+fn deflecting() -> Verdict {
+    let mut checks = holding().checks;
+    checks[2] = check(CheckKind::Deflection, 16.25, 15.0);
+    Verdict {
+        name: "cut-03".into(),
+        verdict: VerdictKind::Deflects,
+        met: false,
+        checks,
+        first_failure: Some(Failure { check: CheckKind::Deflection, time_s: 1.32, load_factor: 0.82 }),
+        ..holding()
+    }
+}
+
+fn infeasible() -> Verdict {
+    Verdict {
+        name: "too-heavy".into(),
+        verdict: VerdictKind::Infeasible,
+        met: false,
+        checks: Vec::new(),
+        peak_torque_ratio: BTreeMap::new(),
+        reason: Some("no candidate of 400 is stable".into()),
+        ..holding()
+    }
+}
+
+fn outcomes() -> Vec<Outcome> {
+    let judged = |verdict, predicted_load_factor| Outcome::Judged { verdict, predicted_load_factor, recording: None };
+    vec![
+        judged(holding(), Some(3.7)),
+        judged(deflecting(), None),
+        judged(infeasible(), None),
+        Outcome::Crashed { name: "bad.toml".into(), message: "line 3: found \"x\", expected a number".into() },
+        Outcome::Skipped { name: "cut-04".into() },
+    ]
+}
+
+#[test]
+fn the_table_lists_complains_and_counts() {
+    let expected = "\
+scenario      verdict     expected  result   slip mm  slip deg  deflection mm  torque  load
+drill-center  holds       holds     ok          0.12      0.50           1.50    0.75  3.70
+cut-03        deflects    holds     FAIL        0.12      0.50          16.25    0.75     -
+too-heavy     infeasible  holds     FAIL           -         -              -       -     -
+bad.toml      -           -         ERROR          -         -              -       -     -
+cut-04        -           -         skipped        -         -              -       -     -
+FAIL cut-03: expected holds, found deflects: deflection 16.25 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of \
+         the load
+FAIL too-heavy: expected holds, found infeasible: no candidate of 400 is stable
+ERROR bad.toml: line 3: found \"x\", expected a number
+5 scenarios: 1 ok, 2 failed, 1 crashed, 1 skipped
+";
+    assert_eq!(console::table(&outcomes()), expected);
+}
+
+#[test]
+fn the_details_show_value_limit_and_margin_of_every_check() {
+    let expected = "\
+cut-03: deflects, expected holds: FAIL
+check          unit   value   limit  margin
+slip           mm     0.125   1.000   0.875
+slip_rotation  deg    0.500   2.000   1.500
+deflection     mm    16.250  15.000  -1.250  FAIL
+torque_ratio   1      0.750   1.000   0.250
+because       deflection 16.25 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of the load
+torque peaks  left_w1 0.75, left_s0 0.25
+recording     out/cut-03.rrd
+";
+    assert_eq!(console::details(&deflecting(), Some(Path::new("out/cut-03.rrd"))), expected);
+}
+
+#[test]
+fn junit_tells_failures_from_errors() {
+    let expected = r#"<?xml version="1.0" encoding="UTF-8"?>
+<testsuites name="benchdog" tests="3" skipped="1" failures="1" errors="1">
+    <testsuite name="benchdog" tests="3" skipped="1" errors="1" failures="1">
+        <testcase name="too-heavy" classname="benchdog">
+            <failure message="expected holds, found infeasible: no candidate of 400 is stable" type="infeasible"/>
+        </testcase>
+        <testcase name="bad.toml" classname="benchdog">
+            <error message="line 3: found &quot;x&quot;, expected a number"/>
+        </testcase>
+        <testcase name="cut-04" classname="benchdog">
+            <skipped/>
+        </testcase>
+    </testsuite>
+</testsuites>
+"#;
+    assert_eq!(junit::document(&outcomes()[2..]).unwrap(), expected);
+    let figures = junit::document(&outcomes()[..1]).unwrap();
+    assert!(figures.contains(r#"<property name="slip [mm]" value="0.1250"/>"#), "{figures}");
+}
+
+#[test]
+fn json_reads_back_as_the_verdicts_it_came_from() {
+    let read: Vec<Verdict> = serde_json::from_str(&json::verdicts(&outcomes())).unwrap();
+    assert_eq!(read, [holding(), deflecting(), infeasible()]);
+    assert_eq!(serde_json::from_str::<Verdict>(&json::verdict(&deflecting())).unwrap(), deflecting());
+    assert!(json::verdict(&holding()).contains("\"name\": \"slip_rotation\""));
+}
+
+#[test]
+fn files_are_written_whole_or_not_at_all() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("new/verdict.json");
+    file::write_whole(&path, b"one").unwrap();
+    file::write_whole(&path, b"two").unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"two");
+    assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "nothing is left beside the file");
+
+    // A directory stands where a file is wanted: the rename fails, and the message names the file.
+    let taken = directory.path().join("taken");
+    fs::create_dir_all(taken.join("inside")).unwrap();
+    let error = file::write_whole(&taken, b"three").unwrap_err();
+    assert!(error.to_string().starts_with(&format!("failed to write {}: ", taken.display())), "{error}");
+    assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2, "nothing is left beside the directory");
+}
