@@ -64,7 +64,10 @@ pub enum CliError {
     },
     /// A file cannot be written.
     #[error(transparent)]
-    Write(#[from] crate::report::WriteError),
+    Write(#[from] crate::report::file::WriteError),
+    /// The JUnit report cannot be made.
+    #[error("failed to write the JUnit report: {0}")]
+    JUnit(#[from] quick_junit::SerializeError),
     /// A recording cannot be written.
     #[cfg(feature = "recording")]
     #[error(transparent)]

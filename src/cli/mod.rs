@@ -3,7 +3,9 @@
 
 mod args;
 mod exit;
+mod finish;
 mod output;
+mod pipeline;
 mod plan;
 mod run;
 mod schema;

@@ -15,9 +15,9 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     }
     match pipeline::timed_plan(&loaded.scenario, &loaded.robot) {
         PlanOutcome::Found(plan) => {
-            let text = report::json::to_text(&plan);
+            let text = report::json::plan(&plan);
             match &args.output {
-                Some(path) => report::write_whole(path, text.as_bytes())?,
+                Some(path) => report::file::write_whole(path, text.as_bytes())?,
                 None => output::print(&text)?,
             }
             Ok(Exit::Met)

@@ -78,3 +78,8 @@ pub fn robot_figures(robot: &Robot) -> RobotFigures {
         .collect();
     RobotFigures { description: robot.description.clone(), arms }
 }
+
+/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
+pub fn for_plan(plan: &Plan, robot: &Robot) -> Scenario {
+    resolve::defaults_for_plan(plan, robot)
+}

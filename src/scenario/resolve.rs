@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::{
     InputError,
     check::Checker,
-    file::{HumanSection, ObjectSection, OperationSection, ScenarioFile},
+    file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
     material, robot_figures,
 };
 use crate::{
@@ -16,7 +16,11 @@ use crate::{
         FORMAT,
         frames::{Pose, rotation_from_xyzw},
         operation::{Operation, OperationKind},
-        scenario::{Board, ComfortSettings, Grip, Limits, Person, Scenario, Sex, SimulationSettings, Tool},
+        plan::Plan,
+        scenario::{
+            Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, Scenario, Sex, SimulationSettings,
+            Tool,
+        },
         wrench::Wrench,
     },
     robot::Robot,
@@ -46,7 +50,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         robot: robot_figures(&robot),
         human: person(&check, &file.human)?,
         tool: tool(&check, file.tool, operation.kind)?,
-        limits: limits(&check, file, operation.kind)?,
+        limits: limits(&check, &file.limits, operation.kind)?,
         object,
         operation,
         comfort: file.comfort,
@@ -65,19 +69,23 @@ fn name(check: &Checker<'_>, name: &str) -> Result<(), InputError> {
     check.that(fits, "name", format!("\"{name}\""), "letters, digits, `-`, `_` and `.`, since files are named after it")
 }
 
-fn person(check: &Checker<'_>, section: &HumanSection) -> Result<Person, InputError> {
-    // Typical adults: `assets/human/anthropometry.csv`.
+/// The person of a file, with the height and mass of typical adults (`assets/human/`) where it gives none.
+fn typical_person(section: &HumanSection) -> Person {
     let (typical_height_m, typical_mass_kg) = match section.sex {
         Sex::Male => (1.75, 75.0),
         Sex::Female => (1.62, 62.0),
     };
-    let person = Person {
+    Person {
         height_m: section.height_m.unwrap_or(typical_height_m),
         mass_kg: section.mass_kg.unwrap_or(typical_mass_kg),
         sex: section.sex,
         hand: section.hand,
         percentile: section.percentile,
-    };
+    }
+}
+
+fn person(check: &Checker<'_>, section: &HumanSection) -> Result<Person, InputError> {
+    let person = typical_person(section);
     check.within("human.height_m", person.height_m, 1.2, 2.3, "m")?;
     check.within("human.mass_kg", person.mass_kg, 30.0, 250.0, "kg")?;
     // Outside these the normal distribution of strength would reach zero torque.
@@ -176,17 +184,21 @@ fn simulation(check: &Checker<'_>, settings: &SimulationSettings) -> Result<(), 
     )
 }
 
-fn limits(check: &Checker<'_>, file: &ScenarioFile, kind: OperationKind) -> Result<Limits, InputError> {
-    let section = &file.limits;
+/// The limits of a file, with the deflection that suits the operation where it gives none (METHOD section 8).
+fn typical_limits(section: &LimitsSection, kind: OperationKind) -> Limits {
     let typical_mm = if kind == OperationKind::Cut { 15.0 } else { 5.0 };
-    let limits = Limits {
+    Limits {
         slip_mm: section.slip_mm,
         slip_deg: section.slip_deg,
         deflection_mm: section.deflection_mm.unwrap_or(typical_mm),
         creep_mm_s: section.creep_mm_s,
         torque_ratio: section.torque_ratio,
         load_factor: section.load_factor,
-    };
+    }
+}
+
+fn limits(check: &Checker<'_>, section: &LimitsSection, kind: OperationKind) -> Result<Limits, InputError> {
+    let limits = typical_limits(section, kind);
     check.positive("limits.slip_mm", limits.slip_mm, "mm")?;
     check.positive("limits.slip_deg", limits.slip_deg, "degrees")?;
     check.positive("limits.deflection_mm", limits.deflection_mm, "mm")?;
@@ -194,4 +206,29 @@ fn limits(check: &Checker<'_>, file: &ScenarioFile, kind: OperationKind) -> Resu
     check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
     check.within("limits.load_factor", limits.load_factor, 0.0, 100.0, "a multiple of the load")?;
     Ok(limits)
+}
+
+/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
+pub fn defaults_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
+    let kind = plan.operation.kind;
+    let size_m = plan.object.size_m;
+    Scenario {
+        format: FORMAT,
+        name: plan.name.clone(),
+        robot: robot_figures(robot),
+        human: plan.human.map_or_else(|| typical_person(&HumanSection::default()), |posture| posture.person()),
+        tool: default_tool(kind),
+        object: Board {
+            size_m,
+            density_kg_m3: plan.object.mass_kg / size_m.iter().product::<f64>(),
+            material: "unknown".into(),
+        },
+        operation: plan.operation,
+        comfort: ComfortSettings::default(),
+        planner: PlannerSettings::default(),
+        grip: Grip::default(),
+        simulation: SimulationSettings::default(),
+        limits: typical_limits(&LimitsSection::default(), kind),
+        expect: Expectation::default(),
+    }
 }
