@@ -28,5 +28,7 @@
 
 pub mod judge;
 pub mod model;
+#[cfg(feature = "recording")]
+pub mod record;
 pub mod report;
 pub mod robot;
