@@ -29,5 +29,7 @@
 pub mod collision;
 pub mod judge;
 pub mod model;
+#[cfg(feature = "recording")]
+pub mod record;
 pub mod report;
 pub mod robot;
