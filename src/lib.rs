@@ -26,5 +26,6 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod human;
 pub mod model;
 pub mod robot;
