@@ -127,6 +127,8 @@ fn holding_moment(weights: &[Weight], origin_b: &Vector3<f64>, gravity_b: &Vecto
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
+    use nalgebra::Isometry3;
+
     use super::*;
     use crate::{
         human::{
@@ -287,5 +289,26 @@ mod tests {
         let gravity_of = |human: &Human| human.joint_torques(&q_rad, &x_wb, &Wrench::default()).gravity_nm;
         assert_eq!(gravity_of(&empty_handed), torques(&human, 0.0, &q_rad, &Wrench::default(), &GRAVITY_W).gravity_nm);
         assert!(gravity_of(&human)[0] > gravity_of(&empty_handed)[0]);
+    }
+
+    #[test]
+    fn gravity_pulls_along_the_world_whatever_the_body_does() {
+        // On the back, x_B up, the arm along the trunk: the same load as the arm held out forward when standing. Either hand.
+        let on_the_back = Isometry3::rotation(Vector3::new(0.0, -FRAC_PI_2, 0.0));
+        let forward = [FRAC_PI_2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        for hand in [Hand::Right, Hand::Left] {
+            let human = worker(hand, OperationKind::Drill);
+            let lying = human.joint_torques(&[0.0; 7], &on_the_back, &Wrench::default()).gravity_nm;
+            let standing = human.joint_torques(&forward, &Isometry3::identity(), &Wrench::default()).gravity_nm;
+            for (lying, standing) in lying.iter().zip(standing) {
+                assert!((lying - standing).abs() < 1e-13);
+            }
+        }
+        // On the right side, y_B up, the straight right arm would fall outward: the adductors hold it.
+        let human = drill();
+        let on_the_right = Isometry3::rotation(Vector3::new(FRAC_PI_2, 0.0, 0.0));
+        let aside = human.joint_torques(&[0.0; 7], &on_the_right, &Wrench::default()).gravity_nm;
+        let forward = human.joint_torques(&forward, &Isometry3::identity(), &Wrench::default()).gravity_nm;
+        assert!((aside[1] + forward[0]).abs() < 1e-13 && aside[0].abs() < 1e-13);
     }
 }
