@@ -27,6 +27,7 @@
 #![forbid(unsafe_code)]
 
 pub mod collision;
+pub mod human;
 pub mod judge;
 pub mod model;
 #[cfg(feature = "recording")]
