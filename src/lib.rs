@@ -34,3 +34,4 @@ pub mod model;
 pub mod record;
 pub mod report;
 pub mod robot;
+pub mod scenario;

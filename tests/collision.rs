@@ -5,6 +5,7 @@ use std::{path::Path, sync::LazyLock};
 
 use benchdog::{
     collision::{Body, CollisionModel, PersonPart, Scene},
+    human::{BodyPart, Side},
     model::frames::Pose,
     robot::{ArmState, PlacedShape, Robot, Shape},
 };
@@ -40,7 +41,14 @@ fn far_away() -> Pose {
 
 fn part(p0: [f64; 3], p1: [f64; 3], radius_m: f64) -> PersonPart {
     let (p0_w, p1_w) = (Point3::from(p0), Point3::from(p1));
-    PersonPart { name: "trunk", p0_w, p1_w, radius_m, robot_clearance_m: 0.05, board_clearance_m: Some(0.02) }
+    PersonPart {
+        name: BodyPart::Trunk(Side::Working),
+        p0_w,
+        p1_w,
+        radius_m,
+        robot_clearance_m: 0.05,
+        board_clearance_m: Some(0.02),
+    }
 }
 
 fn scene<'a>(link_poses: &'a [Pose], holding: &'a [usize], x_wo: Pose, person: &'a [PersonPart]) -> Scene<'a> {
@@ -86,7 +94,10 @@ fn the_person_keeps_away_from_the_torso() {
         // The distance is a plane's: parry's iteration ends well below a micrometre.
         assert!((model.min_margin_m(&scene) - (gap_m - 0.05)).abs() < 1e-6);
         if let Some(violation) = model.first_violation(&scene) {
-            assert_eq!(violation.bodies, [Body::Person("trunk"), Body::Link(robot.link_index("torso").unwrap())]);
+            assert_eq!(
+                violation.bodies,
+                [Body::Person(BodyPart::Trunk(Side::Working)), Body::Link(robot.link_index("torso").unwrap())]
+            );
             assert!((violation.distance_m - gap_m).abs() < 1e-6);
         }
     }

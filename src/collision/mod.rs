@@ -4,11 +4,12 @@
 //! are sorted out by spheres about links and about primitives. This module knows geometry and the distances that must be
 //! kept (METHOD section 3); it does not know why a pose was chosen.
 
+mod person;
 mod shapes;
 
 use nalgebra::Point3;
 
-use crate::{model::frames::Pose, robot::Robot};
+use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
 use shapes::{Piece, Placed, place_all, sphere_about};
 
 /// A scene to be checked, in W.
@@ -29,8 +30,8 @@ pub struct Scene<'a> {
 /// A capsule of the person's body, or the tool, with the distances that it must keep.
 #[derive(Clone, Copy, Debug)]
 pub struct PersonPart {
-    /// What it is, for messages.
-    pub name: &'static str,
+    /// What it is.
+    pub name: BodyPart,
     /// One end of the capsule's axis in W, m.
     pub p0_w: Point3<f64>,
     /// The other end, m.
@@ -50,8 +51,8 @@ pub enum Body {
     Link(usize),
     /// The board.
     Board,
-    /// A part of the person, or the tool, by its name.
-    Person(&'static str),
+    /// A part of the person, or the tool.
+    Person(BodyPart),
 }
 
 /// Two bodies that touch or come closer than they may.
@@ -63,6 +64,19 @@ pub struct Violation {
     pub required_m: f64,
     /// Their distance, m; zero when they overlap.
     pub distance_m: f64,
+}
+
+impl Violation {
+    /// The rule that is broken, in words: `left_wrist is 12 mm from the person's Head, expected more than 50 mm`.
+    pub fn describe(&self, robot: &Robot) -> String {
+        let [one, other] = self.bodies.map(|body| match body {
+            Body::Link(link) => robot.links[link].name.clone(),
+            Body::Board => "the board".to_owned(),
+            Body::Person(part) => format!("the person's {part:?}"),
+        });
+        let [distance_mm, required_mm] = [self.distance_m, self.required_m].map(|m| m * 1e3);
+        format!("{one} is {distance_mm:.0} mm from {other}, expected more than {required_mm:.0} mm")
+    }
 }
 
 /// The robot's primitives and the pairs of links that may not touch.
