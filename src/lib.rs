@@ -31,3 +31,4 @@ pub mod judge;
 pub mod model;
 pub mod report;
 pub mod robot;
+pub mod statics;
