@@ -62,6 +62,9 @@ pub enum CliError {
         /// The cause.
         source: crate::sim::SimError,
     },
+    /// The person or the tool is none.
+    #[error(transparent)]
+    Human(#[from] crate::human::HumanError),
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] crate::report::file::WriteError),

@@ -1,12 +1,11 @@
 //! What happens to a run when it is over: its files are written, and all runs together are reported.
 
-use std::path::{Path, PathBuf};
-
 use super::{
     args::{Format, RecordChoice, ReportArgs},
     exit::{CliError, Exit},
     output,
     pipeline::Run,
+    recording,
 };
 use crate::{
     model::scenario::Scenario,
@@ -54,7 +53,7 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
         RecordChoice::Failed => !run.verdict.met,
         RecordChoice::Always => true,
     };
-    let recording = if wanted { record(&run, scenario, robot, &folder)? } else { None };
+    let recording = if wanted { recording::write(&run, scenario, robot, &folder)? } else { None };
     report::file::write_whole(&folder.join("verdict.json"), report::json::verdict(&run.verdict).as_bytes())?;
     Ok(Ended {
         exit: Exit::of(&run.verdict),
@@ -64,12 +63,6 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
             recording,
         },
     })
-}
-
-/// Without the feature there is nothing to write a recording with.
-#[cfg(not(feature = "recording"))]
-fn record(_: &Run, _: &Scenario, _: &Robot, _: &Path) -> Result<Option<PathBuf>, CliError> {
-    Ok(None)
 }
 
 /// The table; a single run is shown with its checks.

@@ -7,6 +7,11 @@ mod finish;
 mod output;
 mod pipeline;
 mod plan;
+#[cfg(feature = "recording")]
+mod recording;
+#[cfg(not(feature = "recording"))]
+#[path = "no_recording.rs"]
+mod recording;
 mod run;
 mod schema;
 mod simulate;

@@ -6,8 +6,8 @@ use nalgebra::{Point3, Vector3};
 
 use super::{Candidate, Infeasible, Problem};
 use crate::{
-    collision::Scene,
-    human::{muscular_printed, muscular_regularised, peripersonal_m},
+    collision::{PersonPart, Scene},
+    human::{ArmAngles, Muscular, peripersonal_m},
     model::{
         frames::Pose,
         grasp::EdgeGrasp,
@@ -45,6 +45,8 @@ pub enum Rejection {
     Collision,
     /// A load that the hold does not stand.
     Stability,
+    /// A result that the check from scratch does not confirm.
+    Verification,
 }
 
 impl Rejection {
@@ -58,6 +60,7 @@ impl Rejection {
             Self::RobotReach => "robot reach",
             Self::Collision => "collision or too close",
             Self::Stability => "stability",
+            Self::Verification => "the check from scratch",
         }
     }
 }
@@ -105,7 +108,7 @@ pub struct Assessment {
 pub struct Placed {
     pub x_wo: Pose,
     pub x_wb: Pose,
-    pub activations: [f64; 7],
+    pub muscular: Muscular,
 }
 
 /// Places board and person, and tests what depends on the person and the board's pose alone.
@@ -119,20 +122,18 @@ pub fn place(problem: &Problem<'_>, candidate: &Candidate) -> Result<Placed, Rej
     if (x_wo.rotation * Vector3::z()).x < FACING_LIMIT_RAD.cos() {
         return Err(Rejection::Facing);
     }
-    let x_wb = candidate.x_wb(problem);
-    let activations = activations(problem, candidate, &x_wb, &x_wo);
-    if activations.iter().any(|&activation| activation > 1.0) {
-        return Err(Rejection::Strength);
-    }
-    Ok(Placed { x_wo, x_wb, activations })
+    let muscular = posture_comfort(problem, &candidate.q_h_rad).ok_or(Rejection::Strength)?;
+    Ok(Placed { x_wo, x_wb: candidate.x_wb(problem), muscular })
 }
 
-/// Torque over strength of each joint of the working arm.
-fn activations(problem: &Problem<'_>, candidate: &Candidate, x_wb: &Pose, x_wo: &Pose) -> [f64; 7] {
-    let scenario = problem.scenario;
-    let wrench_o = scenario.operation.wrench_o;
-    let wrench_w = Wrench::new(x_wo.rotation * wrench_o.force_n, x_wo.rotation * wrench_o.moment_nm);
-    problem.human.activations(&candidate.q_h_rad, x_wb, &wrench_w, scenario.comfort.direction)
+/// The muscular comfort of a posture, if every joint is strong enough. It does not depend on where the person stands or
+/// looks: the operation's wrench is fixed in the tool, and gravity is vertical.
+pub fn posture_comfort(problem: &Problem<'_>, q_h_rad: &ArmAngles) -> Option<Muscular> {
+    let r_bt = problem.human.tool_pose_b(q_h_rad).rotation;
+    let wrench_b = Wrench::new(r_bt * problem.wrench_t.force_n, r_bt * problem.wrench_t.moment_nm);
+    let direction = problem.scenario.comfort.direction;
+    let muscular = problem.human.muscular(q_h_rad, &Pose::identity(), &wrench_b, direction);
+    muscular.activations.iter().all(|&activation| activation <= 1.0).then_some(muscular)
 }
 
 /// True when every corner of the gripper's pads lies on the face of the board.
@@ -155,13 +156,13 @@ pub fn comfort(problem: &Problem<'_>, candidate: &Candidate, placed: &Placed) ->
     let poses = problem.robot.link_poses(&positions(problem, candidate));
     let surface: Vec<_> = problem.robot.body_points.iter().map(|point| poses[point.link] * point.p_l).collect();
     let peripersonal_m = peripersonal_m(settings.peripersonal, &body, &surface);
-    let muscular_regularised = muscular_regularised(&placed.activations);
+    let Muscular { activations, printed, regularised } = placed.muscular;
     Comfort {
-        muscular: muscular_printed(&placed.activations),
-        muscular_regularised,
+        muscular: printed,
+        muscular_regularised: regularised,
         peripersonal_m,
-        objective: settings.weight_muscular * muscular_regularised + settings.weight_peripersonal * peripersonal_m,
-        activations: placed.activations,
+        objective: settings.weight_muscular * regularised + settings.weight_peripersonal * peripersonal_m,
+        activations,
     }
 }
 
@@ -171,19 +172,20 @@ fn positions(problem: &Problem<'_>, candidate: &Candidate) -> Vec<f64> {
         .arms
         .iter()
         .zip(&candidate.holds)
-        .map(|(arm, hold)| ArmState { arm: arm.index, q_rad: &hold.q_rad, finger_m: arm.finger_travel_m })
+        .map(|(arm, hold)| ArmState { arm: arm.index, q_rad: &hold.q_rad, finger_travel_m: arm.finger_travel_m })
         .collect();
     problem.robot.positions(&states)
 }
 
 /// Tests that nothing touches what it must not.
 pub fn collisions(problem: &Problem<'_>, candidate: &Candidate, placed: &Placed) -> Result<(), Rejection> {
+    let person = problem.human.capsules_w(&placed.x_wb, &candidate.q_h_rad).map(PersonPart::from);
     let scene = Scene {
         link_poses: &problem.robot.link_poses(&positions(problem, candidate)),
         holding: &problem.arms.iter().map(|arm| arm.index).collect::<Vec<_>>(),
         board_size_m: problem.scenario.object.size_m,
         x_wo: placed.x_wo,
-        person: &problem.human.capsules_w(&placed.x_wb, &candidate.q_h_rad),
+        person: &person,
     };
     match problem.collision.first_violation(&scene) {
         None => Ok(()),

@@ -11,7 +11,7 @@ use super::{
     candidate::{Candidate, Hold},
 };
 use crate::{
-    human::{ARM_LIMITS_RAD, muscular_regularised},
+    human::ArmAngles,
     model::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
@@ -74,13 +74,11 @@ pub fn best_candidates(problem: &Problem<'_>, random: &mut Pcg64, tally: &mut Ta
 }
 
 /// Postures that the person's strength allows, the most comfortable first.
-fn comfortable_postures(problem: &Problem<'_>, random: &mut Pcg64) -> Vec<[f64; 7]> {
+fn comfortable_postures(problem: &Problem<'_>, random: &mut Pcg64) -> Vec<ArmAngles> {
     let mut postures: Vec<_> = (0..POSTURES)
         .filter_map(|_| {
-            let q_h_rad = ARM_LIMITS_RAD.map(|[low, high]| uniform(random, low, high));
-            let activations = assess::posture_activations(problem, &q_h_rad);
-            let strong_enough = activations.iter().all(|&activation| activation <= 1.0);
-            strong_enough.then(|| (muscular_regularised(&activations), q_h_rad))
+            let q_h_rad = problem.human.arm().limits_rad.map(|[low, high]| uniform(random, low, high));
+            assess::posture_comfort(problem, &q_h_rad).map(|muscular| (muscular.regularised, q_h_rad))
         })
         .collect();
     postures.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -91,7 +89,7 @@ fn comfortable_postures(problem: &Problem<'_>, random: &mut Pcg64) -> Vec<[f64; 
 /// One candidate whose arms reach and where nothing collides.
 fn draw(
     problem: &Problem<'_>,
-    postures: &[[f64; 7]],
+    postures: &[ArmAngles],
     random: &mut Pcg64,
 ) -> Result<(Candidate, Placed), Rejection> {
     let roll_is_free = problem.scenario.operation.kind.roll_is_free();
@@ -142,7 +140,7 @@ fn draw_arm(problem: &Problem<'_>, arm: usize, x_wg: &Pose, random: &mut Pcg64) 
     (0..ARM_SEEDS).find_map(|_| {
         let limits = arm.chain.lower().iter().zip(arm.chain.upper());
         let seed: Vec<_> = limits.map(|(&low, &high)| uniform(random, low, high)).collect();
-        arm.inverse.nearest(x_wg, &seed)
+        arm.inverse.local(x_wg, &seed).found()
     })
 }
 

@@ -18,16 +18,19 @@ use rand_pcg::Pcg64;
 
 use crate::{
     collision::CollisionModel,
-    human::Human,
+    human::{Human, HumanError},
     model::{
         FORMAT,
-        plan::{ArmHold, HumanPosture, PlacedObject, Plan, PlannerRecord},
-        scenario::Scenario,
+        operation::Operation,
+        plan::{HumanPosture, PlacedObject, Plan, PlannerRecord},
+        scenario::{PlannerSettings, Scenario},
+        wrench::Wrench,
     },
     robot::{Chain, InverseKinematics, Robot},
 };
-use assess::{Assessment, Rejection, Tally};
+use assess::{Rejection, Tally};
 use candidate::Candidate;
+use draw::Feasible;
 pub use verify::{Flaw, verify};
 
 /// What the search came to.
@@ -64,6 +67,8 @@ struct Problem<'a> {
     scenario: &'a Scenario,
     robot: &'a Robot,
     human: Human,
+    /// The operation's wrench about the tool tip in T axes, where it does not change.
+    wrench_t: Wrench,
     collision: CollisionModel,
     arms: Vec<ProblemArm>,
 }
@@ -79,7 +84,7 @@ struct ProblemArm {
 }
 
 impl<'a> Problem<'a> {
-    fn new(scenario: &'a Scenario, robot: &'a Robot) -> Self {
+    fn new(scenario: &'a Scenario, robot: &'a Robot) -> Result<Self, HumanError> {
         let thickness_m = scenario.object.size_m[2];
         let arms = robot
             .arms
@@ -98,43 +103,44 @@ impl<'a> Problem<'a> {
                 }
             })
             .collect();
-        Self {
+        let Operation { wrench_o, x_ot, .. } = scenario.operation;
+        let to_tool = x_ot.rotation.inverse();
+        Ok(Self {
             scenario,
             robot,
-            human: Human::new(&scenario.human, &scenario.tool),
+            human: Human::new(&scenario.human, &scenario.tool)?,
+            wrench_t: Wrench::new(to_tool * wrench_o.force_n, to_tool * wrench_o.moment_nm),
             collision: CollisionModel::new(robot),
             arms,
-        }
+        })
     }
 }
 
 /// Searches for the best hold of a scenario. The same scenario and seed give the same plan, bit by bit.
-pub fn plan(scenario: &Scenario, robot: &Robot) -> PlanOutcome {
-    let problem = Problem::new(scenario, robot);
+///
+/// # Errors
+/// When the scenario's person or tool is none; a scenario that was read from a file is checked for that.
+pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanError> {
+    let problem = Problem::new(scenario, robot)?;
     let mut tally = Tally::default();
     let mut random = Pcg64::new(u128::from(scenario.planner.seed), 0);
     let drawn = draw::best_candidates(&problem, &mut random, &mut tally);
-    let Some((candidate, assessment)) = refine::refine(&problem, drawn, &mut random, &mut tally) else {
-        return PlanOutcome::Infeasible(tally.into_infeasible());
-    };
-    PlanOutcome::Found(Box::new(assemble(&problem, &candidate, assessment, tally.candidates())))
+    for found in refine::refine(&problem, drawn, &mut random, &mut tally) {
+        let plan = assemble(&problem, &found, tally.candidates());
+        // The search and the check share no code above the metrics, so what both accept can be trusted.
+        if verify(&plan, scenario, robot)?.is_empty() {
+            return Ok(PlanOutcome::Found(Box::new(plan)));
+        }
+        tally.remove(Rejection::Verification);
+    }
+    Ok(PlanOutcome::Infeasible(tally.into_infeasible()))
 }
 
 /// The plan of a candidate that passed every test.
-fn assemble(problem: &Problem<'_>, candidate: &Candidate, assessment: Assessment, evaluations: u64) -> Plan {
+fn assemble(problem: &Problem<'_>, found: &Feasible, evaluations: u64) -> Plan {
     let scenario = problem.scenario;
-    let arms = problem
-        .arms
-        .iter()
-        .zip(&candidate.holds)
-        .map(|(arm, hold)| ArmHold {
-            name: arm.name.clone(),
-            joints: arm.joints.clone(),
-            q_rad: hold.q_rad.clone(),
-            x_og: hold.grasp.x_og(scenario.object.size_m),
-            grip_force_n: scenario.grip.force_n,
-        })
-        .collect();
+    let Feasible { candidate, assessment } = found;
+    let PlannerSettings { kind, seed, .. } = scenario.planner;
     Plan {
         format: FORMAT,
         name: scenario.name.clone(),
@@ -145,16 +151,11 @@ fn assemble(problem: &Problem<'_>, candidate: &Candidate, assessment: Assessment
             mass_kg: scenario.object.mass_kg(),
             x_wo: candidate.x_wo(problem),
         },
-        arms,
+        arms: assess::arm_holds(problem, candidate),
         human: Some(HumanPosture::new(&scenario.human, candidate.x_wb(problem), candidate.q_h_rad)),
         comfort: Some(assessment.comfort),
-        stability: Some(assessment.stability),
-        planner: Some(PlannerRecord {
-            kind: scenario.planner.kind,
-            seed: scenario.planner.seed,
-            wall_ms: None,
-            evaluations,
-        }),
+        stability: Some(assessment.stability.clone()),
+        planner: Some(PlannerRecord { kind, seed, wall_ms: None, evaluations }),
         scenario: Some(scenario.clone()),
         benchdog: Some(env!("CARGO_PKG_VERSION").into()),
     }

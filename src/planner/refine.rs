@@ -8,11 +8,10 @@ use rand_pcg::Pcg64;
 
 use super::{
     Problem,
-    assess::{self, Assessment, Rejection, Tally},
+    assess::{self, Assessment, Tally},
     candidate::Candidate,
     draw::{ANGLE_RAD, DEPTH_M, Feasible, uniform},
 };
-use crate::human::ARM_LIMITS_RAD;
 
 /// Steps from each of the candidates that were handed over.
 const FIRST_STEPS: usize = 250;
@@ -28,7 +27,7 @@ const SIZE_RANGE: [f64; 2] = [0.01, 2.0];
 /// Probability that a step changes a given number of the candidate.
 const CHANGE_PROBABILITY: f64 = 0.4;
 
-/// The best candidate that small steps lead to, and its figures. None when there is nothing to start from.
+/// What small steps lead to from each start, the best first.
 pub fn refine(
     problem: &Problem<'_>,
     starts: Vec<Feasible>,
@@ -82,7 +81,7 @@ fn better(problem: &Problem<'_>, candidate: Candidate, least: f64) -> Option<Fea
 /// 5 cm in place, 4 cm along an edge, 5 mm in depth, 0.15 rad in a grasp's angle, 0.3 rad in roll and in the robot's joints.
 fn step(problem: &Problem<'_>, from: &Candidate, size: f64, random: &mut Pcg64) -> Option<Candidate> {
     let mut next = from.clone();
-    for (q, [low, high]) in next.q_h_rad.iter_mut().zip(ARM_LIMITS_RAD) {
+    for (q, [low, high]) in next.q_h_rad.iter_mut().zip(problem.human.arm().limits_rad) {
         *q = nudge(random, *q, 0.15 * size).clamp(low, high);
     }
     next.heading_rad = nudge(random, next.heading_rad, 0.15 * size);
@@ -102,7 +101,7 @@ fn step(problem: &Problem<'_>, from: &Candidate, size: f64, random: &mut Pcg64) 
         for (q, (&low, &high)) in hold.q_rad.iter_mut().zip(arm.chain.lower().iter().zip(arm.chain.upper())) {
             *q = nudge(random, *q, 0.3 * size).clamp(low, high);
         }
-        hold.q_rad = arm.inverse.nearest(&(x_wo * hold.grasp.x_og(size_m)), &hold.q_rad)?;
+        hold.q_rad = arm.inverse.local(&(x_wo * hold.grasp.x_og(size_m)), &hold.q_rad).found()?;
     }
     Some(next)
 }

@@ -30,12 +30,7 @@ impl<'a> Checker<'a> {
     }
 
     fn error(&self, key: &str, kind: InputErrorKind) -> InputError {
-        InputError {
-            file: self.path.to_owned(),
-            line: (self.line_of)(self.text, key),
-            key: Some(key.to_owned()),
-            kind,
-        }
+        InputError { file: self.path.to_owned(), line: (self.line_of)(self.text, key), key: Some(key.to_owned()), kind }
     }
 
     /// An error that says what was found and what was expected.

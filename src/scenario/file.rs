@@ -11,9 +11,7 @@ use super::{
 };
 use crate::model::{
     operation::OperationKind,
-    scenario::{
-        ComfortSettings, Expectation, Grip, Hand, PlannerSettings, Sex, SimulationSettings, Tool,
-    },
+    scenario::{ComfortSettings, Expectation, Grip, Hand, PlannerSettings, Sex, SimulationSettings, Tool},
 };
 
 /// A scenario file.

@@ -13,11 +13,9 @@ enum Segment<'a> {
 }
 
 fn segments(path: &str) -> impl Iterator<Item = Segment<'_>> {
-    path.split(['.', '[']).filter(|part| !part.is_empty()).map(|part| {
-        match part.strip_suffix(']').map(str::parse) {
-            Some(Ok(index)) => Segment::Index(index),
-            _ => Segment::Key(part),
-        }
+    path.split(['.', '[']).filter(|part| !part.is_empty()).map(|part| match part.strip_suffix(']').map(str::parse) {
+        Some(Ok(index)) => Segment::Index(index),
+        _ => Segment::Key(part),
     })
 }
 
@@ -34,9 +32,9 @@ pub fn toml_line(text: &str, path: &str) -> Option<usize> {
     let mut value: Option<&DeValue<'_>> = None;
     for segment in segments(path) {
         let next = match segment {
-            Segment::Key(key) => table
-                .and_then(|table| table.get_key_value(key))
-                .map(|(key, value)| (key.span().start, value.get_ref())),
+            Segment::Key(key) => {
+                table.and_then(|table| table.get_key_value(key)).map(|(key, value)| (key.span().start, value.get_ref()))
+            }
             Segment::Index(index) => value
                 .and_then(DeValue::as_array)
                 .and_then(|array| array.get(index))

@@ -66,7 +66,11 @@ fn check_arms(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), Inp
         let key = |rest: &str| format!("arms[{index}].{rest}");
         let known: Vec<_> = robot.arms.iter().map(|arm| arm.name.as_str()).collect();
         let arm_index = robot.arm_index(&hold.name).ok_or_else(|| {
-            check.value(&key("name"), format!("\"{}\"", hold.name), format!("an arm of the robot: {}", known.join(", ")))
+            check.value(
+                &key("name"),
+                format!("\"{}\"", hold.name),
+                format!("an arm of the robot: {}", known.join(", ")),
+            )
         })?;
         let twice = plan.arms[..index].iter().any(|other| other.name == hold.name);
         check.that(!twice, &key("name"), format!("\"{}\" again", hold.name), "every arm once")?;
@@ -79,13 +83,7 @@ fn check_arms(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), Inp
     Ok(())
 }
 
-fn check_joints(
-    check: &Checker<'_>,
-    index: usize,
-    hold: &ArmHold,
-    arm: &Arm,
-    robot: &Robot,
-) -> Result<(), InputError> {
+fn check_joints(check: &Checker<'_>, index: usize, hold: &ArmHold, arm: &Arm, robot: &Robot) -> Result<(), InputError> {
     let names: Vec<_> = arm.joints.iter().map(|&joint| robot.joints[joint].name.as_str()).collect();
     let same = hold.joints.iter().map(String::as_str).eq(names.iter().copied());
     let expected = format!("the joints of the {} arm: {}", arm.name, names.join(", "));
@@ -108,11 +106,8 @@ fn check_hand(check: &Checker<'_>, key: &str, hold: &ArmHold, plan: &Plan, chain
     let meant = plan.object.x_wo * hold.x_og;
     let apart_m = (reached.translation.vector - meant.translation.vector).norm();
     let apart_rad = reached.rotation.angle_to(&meant.rotation);
-    let found = format!(
-        "the hand {:.2} mm and {:.2} degrees from where q_rad puts it",
-        apart_m * 1e3,
-        apart_rad.to_degrees()
-    );
+    let found =
+        format!("the hand {:.2} mm and {:.2} degrees from where q_rad puts it", apart_m * 1e3, apart_rad.to_degrees());
     let close = apart_m <= HAND_TOLERANCE.0 && apart_rad <= HAND_TOLERANCE.1;
     check.that(close, key, found, "x_wo x_og to equal the arm's forward kinematics within 1 mm and 0.1 degrees")
 }

@@ -18,8 +18,8 @@ use crate::{
         operation::{Operation, OperationKind},
         plan::Plan,
         scenario::{
-            Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, Scenario, Sex, SimulationSettings,
-            Tool,
+            Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, Scenario, Sex,
+            SimulationSettings, Tool,
         },
         wrench::Wrench,
     },
@@ -104,10 +104,8 @@ fn tool(check: &Checker<'_>, given: Option<Tool>, kind: OperationKind) -> Result
 }
 
 fn board(check: &Checker<'_>, section: &ObjectSection, robot: &Robot) -> Result<Board, InputError> {
-    let typical =
-        material::density_kg_m3(&section.material).map_err(|expected| {
-            check.value("object.material", format!("\"{}\"", section.material), expected)
-        })?;
+    let typical = material::density_kg_m3(&section.material)
+        .map_err(|expected| check.value("object.material", format!("\"{}\"", section.material), expected))?;
     let density_kg_m3 = section.density_kg_m3.unwrap_or(typical);
     check.within("object.density_kg_m3", density_kg_m3, 1.0, 25_000.0, "kg/m^3")?;
     check.board_size("object.size_m", section.size_m, robot.arms.iter())?;

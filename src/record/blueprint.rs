@@ -1,0 +1,181 @@
+//! The layout on which the viewer opens: scene, phases and events on the left, summary and plots on the right.
+//!
+//! Written out by hand and not by rerun's blueprint builder, whose ids are random.
+
+use nalgebra::Vector3;
+use rerun::{
+    AsComponents, EntityPath,
+    external::{
+        re_log_types::BlueprintActivationCommand,
+        re_sdk_types::blueprint::{
+            archetypes::{
+                ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, ScalarAxis,
+                TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
+            },
+            components::{ContainerKind, Corner2D, LoopMode, PanelState, PlayState, RootContainer},
+        },
+    },
+    log::LogMsg,
+};
+
+use super::{
+    RecordError, RecordingInput, TIMELINE,
+    chunks::Messages,
+    entity,
+    plots::{JOINTS_SHOWN, LIMIT, PLOTS, hardest_first},
+};
+use crate::model::{scenario::Hand, verdict::CheckKind};
+
+/// A view or a container with its share of its parent's room.
+struct Placed {
+    path: EntityPath,
+    share: f32,
+}
+
+/// Counts the views and containers: their numbers are their ids.
+struct Layout {
+    messages: Messages,
+    count: u128,
+}
+
+/// The layout's messages; the last one activates it.
+pub(super) fn messages(messages: Messages, input: &RecordingInput) -> Result<Vec<LogMsg>, RecordError> {
+    let mut layout = Layout { messages, count: 0 };
+    let left = [
+        layout.scene(input)?,
+        layout.view("StateTimeline", "phases", &["+ /phases"], 0.14)?,
+        layout.view("TextLog", "events", &["+ /events"], 0.2)?,
+    ];
+    let left = layout.container(ContainerKind::Vertical, &left, 0.58)?;
+    let mut right = vec![layout.view("TextDocument", "summary", &["+ /summary"], 0.38)?];
+    for (plot, kind) in PLOTS {
+        right.push(layout.plot(input, plot, kind)?);
+    }
+    let right = layout.container(ContainerKind::Vertical, &right, 0.42)?;
+    let root_id = layout.count;
+    let root = layout.container(ContainerKind::Horizontal, &[left, right], 1.0)?;
+    debug_assert_eq!(root.path, entity(&["container", &uuid(root_id).to_string()]));
+    layout.panels(root_id)?;
+    let activation = BlueprintActivationCommand::make_active(layout.messages.store_id().clone());
+    let mut messages = layout.messages.into_messages();
+    messages.push(LogMsg::BlueprintActivationCommand(activation));
+    Ok(messages)
+}
+
+impl Layout {
+    fn log(&mut self, path: &EntityPath, what: &dyn AsComponents) -> Result<(), RecordError> {
+        self.messages.log_static(path, what)
+    }
+
+    fn next_path(&mut self, kind: &str) -> EntityPath {
+        let path = entity(&[kind, &uuid(self.count).to_string()]);
+        self.count += 1;
+        path
+    }
+
+    /// A view of what the queries match.
+    fn view<Q: AsRef<str>>(
+        &mut self,
+        class: &str,
+        name: &str,
+        queries: &[Q],
+        share: f32,
+    ) -> Result<Placed, RecordError> {
+        let path = self.next_path("view");
+        let contents = ViewContents::new(queries.iter().map(|query| query.as_ref()));
+        self.log(&child(&path, "ViewContents"), &contents)?;
+        let view = ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
+        self.log(&path, &view)?;
+        Ok(Placed { path, share })
+    }
+
+    fn container(&mut self, kind: ContainerKind, contents: &[Placed], share: f32) -> Result<Placed, RecordError> {
+        let path = self.next_path("container");
+        let shares = contents.iter().map(|placed| placed.share);
+        let container =
+            ContainerBlueprint::new(kind).with_contents(contents.iter().map(|placed| placed.path.to_string()));
+        let container = match kind {
+            ContainerKind::Horizontal => container.with_col_shares(shares),
+            _ => container.with_row_shares(shares),
+        };
+        self.log(&path, &container)?;
+        Ok(Placed { path, share })
+    }
+
+    /// The scene, seen from the side of the person's idle arm: robot, board and person in profile, a little from
+    /// behind the person, so that the worked face shows.
+    fn scene(&mut self, input: &RecordingInput) -> Result<Placed, RecordError> {
+        let view = self.view("3D", "scene", &["+ /scene/**"], 0.66)?;
+        let board = input.plan.object.x_wo.translation.vector;
+        let idle_side = match input.plan.human.map(|human| human.hand) {
+            // The person faces the robot: their left is the robot's right, -y.
+            Some(Hand::Right) | None => -1.0,
+            Some(Hand::Left) => 1.0,
+        };
+        let eye = board + Vector3::new(0.75, 1.75 * idle_side, 0.55);
+        let controls = EyeControls3D::new()
+            .with_position(point(&eye))
+            .with_look_target(point(&board))
+            .with_eye_up([0.0, 0.0, 1.0]);
+        self.log(&child(&view.path, "EyeControls3D"), &controls)?;
+        let floor = rerun::components::Plane3D::new([0.0, 0.0, 1.0], input.robot.floor_z_m as f32);
+        self.log(&child(&view.path, "LineGrid3D"), &LineGrid3D::new().with_plane(floor))?;
+        Ok(view)
+    }
+
+    fn plot(&mut self, input: &RecordingInput, plot: &str, kind: CheckKind) -> Result<Placed, RecordError> {
+        let unit = kind.unit();
+        let (name, queries) = match kind {
+            CheckKind::TorqueRatio => {
+                let joints = hardest_first(input);
+                let mut queries: Vec<String> =
+                    joints.iter().take(JOINTS_SHOWN).map(|(joint, _)| query(plot, &joint.name)).collect();
+                queries.push(query(plot, LIMIT));
+                ("joint torque / limit, hardest joints".to_owned(), queries)
+            }
+            CheckKind::SlipRotation => (format!("rotation of the hands on the board, {unit}"), vec![query(plot, "**")]),
+            CheckKind::Slip => (format!("slip of the hands on the board, {unit}"), vec![query(plot, "**")]),
+            _ => (format!("{plot} of the tool point, {unit}"), vec![query(plot, "**")]),
+        };
+        let view = self.view("TimeSeries", &name, &queries, 0.155)?;
+        self.log(&child(&view.path, "PlotLegend"), &PlotLegend::new().with_corner(Corner2D::LeftTop))?;
+        self.log(&child(&view.path, "ScalarAxis"), &ScalarAxis::new())?;
+        Ok(view)
+    }
+
+    fn panels(&mut self, root_id: u128) -> Result<(), RecordError> {
+        let root = RootContainer(rerun::datatypes::Uuid::from(uuid(root_id)));
+        let viewport =
+            ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
+        self.log(&entity(&["viewport"]), &viewport)?;
+        for panel in ["blueprint_panel", "selection_panel"] {
+            self.log(&entity(&[panel]), &PanelBlueprint::new().with_state(PanelState::Collapsed))?;
+        }
+        let time = TimePanelBlueprint::new()
+            .with_state(PanelState::Collapsed)
+            .with_timeline(TIMELINE)
+            .with_play_state(PlayState::Playing)
+            .with_loop_mode(LoopMode::All);
+        self.log(&entity(&["time_panel"]), &time)
+    }
+}
+
+fn uuid(number: u128) -> rerun::external::uuid::Uuid {
+    rerun::external::uuid::Uuid::from_u128(number)
+}
+
+fn child(path: &EntityPath, name: &str) -> EntityPath {
+    path.join(&entity(&[name]))
+}
+
+/// The query for one series of a plot, or for all of them.
+fn query(plot: &str, series: &str) -> String {
+    match series {
+        "**" => format!("+ {}/**", entity(&["plots", plot])),
+        _ => format!("+ {}", entity(&["plots", plot, series])),
+    }
+}
+
+fn point(vector: &Vector3<f64>) -> [f32; 3] {
+    vector.map(|v| v as f32).into()
+}

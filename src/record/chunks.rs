@@ -1,0 +1,84 @@
+//! The messages of one store, with ids that are counted and not drawn from the clock.
+
+use rerun::{
+    AsComponents, EntityPath, SerializedComponentColumn, StoreId, StoreKind, TimeColumn, TimePoint, Timeline,
+    external::{
+        re_log_types::{SetStoreInfo, StoreInfo, StoreSource},
+        re_tuid::Tuid,
+    },
+    log::{Chunk, ChunkId, LogMsg, RowId},
+    time::TimeInt,
+};
+
+use super::{RecordError, TIMELINE};
+
+/// Messages in the order in which they were logged.
+pub(super) struct Messages {
+    store_id: StoreId,
+    messages: Vec<LogMsg>,
+}
+
+impl Messages {
+    /// A store that has been announced and is empty.
+    pub fn new(store_id: StoreId) -> Self {
+        let info = StoreInfo::new(store_id.clone(), StoreSource::Other("benchdog".to_owned()));
+        let announcement = LogMsg::SetStoreInfo(SetStoreInfo { row_id: id(0), info });
+        Self { store_id, messages: vec![announcement] }
+    }
+
+    /// The store that the messages belong to.
+    pub fn store_id(&self) -> &StoreId {
+        &self.store_id
+    }
+
+    /// All messages.
+    pub fn into_messages(self) -> Vec<LogMsg> {
+        self.messages
+    }
+
+    /// Logs what holds at all times; in a blueprint, at its only time.
+    pub fn log_static(&mut self, entity: &EntityPath, what: &dyn AsComponents) -> Result<(), RecordError> {
+        let time = match self.store_id.kind() {
+            StoreKind::Recording => TimePoint::default(),
+            // The viewer looks for a blueprint on this timeline.
+            StoreKind::Blueprint => TimePoint::default().with(Timeline::new_sequence("blueprint"), TimeInt::ZERO),
+        };
+        let id = self.next_id();
+        let chunk = Chunk::builder_with_id(ChunkId::from_tuid(id), entity.clone())
+            .with_serialized_batches(RowId::from_tuid(id.next()), time, what.as_serialized_batches())
+            .build()
+            .map_err(RecordError::encode)?;
+        self.push(&chunk)
+    }
+
+    /// Logs what changes: one row a time, s.
+    pub fn log_columns(
+        &mut self,
+        entity: &EntityPath,
+        times_s: &[f64],
+        columns: impl IntoIterator<Item = SerializedComponentColumn>,
+    ) -> Result<(), RecordError> {
+        let times = TimeColumn::new_duration_secs(TIMELINE, times_s.iter().copied());
+        let times = [(*times.timeline().name(), times)].into_iter().collect();
+        let columns = columns.into_iter().map(|column| (column.descriptor, column.list_array)).collect();
+        let id = ChunkId::from_tuid(self.next_id());
+        let chunk = Chunk::from_auto_row_ids(id, entity.clone(), times, columns).map_err(RecordError::encode)?;
+        self.push(&chunk)
+    }
+
+    /// The rows of a chunk count on from its own id, in the lower half.
+    fn next_id(&self) -> Tuid {
+        id(self.messages.len() as u64)
+    }
+
+    fn push(&mut self, chunk: &Chunk) -> Result<(), RecordError> {
+        let message = chunk.to_arrow_msg().map_err(RecordError::encode)?;
+        self.messages.push(LogMsg::ArrowMsg(self.store_id.clone(), message));
+        Ok(())
+    }
+}
+
+/// The id of the message of this number; its lower half counts the rows.
+fn id(number: u64) -> Tuid {
+    Tuid::from_nanos_and_inc(number, 0)
+}

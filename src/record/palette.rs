@@ -1,0 +1,42 @@
+//! Colours with one meaning each, from Okabe and Ito's palette, which the colour-blind can tell apart.
+
+use rerun::Color;
+
+/// Any limit.
+pub(super) fn limit() -> Color {
+    Color::from_rgb(213, 94, 0)
+}
+
+/// The board, and how far it gave way.
+pub(super) fn board() -> Color {
+    Color::from_rgb(240, 228, 120)
+}
+
+/// The tool and the load.
+pub(super) fn load() -> Color {
+    Color::from_rgb(204, 121, 167)
+}
+
+/// The person.
+pub(super) fn person() -> Color {
+    Color::from_rgb(0, 158, 115)
+}
+
+/// The robot but its hands.
+pub(super) fn robot() -> Color {
+    Color::from_rgb(150, 150, 150)
+}
+
+/// What belongs to the hand or the arm of this number.
+pub(super) fn hand(arm: usize) -> Color {
+    const HANDS: [[u8; 3]; 2] = [[86, 180, 233], [230, 159, 0]];
+    let [r, g, b] = HANDS[arm % HANDS.len()];
+    Color::from_rgb(r, g, b)
+}
+
+/// A shade of an arm's colour: 0 is the colour itself, larger shares are darker.
+pub(super) fn shade(arm: usize, darker: f32) -> Color {
+    let [r, g, b, _] = hand(arm).to_array();
+    let dim = |channel: u8| (f32::from(channel) * (1.0 - darker)) as u8;
+    Color::from_rgb(dim(r), dim(g), dim(b))
+}

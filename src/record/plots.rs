@@ -1,0 +1,116 @@
+//! Everything over time that is no picture: the judge's series beside their limits, the phases, the events.
+
+use rerun::{Scalars, SeriesLines, StateChange, StateConfiguration, TextLog, TextLogLevel};
+
+use super::{RecordError, RecordingInput, chunks::Messages, entity, palette};
+use crate::model::{
+    measures::{EventKind, JointMeasures},
+    trace::{Phase, Sample},
+    verdict::CheckKind,
+};
+
+/// How many joints the torque plot shows: those that worked hardest. The others are in the file all the same.
+pub(super) const JOINTS_SHOWN: usize = 5;
+
+/// Name of the series that is a limit.
+pub(super) const LIMIT: &str = "limit";
+
+/// The four plots: the folder of their series, and the check that they explain.
+pub(super) const PLOTS: [(&str, CheckKind); 4] = [
+    ("slip", CheckKind::Slip),
+    ("rotation", CheckKind::SlipRotation),
+    ("deflection", CheckKind::Deflection),
+    ("torque", CheckKind::TorqueRatio),
+];
+
+/// Logs the plots, the phases and the events.
+pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
+    let measures = input.measures;
+    let mut series = |plot, name: &str, colour, values: &[f64]| {
+        log_series(messages, [plot, name], &measures.time_s, values, (colour, 2.0, name))
+    };
+    for (arm, hand) in measures.hands.iter().enumerate() {
+        series("slip", &format!("{} hand", hand.name), palette::hand(arm), &hand.slip_mm)?;
+        series("rotation", &format!("{} hand", hand.name), palette::hand(arm), &hand.slip_deg)?;
+    }
+    if !measures.deflection_mm.is_empty() {
+        series("deflection", "tool point", palette::board(), &measures.deflection_mm)?;
+    }
+    for (joint, colour) in hardest_first(input) {
+        series("torque", &joint.name, colour, &joint.torque_ratio)?;
+    }
+    for (plot, kind) in PLOTS {
+        log_limit(messages, input, plot, kind)?;
+    }
+    log_phases(messages, &input.trace.samples)?;
+    log_events(messages, input)
+}
+
+/// The joints with their colours: the hardest working first, each in its arm's colour, the hardest brightest.
+pub(super) fn hardest_first<'a>(input: &RecordingInput<'a>) -> Vec<(&'a JointMeasures, rerun::Color)> {
+    let peak = |joint: &JointMeasures| input.verdict.peak_torque_ratio.get(&joint.name).copied().unwrap_or(0.0);
+    let mut joints: Vec<&JointMeasures> = input.measures.joints.iter().collect();
+    joints.sort_by(|a, b| peak(b).total_cmp(&peak(a)));
+    let arm_of =
+        |joint: &JointMeasures| input.trace.arms.iter().position(|arm| arm.joints.contains(&joint.name)).unwrap_or(0);
+    let mut seen = vec![0_u8; input.trace.arms.len().max(1)];
+    joints
+        .into_iter()
+        .map(|joint| {
+            let arm = arm_of(joint);
+            seen[arm] += 1;
+            (joint, palette::shade(arm, (0.2 * f32::from(seen[arm] - 1)).min(0.6)))
+        })
+        .collect()
+}
+
+/// One line of a plot; `style` is its colour, width and name.
+fn log_series(
+    messages: &mut Messages,
+    path: [&str; 2],
+    times_s: &[f64],
+    values: &[f64],
+    style: (rerun::Color, f32, &str),
+) -> Result<(), RecordError> {
+    let path = entity(&["plots", path[0], path[1]]);
+    let (colour, width, name) = style;
+    let line = SeriesLines::new().with_colors([colour]).with_widths([width]).with_names([name]);
+    messages.log_static(&path, &line)?;
+    let scalars = Scalars::new(values.iter().copied());
+    messages.log_columns(&path, times_s, scalars.columns_of_unit_batches().map_err(RecordError::encode)?)
+}
+
+/// A level line at the limit, from the reference to the trace's end.
+fn log_limit(messages: &mut Messages, input: &RecordingInput, plot: &str, kind: CheckKind) -> Result<(), RecordError> {
+    let (Some(check), [first_s, .., last_s]) = (input.verdict.check(kind), input.measures.time_s.as_slice()) else {
+        return Ok(());
+    };
+    let ends = [check.limit; 2];
+    log_series(messages, [plot, LIMIT], &[*first_s, *last_s], &ends, (palette::limit(), 1.5, LIMIT))
+}
+
+fn log_phases(messages: &mut Messages, samples: &[Sample]) -> Result<(), RecordError> {
+    let path = entity(&["phases"]);
+    let phases = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release];
+    // Greys: the colours have other meanings.
+    let greys = [90, 130, 170, 90].map(|v| rerun::Color::from_rgb(v, v, v));
+    let style = StateConfiguration::new().with_values(phases.map(Phase::name)).with_colors(greys);
+    messages.log_static(&path, &style)?;
+    let starts = (0..samples.len()).filter(|&i| i == 0 || samples[i].phase != samples[i - 1].phase);
+    let (times_s, names): (Vec<f64>, Vec<&str>) = starts.map(|i| (samples[i].time_s, samples[i].phase.name())).unzip();
+    let states = StateChange::new().with_state(names).columns_of_unit_batches().map_err(RecordError::encode)?;
+    messages.log_columns(&path, &times_s, states)
+}
+
+fn log_events(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
+    let times_s: Vec<f64> = input.events.iter().map(|event| event.time_s).collect();
+    let level = |kind| match kind {
+        EventKind::Phase => TextLogLevel::INFO,
+        EventKind::LimitCrossed => TextLogLevel::WARN,
+        EventKind::BrokeDown => TextLogLevel::ERROR,
+    };
+    let log = TextLog::update_fields()
+        .with_many_text(input.events.iter().map(|event| event.text.as_str()))
+        .with_many_level(input.events.iter().map(|event| level(event.kind)));
+    messages.log_columns(&entity(&["events"]), &times_s, log.columns_of_unit_batches().map_err(RecordError::encode)?)
+}

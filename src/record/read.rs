@@ -1,0 +1,164 @@
+//! The way back: what a recording says, read from the file.
+
+use std::{collections::BTreeMap, io::Cursor, path::Path};
+
+use rerun::{
+    ComponentDescriptor,
+    external::re_log_encoding::DecoderApp,
+    log::{Chunk, LogMsg},
+};
+
+use super::{APPLICATION, RecordError, TIMELINE, entity, plots::LIMIT};
+use crate::model::verdict::Verdict;
+
+/// The first bytes of every rerun recording that this version reads.
+const MAGIC: &[u8] = b"RRF2";
+
+/// What a recording says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedSummary {
+    /// The verdict, as it was recorded.
+    pub verdict: Verdict,
+    /// The largest value of every plotted series while the load acted.
+    pub peaks: Peaks,
+    /// The parts of the simulation.
+    pub phases: Vec<RecordedPhase>,
+    /// Events: time, s, and text.
+    pub events: Vec<(f64, String)>,
+    /// Time of the last sample, s.
+    pub end_s: f64,
+}
+
+/// The largest values of the plotted series, from the reference to the end of the load.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Peaks {
+    /// Slip of each hand, mm.
+    pub slip_mm: BTreeMap<String, f64>,
+    /// Rotation of each hand, degrees.
+    pub rotation_deg: BTreeMap<String, f64>,
+    /// Deflection of the tool point, mm.
+    pub deflection_mm: f64,
+    /// Torque over limit of each joint.
+    pub torque_ratio: BTreeMap<String, f64>,
+}
+
+/// One part of the simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedPhase {
+    /// Its name.
+    pub name: String,
+    /// Its first sample, s.
+    pub start_s: f64,
+}
+
+/// Reads what a recording of ours says.
+///
+/// # Errors
+/// When the file cannot be read, is no rerun recording, is one of another program, or was cut short.
+pub fn read_summary(path: &Path) -> Result<RecordedSummary, RecordError> {
+    let bytes = std::fs::read(path).map_err(|source| RecordError::Read { path: path.to_owned(), source })?;
+    summary(&bytes).map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
+}
+
+fn summary(bytes: &[u8]) -> Result<RecordedSummary, String> {
+    let chunks = chunks(bytes)?;
+    let json = documents(&chunks, "verdict").ok_or("found no verdict, expected a recording made by benchdog")?;
+    let verdict = serde_json::from_str(&json).map_err(|error| format!("found a malformed verdict: {error}"))?;
+    let phases: Vec<RecordedPhase> = texts(&chunks, "phases", &rerun::StateChange::descriptor_state())
+        .map(|(start_s, name)| RecordedPhase { name, start_s })
+        .collect();
+    let release_s = phases.iter().find(|phase| phase.name == "release").map_or(f64::INFINITY, |phase| phase.start_s);
+    Ok(RecordedSummary {
+        verdict,
+        peaks: peaks(&chunks, release_s),
+        events: texts(&chunks, "events", &rerun::TextLog::descriptor_text()).collect(),
+        end_s: chunks.iter().flat_map(times_s).fold(0.0, f64::max),
+        phases,
+    })
+}
+
+/// The chunks of the recording itself, without those of its blueprint.
+fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
+    if !bytes.starts_with(MAGIC) {
+        return Err("found no rerun recording, expected a file that starts with \"RRF2\"".to_owned());
+    }
+    let (mut chunks, mut ours, mut complete) = (Vec::new(), false, false);
+    for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
+        match message.map_err(|error| format!("found a damaged recording: {error}"))? {
+            LogMsg::SetStoreInfo(info) => ours |= info.info.application_id().as_str() == APPLICATION,
+            LogMsg::ArrowMsg(store, arrow) if store.is_recording() => {
+                chunks.push(Chunk::from_arrow_msg(&arrow).map_err(|error| format!("found damaged data: {error}"))?);
+            }
+            LogMsg::ArrowMsg(..) => {}
+            LogMsg::BlueprintActivationCommand(_) => complete = true,
+        }
+    }
+    match (ours, complete) {
+        (false, _) => Err("found no recording of benchdog, expected one".to_owned()),
+        (true, false) => Err("the recording was cut short".to_owned()),
+        (true, true) => Ok(chunks),
+    }
+}
+
+fn of<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'a Chunk> {
+    let path = entity(&[path]);
+    chunks.iter().filter(move |chunk| *chunk.entity_path() == path)
+}
+
+/// The text of a document.
+fn documents(chunks: &[Chunk], path: &str) -> Option<String> {
+    let component = rerun::TextDocument::descriptor_text().component;
+    let batch = |chunk: &Chunk| chunk.component_batch::<rerun::Text>(component, 0)?.ok()?.pop();
+    of(chunks, path).find_map(batch).map(|text| text.to_string())
+}
+
+/// Times and texts of a component.
+fn texts(chunks: &[Chunk], path: &str, descriptor: &ComponentDescriptor) -> impl Iterator<Item = (f64, String)> {
+    let component = descriptor.component;
+    of(chunks, path).flat_map(move |chunk| {
+        let row = move |(index, time_s): (usize, f64)| {
+            let text = chunk.component_batch::<rerun::Text>(component, index)?.ok()?.pop()?;
+            Some((time_s, text.to_string()))
+        };
+        times_s(chunk).into_iter().enumerate().filter_map(row)
+    })
+}
+
+/// The largest values of all series before `end_s`.
+fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
+    let mut peaks = Peaks::default();
+    for chunk in chunks {
+        let parts: Vec<String> = chunk.entity_path().iter().map(|part| part.unescaped_str().to_owned()).collect();
+        let [folder, plot, series] = parts.as_slice() else { continue };
+        if folder != "plots" || series == LIMIT {
+            continue;
+        }
+        let Some(peak) = peak(chunk, end_s) else { continue };
+        let hand = || series.trim_end_matches(" hand").to_owned();
+        match plot.as_str() {
+            "slip" => drop(peaks.slip_mm.insert(hand(), peak)),
+            "rotation" => drop(peaks.rotation_deg.insert(hand(), peak)),
+            "deflection" => peaks.deflection_mm = peak,
+            _ => drop(peaks.torque_ratio.insert(series.clone(), peak)),
+        }
+    }
+    peaks
+}
+
+/// The largest scalar of a chunk before `end_s`; none in a chunk without scalars.
+fn peak(chunk: &Chunk, end_s: f64) -> Option<f64> {
+    let component = rerun::Scalars::descriptor_scalars().component;
+    let values = chunk.iter_slices::<f64>(component).map(|slice| slice.first().copied());
+    times_s(chunk)
+        .into_iter()
+        .zip(values)
+        .filter(|(time_s, _)| *time_s < end_s)
+        .filter_map(|(_, value)| value)
+        .reduce(f64::max)
+}
+
+/// The times of a chunk's rows, s.
+fn times_s(chunk: &Chunk) -> Vec<f64> {
+    let column = chunk.timelines().get(&TIMELINE.into());
+    column.map_or(Vec::new(), |column| column.times_raw().iter().map(|&nanos| nanos as f64 * 1e-9).collect())
+}

@@ -1,0 +1,276 @@
+//! The 3-D scene: robot, board, operation, person, tool, pads and forces.
+
+use nalgebra::{Point3, UnitQuaternion, Vector3};
+use rerun::{
+    Arrows3D, Boxes3D, Capsules3D, Cylinders3D, Ellipsoids3D, EntityPath, FillMode, Points3D, Transform3D,
+    ViewCoordinates,
+};
+
+use super::{Capsule, RecordError, RecordingInput, chunks::Messages, entity, palette};
+use crate::{
+    model::{frames::Pose, operation::Operation, trace::Sample},
+    robot::{ArmState, PlacedShape, Robot, Shape},
+};
+
+/// Length of a force's arrow, m/N: the 30 N of a grip are as long as a hand is wide.
+pub(super) const ARROW_M_PER_N: f64 = 0.004;
+
+/// Time between two pictures, s.
+const FRAME_S: f64 = 0.02;
+
+/// Thickness of the plate that marks a pad, m: to be seen, no property of the gripper.
+const PAD_PLATE_M: f64 = 0.004;
+
+/// Radius of the tool's parts, m: to be seen, no property of the tool.
+const TOOL_RADIUS_M: f64 = 0.008;
+
+/// The samples that become pictures, and the poses of the robot's links in them.
+struct Frames<'a> {
+    samples: Vec<&'a Sample>,
+    times_s: Vec<f64>,
+    /// One entry a frame, in it one entry a link.
+    x_wl: Vec<Vec<Pose>>,
+}
+
+/// Logs the scene.
+pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
+    messages.log_static(&entity(&["scene"]), &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+    let arms = arm_indices(input)?;
+    let frames = frames(input, &arms);
+    log_robot(messages, input.robot, &frames)?;
+    log_board(messages, input, &frames)?;
+    log_person(messages, input)?;
+    for (arm, &robot_arm) in arms.iter().enumerate() {
+        log_pads(messages, input, &frames, arm, robot_arm)?;
+    }
+    log_load(messages, input, &frames)
+}
+
+/// For each arm of the trace its index in the robot.
+fn arm_indices(input: &RecordingInput) -> Result<Vec<usize>, RecordError> {
+    let names = || input.robot.arms.iter().map(|arm| format!("\"{}\"", arm.name)).collect::<Vec<_>>().join(", ");
+    let index = |name: &String| {
+        let unknown = || RecordError::UnknownArm { found: name.clone(), expected: names() };
+        input.robot.arm_index(name).ok_or_else(unknown)
+    };
+    input.trace.arms.iter().map(|arm| index(&arm.name)).collect()
+}
+
+fn frames<'a>(input: &RecordingInput<'a>, arms: &[usize]) -> Frames<'a> {
+    let mut samples: Vec<&Sample> = Vec::new();
+    for sample in &input.trace.samples {
+        // Half a millisecond early counts: sums of steps are not exact.
+        if samples.last().is_none_or(|last| sample.time_s - last.time_s > FRAME_S - 5e-4) {
+            samples.push(sample);
+        }
+    }
+    let link_poses = |sample: &Sample| {
+        let states: Vec<ArmState> = arms
+            .iter()
+            .zip(&sample.arms)
+            .map(|(&arm, state)| ArmState {
+                arm,
+                q_rad: &state.q_rad,
+                finger_travel_m: std::array::from_fn(|finger| state.finger_m.get(finger).copied().unwrap_or(0.0)),
+            })
+            .collect();
+        input.robot.link_poses(&input.robot.positions(&states))
+    };
+    Frames {
+        times_s: samples.iter().map(|sample| sample.time_s).collect(),
+        x_wl: samples.iter().map(|sample| link_poses(sample)).collect(),
+        samples,
+    }
+}
+
+fn log_robot(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Result<(), RecordError> {
+    let carriers = robot.carriers();
+    for (index, link) in robot.links.iter().enumerate().filter(|(_, link)| !link.shapes.is_empty()) {
+        let path = entity(&["scene", "robot", &link.name]);
+        log_shapes(messages, &path, &link.shapes)?;
+        match carriers[index] {
+            Some(_) => {
+                let poses = frames.x_wl.iter().map(|x_wl| x_wl[index]);
+                log_poses(messages, &path, &frames.times_s, poses)?;
+            }
+            None => {
+                let x_wl = frames.x_wl.first().map_or_else(Pose::identity, |x_wl| x_wl[index]);
+                messages.log_static(&path, &transform(&x_wl))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The shapes of one link, those of each kind together.
+fn log_shapes(messages: &mut Messages, path: &EntityPath, shapes: &[PlacedShape]) -> Result<(), RecordError> {
+    let (mut boxes, mut cylinders, mut spheres) = (Vec::new(), Vec::new(), Vec::new());
+    for placed in shapes {
+        let (centre, rotation) = (vec3(&placed.x_ls.translation.vector), quaternion(&placed.x_ls.rotation));
+        match placed.shape {
+            Shape::Box { half_m } => boxes.push((half_m.map(|v| v as f32), centre, rotation)),
+            Shape::Cylinder { radius_m, half_length_m } => {
+                cylinders.push((2.0 * half_length_m as f32, radius_m as f32, centre, rotation));
+            }
+            Shape::Sphere { radius_m } => spheres.push(([radius_m as f32; 3], centre)),
+        }
+    }
+    if !boxes.is_empty() {
+        let archetype = Boxes3D::from_half_sizes(boxes.iter().map(|b| b.0))
+            .with_centers(boxes.iter().map(|b| b.1))
+            .with_quaternions(boxes.iter().map(|b| b.2))
+            .with_colors([palette::robot()])
+            .with_fill_mode(FillMode::Solid);
+        messages.log_static(path, &archetype)?;
+    }
+    if !cylinders.is_empty() {
+        let archetype =
+            Cylinders3D::from_lengths_and_radii(cylinders.iter().map(|c| c.0), cylinders.iter().map(|c| c.1))
+                .with_centers(cylinders.iter().map(|c| c.2))
+                .with_quaternions(cylinders.iter().map(|c| c.3))
+                .with_colors([palette::robot()])
+                .with_fill_mode(FillMode::Solid);
+        messages.log_static(path, &archetype)?;
+    }
+    if !spheres.is_empty() {
+        let archetype = Ellipsoids3D::from_half_sizes(spheres.iter().map(|s| s.0))
+            .with_centers(spheres.iter().map(|s| s.1))
+            .with_colors([palette::robot()])
+            .with_fill_mode(FillMode::Solid);
+        messages.log_static(path, &archetype)?;
+    }
+    Ok(())
+}
+
+fn log_board(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
+    let path = entity(&["scene", "board"]);
+    let half = input.plan.object.size_m.map(|side| side as f32 / 2.0);
+    let board = Boxes3D::from_half_sizes([half]).with_colors([palette::board()]).with_fill_mode(FillMode::Solid);
+    messages.log_static(&path, &board)?;
+    log_poses(messages, &path, &frames.times_s, frames.samples.iter().map(|sample| sample.x_wo))?;
+    let operation = &input.plan.operation;
+    let mark = Points3D::new([vec3(&operation.x_ot.translation.vector)])
+        .with_radii([0.008])
+        .with_colors([palette::load()])
+        .with_labels([operation_label(operation)]);
+    messages.log_static(&entity(&["scene", "board", "operation"]), &mark)
+}
+
+/// `drill, 15 N`.
+pub(super) fn operation_label(operation: &Operation) -> String {
+    let kind = format!("{:?}", operation.kind).to_lowercase();
+    format!("{kind}, {:.0} N", operation.wrench_o.force_n.norm())
+}
+
+/// The person, and the tool as two sticks: along z_T from the tip to beside the palm, and from there to the palm.
+fn log_person(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
+    let Some(person) = input.person else { return Ok(()) };
+    let body = capsules(&person.capsules).with_colors([palette::person()]);
+    messages.log_static(&entity(&["scene", "person"]), &body)?;
+    let x_wt = input.plan.object.x_wo * input.plan.operation.x_ot;
+    let tip = Point3::from(x_wt.translation.vector);
+    let axis = x_wt.rotation * Vector3::z();
+    let elbow = tip + axis * axis.dot(&(person.palm_w - tip));
+    let stick = |ends_w| Capsule { ends_w, radius_m: TOOL_RADIUS_M };
+    let tool = capsules(&[stick([tip, elbow]), stick([elbow, person.palm_w])]).with_colors([palette::load()]);
+    messages.log_static(&entity(&["scene", "tool"]), &tool)
+}
+
+fn capsules(capsules: &[Capsule]) -> Capsules3D {
+    let along = |capsule: &Capsule| capsule.ends_w[1] - capsule.ends_w[0];
+    // Opposite to z every turn about any axis across it will do.
+    let from_z = |direction: Vector3<f64>| {
+        UnitQuaternion::rotation_between(&Vector3::z(), &direction)
+            .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
+    };
+    Capsules3D::from_lengths_and_radii(
+        capsules.iter().map(|capsule| along(capsule).norm() as f32),
+        capsules.iter().map(|capsule| capsule.radius_m as f32),
+    )
+    .with_translations(capsules.iter().map(|capsule| vec3(&capsule.ends_w[0].coords)))
+    .with_quaternions(capsules.iter().map(|capsule| quaternion(&from_z(along(capsule)))))
+}
+
+/// The pads of one hand as plates, and the forces with which they push on the board.
+fn log_pads(
+    messages: &mut Messages,
+    input: &RecordingInput,
+    frames: &Frames,
+    arm: usize,
+    robot_arm: usize,
+) -> Result<(), RecordError> {
+    let names = &input.trace.arms[arm];
+    let gripper = &input.robot.arms[robot_arm].gripper;
+    for (pad, name) in names.pads.iter().enumerate() {
+        let samples = || frames.samples.iter().map(|sample| &sample.arms[arm].pads[pad]);
+        let path = entity(&["scene", "pads", &names.name, name]);
+        let [x_m, z_m] = gripper.fingers[pad % gripper.fingers.len()].pad.size_m;
+        let plate = Boxes3D::from_sizes([[x_m as f32, PAD_PLATE_M as f32, z_m as f32]])
+            .with_colors([palette::hand(arm)])
+            .with_fill_mode(FillMode::Solid);
+        messages.log_static(&path, &plate)?;
+        let poses = samples()
+            .zip(&frames.x_wl)
+            .map(|(sample, x_wl)| Pose::from_parts(sample.p_wp_m.into(), x_wl[gripper.frame_link].rotation));
+        log_poses(messages, &path, &frames.times_s, poses)?;
+
+        let forces = samples().map(|sample| (sample.p_wp_m, sample.wrench_w.force_n));
+        let path = entity(&["scene", "forces", &names.name, name]);
+        let style = Arrows3D::update_fields().with_colors([palette::hand(arm)]).with_radii([0.004]);
+        log_forces(messages, &path, &frames.times_s, forces, &style)?;
+    }
+    Ok(())
+}
+
+/// The tool's force at the tool point of the moving board.
+fn log_load(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
+    let tool_point_w = |sample: &Sample| (sample.x_wo * Point3::from(input.trace.p_ot_m)).coords;
+    let forces = frames.samples.iter().map(|sample| (tool_point_w(sample), sample.tool_wrench_w.force_n));
+    let style = Arrows3D::update_fields().with_colors([palette::load()]).with_radii([0.006]);
+    log_forces(messages, &entity(&["scene", "forces", "tool"]), &frames.times_s, forces, &style)
+}
+
+/// Forces as arrows that end where the force acts, so that they do not vanish in the board.
+fn log_forces(
+    messages: &mut Messages,
+    path: &EntityPath,
+    times_s: &[f64],
+    forces: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>,
+    style: &Arrows3D,
+) -> Result<(), RecordError> {
+    let (origins, vectors): (Vec<_>, Vec<_>) = forces
+        .map(|(point_w, force_n)| {
+            let arrow = force_n * ARROW_M_PER_N;
+            (vec3(&(point_w - arrow)), vec3(&arrow))
+        })
+        .unzip();
+    messages.log_static(path, style)?;
+    let arrows = Arrows3D::from_vectors(vectors).with_origins(origins);
+    messages.log_columns(path, times_s, arrows.columns_of_unit_batches().map_err(RecordError::encode)?)
+}
+
+fn log_poses(
+    messages: &mut Messages,
+    path: &EntityPath,
+    times_s: &[f64],
+    poses: impl Iterator<Item = Pose>,
+) -> Result<(), RecordError> {
+    let (translations, rotations): (Vec<_>, Vec<_>) =
+        poses.map(|pose| (vec3(&pose.translation.vector), quaternion(&pose.rotation))).unzip();
+    let transforms = Transform3D::new().with_many_translation(translations).with_many_quaternion(rotations);
+    messages.log_columns(path, times_s, transforms.columns_of_unit_batches().map_err(RecordError::encode)?)
+}
+
+fn transform(pose: &Pose) -> Transform3D {
+    Transform3D::new().with_translation(vec3(&pose.translation.vector)).with_quaternion(quaternion(&pose.rotation))
+}
+
+/// rerun's numbers are single precision.
+fn vec3(vector: &Vector3<f64>) -> [f32; 3] {
+    vector.map(|v| v as f32).into()
+}
+
+fn quaternion(rotation: &UnitQuaternion<f64>) -> rerun::Quaternion {
+    let [x, y, z, w] = rotation.coords.map(|v| v as f32).into();
+    rerun::Quaternion::from_xyzw([x, y, z, w])
+}

@@ -1,0 +1,100 @@
+//! The summary in Markdown, and the verdict's JSON for the way back.
+
+use std::fmt::Write as _;
+
+use rerun::TextDocument;
+
+use super::{
+    RecordError, RecordingInput,
+    chunks::Messages,
+    entity,
+    scene::{ARROW_M_PER_N, operation_label},
+};
+use crate::model::{plan::Plan, verdict::Verdict};
+
+/// Logs both documents.
+pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
+    let text = markdown(input.plan, input.verdict);
+    messages.log_static(&entity(&["summary"]), &TextDocument::new(text).with_media_type("text/markdown"))?;
+    let json = serde_json::to_string_pretty(input.verdict).map_err(RecordError::encode)?;
+    messages.log_static(&entity(&["verdict"]), &TextDocument::new(json).with_media_type("application/json"))
+}
+
+/// What a reviewer reads first.
+pub(super) fn markdown(plan: &Plan, verdict: &Verdict) -> String {
+    let mut text = format!("# {}: {}\n\n", verdict.name, verdict.verdict);
+    let met = if verdict.met { "as expected" } else { "**not as expected**" };
+    push(&mut text, format_args!("Expected {}: {met}.", verdict.expected));
+    if let Some(failure) = &verdict.first_failure {
+        let (time_s, load) = (failure.time_s, failure.load_factor);
+        push(
+            &mut text,
+            format_args!("First limit crossed: {} at {time_s:.3} s, load factor {load:.2}.", failure.check),
+        );
+    }
+    if let Some(reason) = &verdict.reason {
+        push(&mut text, format_args!("{reason}"));
+    }
+    checks(&mut text, verdict);
+    figures(&mut text, plan);
+    let scale = ARROW_M_PER_N * 1e3;
+    push(
+        &mut text,
+        format_args!(
+            "\n**Colours**: blue {}, orange {}, yellow board, violet tool and load, green person, \
+         red limits. Arrows: forces on the board, {scale:.0} mm/N.",
+            arm(plan, 0),
+            arm(plan, 1)
+        ),
+    );
+    let versions: Vec<_> = verdict.versions.iter().map(|(name, version)| format!("{name} {version}")).collect();
+    push(&mut text, format_args!("\n{}; seed {}; trace `{}`", versions.join(", "), verdict.seed, verdict.fingerprint));
+    text
+}
+
+fn checks(text: &mut String, verdict: &Verdict) {
+    if verdict.checks.is_empty() {
+        return;
+    }
+    push(text, format_args!("\n| check | value | limit | margin | unit | |\n|---|---:|---:|---:|---|---|"));
+    for check in &verdict.checks {
+        let (value, limit, margin) = (check.value, check.limit, check.margin);
+        let mark = if check.passed { "" } else { "**FAIL**" };
+        push(
+            text,
+            format_args!("| {} | {value:.3} | {limit:.3} | {margin:.3} | {} | {mark} |", check.name, check.unit),
+        );
+    }
+}
+
+/// What was planned, and what was predicted of it.
+fn figures(text: &mut String, plan: &Plan) {
+    let [x_m, y_m, _] = plan.operation.x_ot.translation.vector.into();
+    let grips: Vec<_> = plan.arms.iter().map(|arm| format!("{} {:.0} N", arm.name, arm.grip_force_n)).collect();
+    let operation = operation_label(&plan.operation);
+    push(text, format_args!("\n**Plan**: {operation} at ({x_m:.3}, {y_m:.3}) m; grip {}", grips.join(", ")));
+    if let Some(stability) = &plan.stability {
+        let (best, compliant) = (stability.load_factor, stability.compliant_load_factor);
+        let deflection_mm = stability.predicted_deflection_mm;
+        push(
+            text,
+            format_args!(
+                "Predicted: load factor {best:.2} at best, {compliant:.2} with compliant arms, \
+             deflection {deflection_mm:.2} mm"
+            ),
+        );
+    }
+    if let Some(comfort) = &plan.comfort {
+        let (muscular, peripersonal_m) = (comfort.muscular_regularised, comfort.peripersonal_m);
+        push(text, format_args!("Comfort: muscular {muscular:.1}, peripersonal {peripersonal_m:.3} m"));
+    }
+}
+
+fn arm(plan: &Plan, index: usize) -> String {
+    plan.arms.get(index).map_or("no hand".to_owned(), |arm| format!("{} hand", arm.name))
+}
+
+fn push(text: &mut String, paragraph: std::fmt::Arguments) {
+    // Writing into a string cannot fail.
+    let _ = writeln!(text, "{paragraph}  ");
+}
