@@ -35,3 +35,4 @@ pub mod record;
 pub mod report;
 pub mod robot;
 pub mod scenario;
+pub mod statics;
