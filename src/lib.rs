@@ -30,6 +30,7 @@ pub mod collision;
 pub mod human;
 pub mod judge;
 pub mod model;
+pub mod planner;
 #[cfg(feature = "recording")]
 pub mod record;
 pub mod report;

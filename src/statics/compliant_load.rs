@@ -253,7 +253,9 @@ fn welded_crossing(hold: &Hold, limits: &Limits, unloaded: &Equilibrium) -> f64 
     let Some(welded) = WeldedHold::new(hold) else { return f64::NAN };
     let deflection_mm = welded.twist_at_tip(&hold.load).linear.norm() * 1e3;
     let mut first = limits.deflection_mm / deflection_mm;
-    for ((hand, wrench), torque) in hold.hands.iter().zip(welded.hand_wrenches(&hold.load)).zip(&unloaded.joint_torque_nm) {
+    for ((hand, wrench), torque) in
+        hold.hands.iter().zip(welded.hand_wrenches(&hold.load)).zip(&unloaded.joint_torque_nm)
+    {
         let growth = hand.jacobian_o.tr_mul(&wrench.to_vector());
         for joint in 0..hand.dof() {
             let limit = limits.torque_ratio * hand.effort_nm[joint];

@@ -78,7 +78,8 @@ mod tests {
         for half in [[0.0202, 0.0180], [0.01, 0.03], [1.0, 1.0]] {
             let cells = 400;
             let at = |axis: usize, i: usize| half[axis] * ((i as f64 + 0.5) / cells as f64);
-            let sum: f64 = (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))).map(|(i, j)| at(0, i).hypot(at(1, j))).sum();
+            let sum: f64 =
+                (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))).map(|(i, j)| at(0, i).hypot(at(1, j))).sum();
             let quadrature = sum / (cells * cells) as f64;
             // The midpoint rule on 400 x 400 cells is good to about 1e-6 (second order, but for the cone's tip).
             approx::assert_relative_eq!(mean_distance_from_centre_m(half), quadrature, max_relative = 3e-6);

@@ -343,9 +343,10 @@ impl ReusedSolver {
     /// Solves a program; none when clarabel refuses its data, which only figures that are not finite can cause.
     pub(super) fn solve(&mut self, program: &Program) -> Option<RawSolution<'_>> {
         let Program { layout, p, q, a, b, .. } = program;
-        let reusable = self.solver.as_mut().is_some_and(|(known, solver)| {
-            known == layout && solver.update_data(p, q, a, b).is_ok()
-        });
+        let reusable = self
+            .solver
+            .as_mut()
+            .is_some_and(|(known, solver)| known == layout && solver.update_data(p, q, a, b).is_ok());
         if !reusable {
             let solver = DefaultSolver::new(p, q, a, b, &layout.cones(), settings()).ok()?;
             self.solver = Some((layout.clone(), solver));
