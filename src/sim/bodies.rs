@@ -1,0 +1,110 @@
+//! The moving bodies of one arm: the links of a [`Robot`] with everything that does not move between them merged.
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+use crate::{
+    model::frames::Pose,
+    robot::{Arm, Joint, Link, Robot},
+};
+
+/// A link that moves with one joint of the arm or gripper, and all links fixed to it.
+pub(super) struct MovingBody {
+    /// The joint that moves it, an index into [`Robot::joints`].
+    pub joint: usize,
+    /// The body that the joint hangs on, an index into [`ArmBodies::bodies`]; none for the world.
+    pub parent: Option<usize>,
+    /// Pose of the joint's frame in the parent body, or in W.
+    pub x_pj: Pose,
+    /// Mass and its distribution in the frame of the joint's child link.
+    pub mass: MassSum,
+}
+
+/// Mass, centre of mass and inertia of several links together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MassSum {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Centre of mass in the body's frame, m.
+    pub com_b: Vector3<f64>,
+    /// Inertia about the centre of mass in the body's axes, kg m^2.
+    pub inertia_b: Matrix3<f64>,
+}
+
+impl MassSum {
+    const NOTHING: Self = Self { mass_kg: 0.0, com_b: Vector3::new(0.0, 0.0, 0.0), inertia_b: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) };
+
+    /// This and a link at `x_bl`, by the parallel axis theorem.
+    fn with_link(&self, link: &Link, x_bl: &Pose) -> Self {
+        let mass_kg = self.mass_kg + link.mass_kg;
+        if mass_kg == 0.0 {
+            return *self;
+        }
+        let link_com_b = (x_bl * nalgebra::Point3::from(link.com_l)).coords;
+        let com_b = (self.com_b * self.mass_kg + link_com_b * link.mass_kg) / mass_kg;
+        let rotation = x_bl.rotation.to_rotation_matrix();
+        let link_inertia_b = rotation.matrix() * link.inertia_l * rotation.matrix().transpose();
+        let inertia_b = self.inertia_b
+            + steiner(self.mass_kg, &(self.com_b - com_b))
+            + link_inertia_b
+            + steiner(link.mass_kg, &(link_com_b - com_b));
+        Self { mass_kg, com_b, inertia_b }
+    }
+}
+
+/// Inertia of a point mass at `r`, kg m^2.
+fn steiner(mass_kg: f64, r: &Vector3<f64>) -> Matrix3<f64> {
+    (Matrix3::identity() * r.norm_squared() - r * r.transpose()) * mass_kg
+}
+
+/// Where a link sits: in a moving body, or in the world.
+#[derive(Clone, Copy)]
+pub(super) struct Seat {
+    /// An index into [`ArmBodies::bodies`]; none for the world.
+    pub body: Option<usize>,
+    /// Pose of the link in that body, or in W.
+    pub x_bl: Pose,
+}
+
+/// An arm and its gripper as moving bodies.
+pub(super) struct ArmBodies {
+    /// Parents before children.
+    pub bodies: Vec<MovingBody>,
+    /// The body of each joint of the arm, then of each finger.
+    pub of_joint: Vec<usize>,
+    /// The seat of every link of the robot, in the robot's order.
+    pub seats: Vec<Seat>,
+}
+
+impl ArmBodies {
+    /// Merges the robot's links into the bodies that this arm moves. Joints of no part of the arm stay at zero.
+    pub fn new(robot: &Robot, arm: &Arm) -> Self {
+        let moving: Vec<usize> =
+            arm.joints.iter().copied().chain(arm.gripper.fingers.iter().map(|finger| finger.joint)).collect();
+        let mut bodies: Vec<MovingBody> = Vec::new();
+        let mut of_joint = vec![0; moving.len()];
+        let mut seats: Vec<Seat> = Vec::with_capacity(robot.links.len());
+        for link in &robot.links {
+            let seat = match link.parent_joint {
+                None => Seat { body: None, x_bl: Isometry3::identity() },
+                Some(joint) => {
+                    let Joint { parent_link, x_pj, .. } = &robot.joints[joint];
+                    let parent = seats[*parent_link];
+                    let x_bj = parent.x_bl * x_pj;
+                    match moving.iter().position(|&m| m == joint) {
+                        None => Seat { body: parent.body, x_bl: x_bj },
+                        Some(place) => {
+                            of_joint[place] = bodies.len();
+                            bodies.push(MovingBody { joint, parent: parent.body, x_pj: x_bj, mass: MassSum::NOTHING });
+                            Seat { body: Some(bodies.len() - 1), x_bl: Isometry3::identity() }
+                        }
+                    }
+                }
+            };
+            if let Some(body) = seat.body {
+                bodies[body].mass = bodies[body].mass.with_link(link, &seat.x_bl);
+            }
+            seats.push(seat);
+        }
+        Self { bodies, of_joint, seats }
+    }
+}

@@ -1,0 +1,162 @@
+//! The pads: their shape in the engine, and what they do to the board.
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
+use rapier3d_f64::prelude::{
+    ColliderBuilder, ColliderHandle, ContactManifold, Group, InteractionGroups, InteractionTestMode, NEW_CONTACT_BIT,
+    PhysicsWorld, RigidBodyHandle,
+};
+
+use super::border;
+use crate::{
+    model::{frames::Pose, trace::PadSample, wrench::Wrench},
+    robot::Pad,
+};
+
+/// Depth of the collider behind a pad's face, m: nothing reaches its back.
+const DEPTH_M: f64 = 0.004;
+
+/// Pads touch the board and nothing else.
+pub(super) fn pad_groups() -> InteractionGroups {
+    InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And)
+}
+
+/// The board touches the pads and nothing else.
+pub(super) fn board_groups() -> InteractionGroups {
+    InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And)
+}
+
+/// The board, as the pads see it.
+#[derive(Clone, Copy)]
+pub(super) struct TouchedBoard {
+    /// The body.
+    pub body: RigidBodyHandle,
+    /// Its shape.
+    pub collider: ColliderHandle,
+}
+
+/// A box that is part of a pad, in P.
+struct PadBox {
+    centre_p: [f64; 2],
+    half_m: [f64; 2],
+    recess_m: f64,
+}
+
+/// Mean distance of a rectangle's points from its centre, m: `(1/A) integral of r dA` for half sides a and b,
+/// `(d + a^2/(2b) ln((b+d)/a) + b^2/(2a) ln((a+d)/b)) / 3` with `d` the half diagonal (METHOD section 6).
+fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
+    let d = a.hypot(b);
+    (d + a * a / (2.0 * b) * ((b + d) / a).ln() + b * b / (2.0 * a) * ((a + d) / b).ln()) / 3.0
+}
+
+fn boxes(half_m: [f64; 2]) -> Vec<PadBox> {
+    let variant = std::env::var("PAD").unwrap_or("square:15e-6".into());
+    let mut parts = variant.split(':');
+    match parts.next() {
+        Some("box") => vec![PadBox { centre_p: [0.0; 2], half_m, recess_m: 0.0 }],
+        Some("tile") => {
+            let n: [usize; 2] = [parts.next().unwrap().parse().unwrap(), parts.next().unwrap().parse().unwrap()];
+            let h = [half_m[0] / n[0] as f64, half_m[1] / n[1] as f64];
+            (0..n[0] * n[1])
+                .map(|k| {
+                    let (i, j) = (k % n[0], k / n[0]);
+                    let c = [(2 * i + 1) as f64 * h[0] - half_m[0], (2 * j + 1) as f64 * h[1] - half_m[1]];
+                    PadBox { centre_p: c, half_m: h, recess_m: 0.0 }
+                })
+                .collect()
+        }
+        _ => {
+            let recess_m: f64 = parts.next().unwrap().parse().unwrap();
+            let h = mean_radius_m(half_m) / 2.0f64.sqrt();
+            vec![
+                PadBox { centre_p: [0.0; 2], half_m: [h, h], recess_m: 0.0 },
+                PadBox { centre_p: [0.0; 2], half_m, recess_m },
+            ]
+        }
+    }
+}
+
+/// A pad of the scene.
+pub(super) struct SimPad {
+    finger: RigidBodyHandle,
+    /// P in the finger's body: x_P along x_G, z_P into the board, at the centre of the face.
+    x_fp: Pose,
+    colliders: Vec<ColliderHandle>,
+}
+
+impl SimPad {
+    /// The pad of finger `k` (0 on the +y_G side), whose body is at `x_gf` when its travel is 0.
+    pub fn new(
+        world: &mut PhysicsWorld,
+        pad: &Pad,
+        k: usize,
+        finger: RigidBodyHandle,
+        x_gf: &Pose,
+        friction: f64,
+    ) -> Self {
+        let side = if k == 0 { 1.0 } else { -1.0 };
+        let z_p = Vector3::y() * -side;
+        let axes = Matrix3::from_columns(&[Vector3::x(), z_p.cross(&Vector3::x()), z_p]);
+        let x_gp = Isometry3::from_parts(
+            Vector3::new(pad.centre_m[0], side * pad.offset_m, pad.centre_m[1]).into(),
+            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
+        );
+        let x_fp = x_gf.inverse() * x_gp;
+        let colliders = boxes(pad.size_m.map(|side| side / 2.0))
+            .into_iter()
+            .map(|part| {
+                let [x, y] = part.centre_p;
+                let x_pc = Isometry3::translation(x, y, -part.recess_m - DEPTH_M / 2.0);
+                let collider = ColliderBuilder::cuboid(part.half_m[0], part.half_m[1], DEPTH_M / 2.0)
+                    .density(0.0)
+                    .friction(friction)
+                    .position(border::engine_pose(&(x_fp * x_pc)))
+                    .collision_groups(pad_groups());
+                world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
+            })
+            .collect();
+        Self { finger, x_fp, colliders }
+    }
+
+    /// What the pad does to the board in the last of the substeps, `substep_s` long, of the step that led here.
+    pub fn observe(&self, world: &PhysicsWorld, board: TouchedBoard, substep_s: f64) -> PadSample {
+        let x_wp = border::from_engine_pose(world.bodies[self.finger].position()) * self.x_fp;
+        let p_wp_m = x_wp.translation.vector;
+        let mut wrench_w = Wrench::default();
+        for collider in &self.colliders {
+            let Some(pair) = world.narrow_phase.contact_pair(*collider, board.collider) else { continue };
+            for manifold in pair.solver_manifolds() {
+                wrench_w = wrench_w + impulse_on_board(world, manifold, board.body, &p_wp_m).scaled(1.0 / substep_s);
+            }
+        }
+        PadSample { normal_force_n: wrench_w.force_n.dot(&(x_wp.rotation * Vector3::z())), wrench_w, p_wp_m }
+    }
+}
+
+/// Impulse and its moment about a point that the contacts of a manifold gave the board in the last substep, world axes.
+fn impulse_on_board(world: &PhysicsWorld, manifold: &ContactManifold, board: RigidBodyHandle, about_w: &Vector3<f64>) -> Wrench {
+    let data = &manifold.data;
+    let board_is_first = data.rigid_body1 == Some(board);
+    let com_w = world.bodies[board].center_of_mass();
+    let mut total = Wrench::default();
+    // A point that the solver left out keeps an old impulse, so only the solver's own contacts are read.
+    for contact in &data.solver_contacts {
+        let Some(point) = manifold.points.get((contact.contact_id[0] & !NEW_CONTACT_BIT) as usize) else { continue };
+        let on_first = point.data.warmstart_tangent_world - data.normal * point.data.warmstart_impulse;
+        let (impulse, arm) =
+            if board_is_first { (on_first, point.data.solver_dp1) } else { (-on_first, point.data.solver_dp2) };
+        let p_w = border::from_vector(com_w + arm);
+        total = total + Wrench::from_force(border::from_vector(impulse)).about(&(p_w - about_w));
+    }
+    total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_radius_is_that_of_the_rectangle() {
+        // 14.63 mm for the pad of 40.4 x 36.0 mm (METHOD section 6), given to four digits.
+        assert!((mean_radius_m([0.0202, 0.018]) - 0.01463).abs() < 5e-6);
+    }
+}
