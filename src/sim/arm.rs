@@ -11,7 +11,11 @@ use super::{
     servo::Servo,
 };
 use crate::{
-    model::{GRAVITY_W, plan::ArmHold, trace::ArmSample},
+    model::{
+        GRAVITY_W,
+        plan::{ArmHold, PlacedObject},
+        trace::ArmSample,
+    },
     robot::{Arm, Robot},
 };
 
@@ -32,7 +36,7 @@ pub(super) struct SimArm {
 }
 
 impl SimArm {
-    /// Builds an arm that stands still at `hold.q_rad` with its pads `gap_m` apart.
+    /// Builds an arm that stands still at `hold.q_rad` with its pads on the object's faces.
     ///
     /// # Errors
     /// [`SimError::Massless`] when a part that moves has no mass.
@@ -41,7 +45,7 @@ impl SimArm {
         robot: &Robot,
         arm: &Arm,
         hold: &ArmHold,
-        gap_m: f64,
+        object: &PlacedObject,
         friction: f64,
     ) -> Result<Self, SimError> {
         let merged = ArmBodies::new(robot, arm);
@@ -54,12 +58,13 @@ impl SimArm {
         let PhysicsWorld { bodies, colliders, multibody_joints, .. } = world;
         let handle = fingers[0].joint;
         let (multibody, _) = multibody_joints.get_mut(handle).ok_or(SimError::Engine)?;
-        gripper.close(multibody, hold.grip_force_n);
+        let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
+        gripper.close(multibody, hold.grip_force_n, finger_m, object.mass_kg);
         let mut positions = vec![0.0; chain.links.len()];
         for (joint, q_rad) in arm_joints.iter().zip(&hold.q_rad) {
             positions[joint.dof] = *q_rad;
         }
-        for (finger, position_m) in fingers.iter().zip(gripper.positions_at_gap_m(&arm.gripper, gap_m)) {
+        for (finger, position_m) in fingers.iter().zip(finger_m) {
             positions[finger.dof] = position_m;
         }
         multibody.apply_displacements(&positions);

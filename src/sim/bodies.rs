@@ -31,7 +31,11 @@ pub(super) struct MassSum {
 }
 
 impl MassSum {
-    const NOTHING: Self = Self { mass_kg: 0.0, com_b: Vector3::new(0.0, 0.0, 0.0), inertia_b: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) };
+    const NOTHING: Self = Self {
+        mass_kg: 0.0,
+        com_b: Vector3::new(0.0, 0.0, 0.0),
+        inertia_b: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    };
 
     /// This and a link at `x_bl`, by the parallel axis theorem.
     fn with_link(&self, link: &Link, x_bl: &Pose) -> Self {

@@ -64,10 +64,8 @@ impl Chain {
     /// # Errors
     /// [`SimError::Massless`] when a body has no mass: the engine could not move it.
     pub fn insert(world: &mut PhysicsWorld, robot: &Robot, moving: &[MovingBody]) -> Result<Self, SimError> {
-        let mut chain = Self {
-            root: world.bodies.insert(RigidBodyBuilder::fixed()),
-            links: Vec::with_capacity(moving.len()),
-        };
+        let mut chain =
+            Self { root: world.bodies.insert(RigidBodyBuilder::fixed()), links: Vec::with_capacity(moving.len()) };
         for body in moving {
             let parent = chain.body(body.parent);
             chain.links.push(insert_body(world, robot, body, parent)?);

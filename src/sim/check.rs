@@ -29,7 +29,11 @@ pub(super) struct Holding<'a> {
 pub(super) fn holds<'a>(robot: &'a Robot, plan: &'a Plan, friction: f64) -> Result<Vec<Holding<'a>>, SimError> {
     board(plan)?;
     if !(friction.is_finite() && friction >= 0.0) {
-        return Err(SimError::Settings { key: "friction", found: friction, expected: "a coefficient of at least zero" });
+        return Err(SimError::Settings {
+            key: "friction",
+            found: friction,
+            expected: "a coefficient of at least zero",
+        });
     }
     let mut holds: Vec<Holding> = Vec::with_capacity(plan.arms.len());
     for hold in &plan.arms {

@@ -36,12 +36,7 @@ use crate::{
 ///
 /// # Errors
 /// [`SimError`] when the plan does not fit the robot or itself, or the settings make no sense.
-pub fn simulate(
-    robot: &Robot,
-    plan: &Plan,
-    friction: f64,
-    settings: &SimulationSettings,
-) -> Result<Trace, SimError> {
+pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &SimulationSettings) -> Result<Trace, SimError> {
     let profile = LoadProfile::new(settings)?;
     let mut scene = Scene::new(robot, plan, friction, settings.timestep_s)?;
     let mut trace = empty_trace(robot, plan, profile.steps() + 1);
@@ -87,11 +82,7 @@ fn empty_trace(robot: &Robot, plan: &Plan, samples: usize) -> Trace {
 
 /// A sample of the right shape, with nothing observed yet.
 pub fn blank_sample(plan: &Plan) -> Sample {
-    let pad = PadSample {
-        normal_force_n: 0.0,
-        wrench_w: Wrench::default(),
-        p_wp_m: nalgebra::Vector3::zeros(),
-    };
+    let pad = PadSample { normal_force_n: 0.0, wrench_w: Wrench::default(), p_wp_m: nalgebra::Vector3::zeros() };
     let arms = plan.arms.iter().map(|hold| ArmSample {
         q_rad: hold.q_rad.clone(),
         finger_m: vec![0.0; 2],

@@ -34,12 +34,10 @@ pub(super) struct TouchedBoard {
     pub collider: ColliderHandle,
 }
 
-/// A box that is part of a pad, in P.
-struct PadBox {
-    centre_p: [f64; 2],
-    half_m: [f64; 2],
-    recess_m: f64,
-}
+/// How far the whole face of a pad lies behind the square that carries the load, m: more than the square sinks in (6 um
+/// at a grip of 35 N), so that an evenly pressed pad rests on the square alone, and little enough that a tilting pad
+/// meets the edge of its face after 2 mrad.
+const RECESS_M: f64 = 15e-6;
 
 /// Mean distance of a rectangle's points from its centre, m: `(1/A) integral of r dA` for half sides a and b,
 /// `(d + a^2/(2b) ln((b+d)/a) + b^2/(2a) ln((a+d)/b)) / 3` with `d` the half diagonal (METHOD section 6).
@@ -48,31 +46,14 @@ fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
     (d + a * a / (2.0 * b) * ((b + d) / a).ln() + b * b / (2.0 * a) * ((a + d) / b).ln()) / 3.0
 }
 
-fn boxes(half_m: [f64; 2]) -> Vec<PadBox> {
-    let variant = std::env::var("PAD").unwrap_or("square:15e-6".into());
-    let mut parts = variant.split(':');
-    match parts.next() {
-        Some("box") => vec![PadBox { centre_p: [0.0; 2], half_m, recess_m: 0.0 }],
-        Some("tile") => {
-            let n: [usize; 2] = [parts.next().unwrap().parse().unwrap(), parts.next().unwrap().parse().unwrap()];
-            let h = [half_m[0] / n[0] as f64, half_m[1] / n[1] as f64];
-            (0..n[0] * n[1])
-                .map(|k| {
-                    let (i, j) = (k % n[0], k / n[0]);
-                    let c = [(2 * i + 1) as f64 * h[0] - half_m[0], (2 * j + 1) as f64 * h[1] - half_m[1]];
-                    PadBox { centre_p: c, half_m: h, recess_m: 0.0 }
-                })
-                .collect()
-        }
-        _ => {
-            let recess_m: f64 = parts.next().unwrap().parse().unwrap();
-            let h = mean_radius_m(half_m) / 2.0f64.sqrt();
-            vec![
-                PadBox { centre_p: [0.0; 2], half_m: [h, h], recess_m: 0.0 },
-                PadBox { centre_p: [0.0; 2], half_m, recess_m },
-            ]
-        }
-    }
+/// A pad as boxes: half sides along x_P and y_P, and how far the box lies behind the face, m.
+///
+/// The engine holds two flat boxes together in four corners. Corners of the whole face would turn too hard; those of a
+/// square at the face's mean radius turn exactly as hard as an evenly pressed face. The whole face, a little recessed,
+/// comes to bear where the pad tilts.
+fn boxes(half_m: [f64; 2]) -> [([f64; 2], f64); 2] {
+    let square_m = mean_radius_m(half_m) * std::f64::consts::FRAC_1_SQRT_2;
+    [([square_m; 2], 0.0), (half_m, RECESS_M)]
 }
 
 /// A pad of the scene.
@@ -80,7 +61,8 @@ pub(super) struct SimPad {
     finger: RigidBodyHandle,
     /// P in the finger's body: x_P along x_G, z_P into the board, at the centre of the face.
     x_fp: Pose,
-    colliders: Vec<ColliderHandle>,
+    /// The square, then the whole face.
+    colliders: [ColliderHandle; 2],
 }
 
 impl SimPad {
@@ -101,19 +83,15 @@ impl SimPad {
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
         );
         let x_fp = x_gf.inverse() * x_gp;
-        let colliders = boxes(pad.size_m.map(|side| side / 2.0))
-            .into_iter()
-            .map(|part| {
-                let [x, y] = part.centre_p;
-                let x_pc = Isometry3::translation(x, y, -part.recess_m - DEPTH_M / 2.0);
-                let collider = ColliderBuilder::cuboid(part.half_m[0], part.half_m[1], DEPTH_M / 2.0)
-                    .density(0.0)
-                    .friction(friction)
-                    .position(border::engine_pose(&(x_fp * x_pc)))
-                    .collision_groups(pad_groups());
-                world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
-            })
-            .collect();
+        let colliders = boxes(pad.size_m.map(|side| side / 2.0)).map(|([x, y], recess_m)| {
+            let x_pc = Isometry3::translation(0.0, 0.0, -recess_m - DEPTH_M / 2.0);
+            let collider = ColliderBuilder::cuboid(x, y, DEPTH_M / 2.0)
+                .density(0.0)
+                .friction(friction)
+                .position(border::engine_pose(&(x_fp * x_pc)))
+                .collision_groups(pad_groups());
+            world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
+        });
         Self { finger, x_fp, colliders }
     }
 
@@ -133,7 +111,12 @@ impl SimPad {
 }
 
 /// Impulse and its moment about a point that the contacts of a manifold gave the board in the last substep, world axes.
-fn impulse_on_board(world: &PhysicsWorld, manifold: &ContactManifold, board: RigidBodyHandle, about_w: &Vector3<f64>) -> Wrench {
+fn impulse_on_board(
+    world: &PhysicsWorld,
+    manifold: &ContactManifold,
+    board: RigidBodyHandle,
+    about_w: &Vector3<f64>,
+) -> Wrench {
     let data = &manifold.data;
     let board_is_first = data.rigid_body1 == Some(board);
     let com_w = world.bodies[board].center_of_mass();

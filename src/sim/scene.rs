@@ -32,10 +32,9 @@ const CONTACT_FREQUENCY_HZ: f64 = 1000.0;
 /// Damping of the contacts, as a multiple of the critical one.
 const CONTACT_DAMPING_RATIO: f64 = 10.0;
 
-/// Speeds that no servo, hand or falling board reaches within seconds, rad/s and m/s: beyond them the engine has lost
-/// the state.
+/// A joint speed that no servo reaches, rad/s: beyond it the engine has lost the state. (A board that was dropped may
+/// well reach any speed under a steady load.)
 const LOST_RAD_S: f64 = 100.0;
-const LOST_M_S: f64 = 100.0;
 
 /// A board held by arms, stepped by hand. `sim::simulate` runs one through a plan's load; tests load it as they like.
 pub struct Scene {
@@ -60,7 +59,7 @@ impl Scene {
         let board = insert_board(&mut world, &plan.object, friction);
         let mut arms = Vec::with_capacity(holds.len());
         for hold in holds {
-            let arm = SimArm::new(&mut world, robot, hold.arm, hold.hold, plan.object.size_m[2], friction)?;
+            let arm = SimArm::new(&mut world, robot, hold.arm, hold.hold, &plan.object, friction)?;
             check::hand_is_where_planned(hold.hold, &plan.object.x_wo, &arm.gripper.x_wg(&world))?;
             arms.push(arm);
         }
@@ -116,10 +115,9 @@ impl Scene {
         if !self.world.quarantine().is_empty() {
             return Some("the state is no longer finite");
         }
-        let board_m_s = self.world.bodies[self.board.body].linvel().length();
         let joint_rad_s = self.arms.iter().map(|arm| arm.fastest_joint_rad_s(&self.world)).fold(0.0, f64::max);
         // Written so that a speed that is not a number counts as lost.
-        if board_m_s <= LOST_M_S && joint_rad_s <= LOST_RAD_S { None } else { Some("speeds have blown up") }
+        if joint_rad_s <= LOST_RAD_S { None } else { Some("the joint speeds have blown up") }
     }
 }
 
@@ -139,7 +137,9 @@ fn new_world(timestep_s: f64) -> PhysicsWorld {
             contact_recycling: false,
             // Clustering would merge the boxes of a pad into one with four corners.
             contact_clustering: false,
-            friction_in_bias_pass: false,
+            // Without it every change of load slides the hands a little: 3 mrad and 0.16 mm short of the limit, against
+            // 0.1 mrad and 0.001 mm.
+            friction_in_bias_pass: true,
             normalized_prediction_distance: 0.002,
             ..IntegrationParameters::default()
         },
