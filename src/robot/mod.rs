@@ -4,6 +4,14 @@
 //! description (arms, grippers, pads, stiffness, allowed collisions, body points). This module knows nothing of boards,
 //! persons or plans.
 
+mod assemble;
+pub mod chain;
+mod description;
 pub mod tree;
+mod urdf;
 
-pub use tree::{Arm, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Pad, PlacedShape, Robot, RobotError, Shape};
+pub use chain::Chain;
+pub use description::BUILTIN;
+pub use tree::{
+    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Pad, PlacedShape, Robot, RobotError, Shape,
+};

@@ -1,6 +1,6 @@
 //! What a robot is made of, as plain data.
 
-use nalgebra::{Matrix3, Point3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use crate::model::frames::Pose;
 
@@ -105,6 +105,19 @@ pub struct Joint {
     pub upper: f64,
 }
 
+impl Shape {
+    /// How far the shape reaches from its centre along a unit direction of its own axes, m.
+    pub fn half_extent_m(&self, direction_s: &Vector3<f64>) -> f64 {
+        match *self {
+            Self::Box { half_m } => Vector3::from(half_m).dot(&direction_s.abs()),
+            Self::Cylinder { radius_m, half_length_m } => {
+                radius_m * direction_s.xy().norm() + half_length_m * direction_s.z.abs()
+            }
+            Self::Sphere { radius_m } => radius_m,
+        }
+    }
+}
+
 /// A serial chain from the root to a gripper.
 #[derive(Clone, Debug)]
 pub struct Arm {
@@ -142,8 +155,21 @@ pub struct Gripper {
 pub struct Finger {
     /// The prismatic joint that moves it, an index into [`Robot::joints`].
     pub joint: usize,
+    /// The joint's position at travel 0, where the finger is closed as far as it goes: one of the joint's limits, m.
+    pub closed_m: f64,
+    /// 1 when the joint's position grows as the finger opens, else -1.
+    pub opening_sign: f64,
+    /// The largest travel, m.
+    pub max_travel_m: f64,
     /// Its pad.
     pub pad: Pad,
+}
+
+impl Finger {
+    /// The joint's position at this travel from the closed limit, m; travels beyond the limits are clamped.
+    pub fn joint_position_m(&self, travel_m: f64) -> f64 {
+        self.closed_m + self.opening_sign * travel_m.clamp(0.0, self.max_travel_m)
+    }
 }
 
 /// The flat face of a finger that touches the board, a rectangle normal to y_G.
@@ -189,6 +215,84 @@ pub struct BodyPoint {
     pub link: usize,
     /// Position in the link's frame, m.
     pub p_l: Point3<f64>,
+}
+
+/// The state of one arm, for [`Robot::positions`].
+#[derive(Clone, Copy, Debug)]
+pub struct ArmState<'a> {
+    /// Index into [`Robot::arms`].
+    pub arm: usize,
+    /// Joint angles in the order of [`Arm::joints`], rad.
+    pub q_rad: &'a [f64],
+    /// Travel of each finger from its closed limit, in the order of [`Gripper::fingers`], m.
+    pub finger_travel_m: [f64; 2],
+}
+
+impl Robot {
+    /// The index of the arm of this name.
+    pub fn arm_index(&self, name: &str) -> Option<usize> {
+        self.arms.iter().position(|arm| arm.name == name)
+    }
+
+    /// The index of the link of this name.
+    pub fn link_index(&self, name: &str) -> Option<usize> {
+        self.links.iter().position(|link| link.name == name)
+    }
+
+    /// The positions of all joints, in the order of [`Robot::joints`], rad or m. Joints of no given arm are at 0, or at
+    /// their limit next to 0. Angles of the arms are taken as they are, also beyond the limits.
+    pub fn positions(&self, arms: &[ArmState]) -> Vec<f64> {
+        let mut positions: Vec<f64> = self.joints.iter().map(|joint| 0.0_f64.clamp(joint.lower, joint.upper)).collect();
+        for state in arms {
+            let arm = &self.arms[state.arm];
+            for (&joint, &q_rad) in arm.joints.iter().zip(state.q_rad) {
+                positions[joint] = q_rad;
+            }
+            for (finger, travel_m) in arm.gripper.fingers.iter().zip(state.finger_travel_m) {
+                positions[finger.joint] = finger.joint_position_m(travel_m);
+            }
+        }
+        positions
+    }
+
+    /// The poses in W of all links, in the order of [`Robot::links`]. `positions` has one entry a joint, rad or m; those
+    /// of fixed joints are ignored.
+    pub fn link_poses(&self, positions: &[f64]) -> Vec<Pose> {
+        let mut x_wl: Vec<Pose> = Vec::with_capacity(self.links.len());
+        for link in &self.links {
+            x_wl.push(match link.parent_joint {
+                None => Pose::identity(),
+                Some(joint) => {
+                    let joint_of_link = &self.joints[joint];
+                    x_wl[joint_of_link.parent_link] * joint_of_link.x_pc(positions[joint])
+                }
+            });
+        }
+        x_wl
+    }
+
+    /// For each link the moving joint that carries it, at once or through fixed joints; none for what stands still.
+    pub fn carriers(&self) -> Vec<Option<usize>> {
+        let mut carriers: Vec<Option<usize>> = Vec::with_capacity(self.links.len());
+        for link in &self.links {
+            carriers.push(link.parent_joint.and_then(|joint| match self.joints[joint].kind {
+                JointKind::Fixed => carriers[self.joints[joint].parent_link],
+                JointKind::Revolute | JointKind::Prismatic => Some(joint),
+            }));
+        }
+        carriers
+    }
+}
+
+impl Joint {
+    /// The child link's pose in the parent link at this position, rad or m.
+    pub fn x_pc(&self, position: f64) -> Pose {
+        match self.kind {
+            JointKind::Fixed => self.x_pj,
+            JointKind::Revolute => self.x_pj * UnitQuaternion::from_axis_angle(&self.axis_j, position),
+            JointKind::Prismatic => self.x_pj * Translation3::from(self.axis_j.into_inner() * position),
+        }
+    }
 }
 
 /// Why a robot could not be loaded.

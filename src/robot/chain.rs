@@ -1,0 +1,232 @@
+//! One arm as a serial chain: what is fixed together is merged, so that kinematics and statics cost little.
+//!
+//! The chain carries its gripper and fingers as rigid parts of its last link. It knows nothing of grasps, loads or
+//! collisions.
+
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Unit, UnitQuaternion, Vector3};
+
+use super::tree::{ArmState, Robot};
+use crate::model::{GRAVITY_W, frames::Pose};
+
+/// An arm's moving joints, the fixed transforms between them, and the merged inertia of what each carries.
+#[derive(Clone, Debug)]
+pub struct Chain {
+    joints: Vec<ChainJoint>,
+    /// Pose of the gripper's frame G in the frame of the last joint.
+    x_lg: Pose,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    effort_nm: Vec<f64>,
+}
+
+/// A revolute joint and the rigid segment that it carries.
+#[derive(Clone, Debug)]
+struct ChainJoint {
+    /// Pose of the joint's frame in the frame of the joint before it, in W for the first.
+    x_pj: Pose,
+    axis_j: Unit<Vector3<f64>>,
+    segment: Segment,
+}
+
+/// Rigidly joined links, in the frame of the joint that carries them.
+#[derive(Clone, Debug)]
+struct Segment {
+    mass_kg: f64,
+    com_j: Vector3<f64>,
+    /// About the centre of mass, kg m^2.
+    inertia_j: Matrix3<f64>,
+}
+
+impl Chain {
+    /// The chain of an arm (an index into [`Robot::arms`]) with both fingers at this travel from their closed limits.
+    /// Everything else that moves stands at 0, or at the limit next to it.
+    pub fn new(robot: &Robot, arm_index: usize, finger_travel_m: f64) -> Self {
+        let arm = &robot.arms[arm_index];
+        let q_rad = vec![0.0; arm.joints.len()];
+        let state = ArmState { arm: arm_index, q_rad: &q_rad, finger_travel_m: [finger_travel_m; 2] };
+        // At zero angles the frame of a joint is that of its child link.
+        let x_wl = robot.link_poses(&robot.positions(&[state]));
+        let x_wj: Vec<Pose> = arm.joints.iter().map(|&joint| x_wl[robot.joints[joint].child_link]).collect();
+        let carrier = carriers_within(robot, &arm.joints);
+        let joints = (0..arm.joints.len()).map(|number| {
+            let carried = (0..robot.links.len()).filter(|&link| carrier[link] == Some(number));
+            ChainJoint {
+                x_pj: if number == 0 { x_wj[0] } else { x_wj[number - 1].inverse() * x_wj[number] },
+                axis_j: robot.joints[arm.joints[number]].axis_j,
+                segment: merge(robot, carried, &x_wj[number], &x_wl),
+            }
+        });
+        let limit = |of: fn(&super::tree::Joint) -> f64| arm.joints.iter().map(|&j| of(&robot.joints[j])).collect();
+        Self {
+            joints: joints.collect(),
+            x_lg: x_wj[x_wj.len() - 1].inverse() * x_wl[arm.gripper.frame_link],
+            lower: limit(|joint| joint.lower),
+            upper: limit(|joint| joint.upper),
+            effort_nm: arm.effort_nm.clone(),
+        }
+    }
+
+    /// The number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Smallest angle of each joint, rad.
+    pub fn lower(&self) -> &[f64] {
+        &self.lower
+    }
+
+    /// Largest angle of each joint, rad.
+    pub fn upper(&self) -> &[f64] {
+        &self.upper
+    }
+
+    /// Largest torque of each joint, N m.
+    pub fn effort_nm(&self) -> &[f64] {
+        &self.effort_nm
+    }
+
+    /// True when every angle is within its limits, give or take `tolerance_rad`.
+    pub fn within_limits(&self, q_rad: &[f64], tolerance_rad: f64) -> bool {
+        let limits = self.lower.iter().zip(&self.upper);
+        q_rad.iter().zip(limits).all(|(q, (lo, hi))| *q >= lo - tolerance_rad && *q <= hi + tolerance_rad)
+    }
+
+    /// The pose of the gripper's frame, X_WG.
+    pub fn gripper_pose(&self, q_rad: &[f64]) -> Pose {
+        let mut x_wj = Pose::identity();
+        for (joint, &angle) in self.joints.iter().zip(q_rad) {
+            x_wj = x_wj * joint.x_pj * UnitQuaternion::from_axis_angle(&joint.axis_j, angle);
+        }
+        x_wj * self.x_lg
+    }
+
+    /// The pose in W of each joint's frame, turned with the joint: the frame of the link that it carries.
+    pub fn joint_frames(&self, q_rad: &[f64]) -> Vec<Pose> {
+        let mut x_wj = Pose::identity();
+        let turn = |(joint, &angle): (&ChainJoint, &f64)| {
+            x_wj = x_wj * joint.x_pj * UnitQuaternion::from_axis_angle(&joint.axis_j, angle);
+            x_wj
+        };
+        self.joints.iter().zip(q_rad).map(turn).collect()
+    }
+
+    /// The Jacobian of G, 6 x dof: rows 0 to 2 the velocity of G's origin (m/s), rows 3 to 5 the angular velocity
+    /// (rad/s), both in W axes, for joint rates in rad/s.
+    pub fn jacobian_w(&self, q_rad: &[f64]) -> Matrix6xX<f64> {
+        let frames = self.joint_frames(q_rad);
+        self.jacobian_from_frames(&frames)
+    }
+
+    /// The Jacobian of G, see [`Chain::jacobian_w`], when the frames are at hand.
+    pub fn jacobian_from_frames(&self, frames: &[Pose]) -> Matrix6xX<f64> {
+        let p_wg = self.gripper_from_frames(frames).translation.vector;
+        let mut jacobian = Matrix6xX::zeros(self.dof());
+        for (number, (joint, x_wj)) in self.joints.iter().zip(frames).enumerate() {
+            let axis_w = x_wj.rotation * joint.axis_j.into_inner();
+            let linear = axis_w.cross(&(p_wg - x_wj.translation.vector));
+            let mut column = jacobian.column_mut(number);
+            column.fixed_rows_mut::<3>(0).copy_from(&linear);
+            column.fixed_rows_mut::<3>(3).copy_from(&axis_w);
+        }
+        jacobian
+    }
+
+    /// X_WG from the frames of all joints.
+    pub fn gripper_from_frames(&self, frames: &[Pose]) -> Pose {
+        frames.last().map_or(self.x_lg, |x_wl| x_wl * self.x_lg)
+    }
+
+    /// The axis of each joint in W, for the frames of all joints.
+    pub fn axes_w(&self, frames: &[Pose]) -> Vec<Vector3<f64>> {
+        self.joints.iter().zip(frames).map(|(joint, x_wj)| x_wj.rotation * joint.axis_j.into_inner()).collect()
+    }
+
+    /// The torque that the motors must supply to hold the arm still against gravity, N m: the gradient of the potential
+    /// energy, `tau_i = -z_i . sum_{k >= i} (c_k - p_i) x m_k g`.
+    pub fn gravity_torque_nm(&self, q_rad: &[f64]) -> DVector<f64> {
+        let frames = self.joint_frames(q_rad);
+        let mut torque = DVector::zeros(self.dof());
+        let mut mass_kg = 0.0;
+        let mut moment_kg_m = Vector3::zeros();
+        for (number, (joint, x_wj)) in self.joints.iter().zip(&frames).enumerate().rev() {
+            let segment = &joint.segment;
+            mass_kg += segment.mass_kg;
+            moment_kg_m += (x_wj.rotation * segment.com_j + x_wj.translation.vector) * segment.mass_kg;
+            let lever_kg_m = moment_kg_m - x_wj.translation.vector * mass_kg;
+            let axis_w = x_wj.rotation * joint.axis_j.into_inner();
+            torque[number] = -axis_w.dot(&lever_kg_m.cross(&GRAVITY_W));
+        }
+        torque
+    }
+
+    /// The joint-space inertia, dof x dof, kg m^2: `sum_k m_k Jv_k' Jv_k + Jw_k' I_k Jw_k`, without motor inertia.
+    pub fn mass_matrix(&self, q_rad: &[f64]) -> DMatrix<f64> {
+        let frames = self.joint_frames(q_rad);
+        let axes_w = self.axes_w(&frames);
+        let mut mass = DMatrix::zeros(self.dof(), self.dof());
+        for (number, (joint, x_wj)) in self.joints.iter().zip(&frames).enumerate() {
+            let segment = &joint.segment;
+            let com_w = x_wj.rotation * segment.com_j + x_wj.translation.vector;
+            let rotation = x_wj.rotation.to_rotation_matrix();
+            let inertia_w = rotation.matrix() * segment.inertia_j * rotation.matrix().transpose();
+            let velocity = |joint: usize| axes_w[joint].cross(&(com_w - frames[joint].translation.vector));
+            for row in 0..=number {
+                for column in 0..=number {
+                    mass[(row, column)] += segment.mass_kg * velocity(row).dot(&velocity(column))
+                        + axes_w[row].dot(&(inertia_w * axes_w[column]));
+                }
+            }
+        }
+        mass
+    }
+
+    /// The centre of mass of everything that the chain carries, weighted: `(sum m, sum m c)` in kg and kg m, W.
+    pub fn mass_and_moment_w(&self, q_rad: &[f64]) -> (f64, Vector3<f64>) {
+        let frames = self.joint_frames(q_rad);
+        self.joints.iter().zip(&frames).fold((0.0, Vector3::zeros()), |(mass, moment), (joint, x_wj)| {
+            let com_w = x_wj.rotation * joint.segment.com_j + x_wj.translation.vector;
+            (mass + joint.segment.mass_kg, moment + com_w * joint.segment.mass_kg)
+        })
+    }
+
+    /// The origin of the first joint in W, m: it never moves.
+    pub fn shoulder_w(&self) -> Vector3<f64> {
+        self.joints[0].x_pj.translation.vector
+    }
+
+    /// An upper bound of the distance between [`Chain::shoulder_w`] and G's origin, m: the sum of all offsets.
+    pub fn reach_m(&self) -> f64 {
+        let offsets = self.joints.iter().skip(1).map(|joint| joint.x_pj.translation.vector.norm());
+        offsets.sum::<f64>() + self.x_lg.translation.vector.norm()
+    }
+}
+
+/// For each link the last of these joints on the way from the root, as a place in `joints`; none outside the chain.
+fn carriers_within(robot: &Robot, joints: &[usize]) -> Vec<Option<usize>> {
+    let mut carriers: Vec<Option<usize>> = Vec::with_capacity(robot.links.len());
+    for link in &robot.links {
+        carriers.push(link.parent_joint.and_then(|joint| {
+            joints.iter().position(|&own| own == joint).or_else(|| carriers[robot.joints[joint].parent_link])
+        }));
+    }
+    carriers
+}
+
+/// The links as one rigid body in the frame `x_wj`.
+fn merge(robot: &Robot, links: impl Iterator<Item = usize> + Clone, x_wj: &Pose, x_wl: &[Pose]) -> Segment {
+    let placed: Vec<_> = links.map(|link| (&robot.links[link], x_wj.inverse() * x_wl[link])).collect();
+    let mass_kg: f64 = placed.iter().map(|(link, _)| link.mass_kg).sum();
+    let com_of = |link: &super::tree::Link, x_jl: &Pose| x_jl.rotation * link.com_l + x_jl.translation.vector;
+    let moment: Vector3<f64> = placed.iter().map(|(link, x_jl)| com_of(link, x_jl) * link.mass_kg).sum();
+    // A segment without mass may have its centre anywhere.
+    let com_j = if mass_kg > 0.0 { moment / mass_kg } else { Vector3::zeros() };
+    let mut inertia_j = Matrix3::zeros();
+    for (link, x_jl) in &placed {
+        let rotation = x_jl.rotation.to_rotation_matrix();
+        let offset = com_of(link, x_jl) - com_j;
+        let steiner = Matrix3::from_diagonal_element(offset.norm_squared()) - offset * offset.transpose();
+        inertia_j += rotation.matrix() * link.inertia_l * rotation.matrix().transpose() + steiner * link.mass_kg;
+    }
+    Segment { mass_kg, com_j, inertia_j }
+}

@@ -1,0 +1,123 @@
+//! Robots that are not built in, and descriptions that must be refused with a message that helps.
+
+use std::path::Path;
+
+use benchdog::robot::{Chain, Robot, RobotError};
+
+const DESCRIPTION: &str = include_str!("../assets/baxter.toml");
+const URDF: &str = include_str!("../assets/baxter.urdf");
+
+fn load(description: &str, urdf: &str) -> Result<Robot, RobotError> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("robot.toml"), description).unwrap();
+    std::fs::write(folder.path().join("baxter.urdf"), urdf).unwrap();
+    Robot::load("robot.toml", folder.path())
+}
+
+/// The message for a description or URDF in which one text was replaced.
+fn message(in_urdf: bool, from: &str, to: &str) -> String {
+    let source = if in_urdf { URDF } else { DESCRIPTION };
+    assert!(source.contains(from), "{from}");
+    let changed = source.replacen(from, to, 1);
+    let result = if in_urdf { load(DESCRIPTION, &changed) } else { load(&changed, URDF) };
+    result.expect_err(to).to_string()
+}
+
+/// The line of the first appearance of a text.
+fn line_of(text: &str) -> String {
+    let before = &DESCRIPTION[..DESCRIPTION.find(text).unwrap()];
+    format!("robot.toml: line {}: ", before.lines().count() + usize::from(before.ends_with('\n')))
+}
+
+#[test]
+fn a_file_is_as_good_as_the_built_in_one() {
+    let (built_in, file) = (Robot::load("baxter", Path::new(".")).unwrap(), load(DESCRIPTION, URDF).unwrap());
+    let q_rad = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6, -0.7];
+    assert_eq!(Chain::new(&built_in, 1, 0.01).gripper_pose(&q_rad), Chain::new(&file, 1, 0.01).gripper_pose(&q_rad));
+    assert_eq!(built_in.allowed_collisions, file.allowed_collisions);
+}
+
+#[test]
+fn unknown_robots_and_missing_files_are_told_apart() {
+    let unknown = Robot::load("no_such_robot", Path::new(".")).unwrap_err();
+    assert_eq!(
+        unknown.to_string(),
+        "found robot \"no_such_robot\", expected a built-in robot (baxter) or the path of a description file"
+    );
+    let missing = Robot::load("missing.toml", Path::new("/nowhere")).unwrap_err();
+    assert!(missing.to_string().starts_with("failed to read /nowhere/missing.toml: "), "{missing}");
+}
+
+#[test]
+fn messages_about_descriptions_name_line_key_found_and_expected() {
+    let cases = [
+        ("format = 1", "format = 2", "format: found 2, expected 1"),
+        ("floor_z_m = -0.9242", "floor_z_m = nan", "floor_z_m: found NaN, expected a finite height in m"),
+        ("\"torso\", \"head\"", "\"torso\", \"hat\"", "allowed_collisions: found \"hat\", expected the name of a link"),
+        ("\"torso\", \"head\"", "\"torso\", \"torso\"", "allowed_collisions: found torso twice, expected two links"),
+        ("link = \"head\", p_m", "link = \"hat\", p_m", "body_points: found \"hat\", expected the name of a link"),
+        ("effort_nm = [50.0, ", "effort_nm = [", "effort_nm: found 6 numbers, expected 7, one a joint"),
+        ("effort_nm = [50.0", "effort_nm = [-50.0", "effort_nm: found -50, expected finite numbers above 0"),
+        ("stiffness_nm_rad = [843.0", "stiffness_nm_rad = [inf", "stiffness_nm_rad: found inf, expected finite"),
+        ("joints = [\"left_s0\", ", "joints = [", "joints: found left_s1 left_e0"),
+        (
+            "joints = [\"left_s0\"",
+            "joints = [\"torso_t0\"",
+            "joints: found \"torso_t0\", expected the name of a revolute",
+        ),
+        ("base_link = \"left_arm_mount\"", "base_link = \"right_arm_mount\"", "base_link: found right_arm_mount"),
+        (
+            "palm_link = \"left_gripper_base_link\"",
+            "palm_link = \"torso\"",
+            "palm_link: found torso, expected a link fixed",
+        ),
+        ("opening_m = [0.0, 0.038]", "opening_m = [0.0, 0.05]", "opening_m: found 0 to 0.05, expected two gaps within"),
+        ("max_force_n = 35.0", "max_force_n = 0.0", "max_force_n: found 0, expected finite numbers above 0"),
+        (
+            "pad_link = \"l_gripper_l_finger_tip\"",
+            "pad_link = \"l_gripper_r_finger_tip\"",
+            "pad_link: found l_gripper_r",
+        ),
+        ("name = \"right\"", "name = \"left\"", "name: found left, expected a name that no other arm has"),
+        ("max_force_n = 35.0", "force_n = 35.0", "unknown field `force_n`, expected one of"),
+    ];
+    for (from, to, expected) in cases {
+        let message = message(false, from, to);
+        assert!(message.contains(expected), "{message}");
+        assert!(message.contains(&line_of(from)), "{message}, expected {}", line_of(from));
+    }
+}
+
+#[test]
+fn messages_about_urdfs_name_the_link_or_joint() {
+    let cases = [
+        ("<mass value=\"35.3365\"/>", "<mass value=\"-1\"/>", "link torso: found a mass of -1 kg"),
+        (
+            "<collision name=\"neck\"><origin xyz=\"-0.0911 0 0.6696\"/><geometry><box size=\"0.1471 0.08 0.068\"/>",
+            "<collision name=\"neck\"><geometry><mesh filename=\"neck.stl\"/>",
+            "link torso: found the mesh neck.stl as collision geometry, expected a box, a cylinder or a sphere",
+        ),
+        ("lower=\"-2.147\"", "lower=\"2.147\"", "joint left_s1: found limits 2.147 to 1.047"),
+        ("<parent link=\"torso\"/>", "<parent link=\"trunk\"/>", "joint pedestal_fixed: found link \"trunk\""),
+        ("<child link=\"pedestal\"/>", "<child link=\"torso\"/>", "link torso: found two joints that carry it"),
+        ("<link name=\"display\"/>", "<link name=\"screen\"/>", "link screen: found this name twice"),
+        (
+            "name=\"head_pan\" type=\"revolute\"",
+            "name=\"head_pan\" type=\"planar\"",
+            "joint head_pan: found type Planar",
+        ),
+        ("</robot>", "", "found malformed urdf"),
+    ];
+    for (from, to, expected) in cases {
+        let message = message(true, from, to);
+        assert!(message.contains(&format!("baxter.urdf: {expected}")), "{message}");
+    }
+}
+
+#[test]
+fn fingers_must_close_along_the_grippers_y() {
+    let message = message(true, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"1 0 0\"/>");
+    let expected =
+        "found l_gripper_l_finger_joint along (1.0000, 0.0000, 0.0000) of the frame_link, expected an axis along";
+    assert!(message.contains(expected), "{message}");
+}
