@@ -1,22 +1,21 @@
 //! One arm of the scene: a servo in every joint, a gripper at the end.
 
-use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld};
+use rapier3d_f64::prelude::{MultibodyJointHandle, PhysicsWorld};
 
 use super::{
     SimError,
     bodies::ArmBodies,
-    border,
-    chain::{Chain, ChainLink},
+    body_chain::{BodyChain, ChainLink},
     gripper::SimGripper,
+    pad::PadContact,
     servo::Servo,
 };
 use crate::{
     model::{
-        GRAVITY_W,
         plan::{ArmHold, PlacedObject},
         trace::ArmSample,
     },
-    robot::{Arm, Robot},
+    robot::{Arm, Chain, Robot},
 };
 
 /// A servo, where it acts, and where its spring rests in this step.
@@ -43,17 +42,19 @@ impl SimArm {
     pub fn new(
         world: &mut PhysicsWorld,
         robot: &Robot,
-        arm: &Arm,
+        arm_index: usize,
         hold: &ArmHold,
         object: &PlacedObject,
         friction: f64,
     ) -> Result<Self, SimError> {
+        let arm = &robot.arms[arm_index];
         let merged = ArmBodies::new(robot, arm);
-        let chain = Chain::insert(world, robot, &merged.bodies)?;
+        let chain = BodyChain::insert(world, robot, &merged.bodies)?;
         let place = |joint: usize| chain.links[merged.of_joint[joint]];
         let arm_joints: Vec<_> = (0..arm.joints.len()).map(place).collect();
         let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
-        let gripper = SimGripper::new(world, robot, arm, &merged, &chain, friction);
+        let contact = PadContact::new(world, friction, hold.grip_force_n, object.mass_kg);
+        let gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
 
         let PhysicsWorld { bodies, colliders, multibody_joints, .. } = world;
         let handle = fingers[0].joint;
@@ -71,7 +72,7 @@ impl SimArm {
         multibody.forward_kinematics(bodies, false);
         multibody.update_rigid_bodies(bodies, true);
         bodies.propagate_modified_body_positions_to_colliders(colliders);
-        let weight_nm = torque_against_gravity(multibody, &chain, &merged);
+        let weight_nm = weight_torque_nm(robot, arm_index, &hold.q_rad, object.size_m[2]);
         let joints = driven_joints(arm, hold, &arm_joints, &weight_nm);
         for DrivenJoint { place, servo, .. } in &joints {
             multibody.damping_mut()[place.dof] = servo.damping_nm_s_rad;
@@ -118,7 +119,7 @@ fn driven_joints(arm: &Arm, hold: &ArmHold, places: &[ChainLink], weight_nm: &[f
         .map(|(k, &place)| {
             let servo = Servo {
                 wanted_rad: hold.q_rad[k],
-                feed_forward_nm: weight_nm[place.dof],
+                feed_forward_nm: weight_nm[k],
                 stiffness_nm_rad: arm.stiffness_nm_rad[k],
                 damping_nm_s_rad: arm.damping_nm_s_rad[k],
                 effort_nm: arm.effort_nm[k],
@@ -128,15 +129,11 @@ fn driven_joints(arm: &Arm, hold: &ArmHold, places: &[ChainLink], weight_nm: &[f
         .collect()
 }
 
-/// The joint torques that hold the arm's own weight, in the multibody's order: `-sum J_v' m g`.
-fn torque_against_gravity(multibody: &Multibody, chain: &Chain, merged: &ArmBodies) -> Vec<f64> {
-    let mut torque_nm = vec![0.0; multibody.ndofs()];
-    for (place, body) in chain.links.iter().zip(&merged.bodies) {
-        let jacobian = multibody.body_jacobian(place.link);
-        let weight_n = border::vector(&(GRAVITY_W * body.mass.mass_kg));
-        for (dof, torque_nm) in torque_nm.iter_mut().enumerate() {
-            *torque_nm -= (0..3).map(|row| jacobian[(row, dof)] * weight_n[row]).sum::<f64>();
-        }
+/// The joint torques with which the robot's model holds the arm's own weight, N m.
+fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
+    if q_rad.is_empty() {
+        return Vec::new();
     }
-    torque_nm
+    let travel_m = robot.arms[arm_index].gripper.travel_for_gap_m(0, gap_m);
+    Chain::new(robot, arm_index, travel_m).gravity_torque_nm(q_rad).as_slice().to_vec()
 }

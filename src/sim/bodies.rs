@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use crate::{
     model::frames::Pose,
-    robot::{Arm, Joint, Link, Robot},
+    robot::{Arm, Link, Robot},
 };
 
 /// A link that moves with one joint of the arm or gripper, and all links fixed to it.
@@ -80,10 +80,12 @@ pub(super) struct ArmBodies {
 }
 
 impl ArmBodies {
-    /// Merges the robot's links into the bodies that this arm moves. Joints of no part of the arm stay at zero.
+    /// Merges the robot's links into the bodies that this arm moves. Joints that are no part of the arm stay at zero, or
+    /// at the limit next to it.
     pub fn new(robot: &Robot, arm: &Arm) -> Self {
         let moving: Vec<usize> =
             arm.joints.iter().copied().chain(arm.gripper.fingers.iter().map(|finger| finger.joint)).collect();
+        let at_rest = robot.positions(&[]);
         let mut bodies: Vec<MovingBody> = Vec::new();
         let mut of_joint = vec![0; moving.len()];
         let mut seats: Vec<Seat> = Vec::with_capacity(robot.links.len());
@@ -91,11 +93,11 @@ impl ArmBodies {
             let seat = match link.parent_joint {
                 None => Seat { body: None, x_bl: Isometry3::identity() },
                 Some(joint) => {
-                    let Joint { parent_link, x_pj, .. } = &robot.joints[joint];
-                    let parent = seats[*parent_link];
-                    let x_bj = parent.x_bl * x_pj;
+                    let hinge = &robot.joints[joint];
+                    let parent = seats[hinge.parent_link];
+                    let x_bj = parent.x_bl * hinge.x_pj;
                     match moving.iter().position(|&m| m == joint) {
-                        None => Seat { body: parent.body, x_bl: x_bj },
+                        None => Seat { body: parent.body, x_bl: parent.x_bl * hinge.x_pc(at_rest[joint]) },
                         Some(place) => {
                             of_joint[place] = bodies.len();
                             bodies.push(MovingBody { joint, parent: parent.body, x_pj: x_bj, mass: MassSum::NOTHING });

@@ -8,7 +8,7 @@ use crate::{
         frames::Pose,
         plan::{ArmHold, Plan},
     },
-    robot::{Arm, Robot},
+    robot::Robot,
 };
 
 /// How far a hand may be from where the plan says, m: a thousandth of an arm, a tenth of what a slip is judged by.
@@ -19,8 +19,8 @@ const HAND_TOLERANCE_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
 /// An arm that holds, and how.
 pub(super) struct Holding<'a> {
-    /// The robot's arm.
-    pub arm: &'a Arm,
+    /// An index into [`Robot::arms`].
+    pub arm_index: usize,
     /// Its part of the plan.
     pub hold: &'a ArmHold,
 }
@@ -58,10 +58,11 @@ fn board(plan: &Plan) -> Result<(), SimError> {
 
 /// One arm's part of the plan against the robot.
 fn holding<'a>(robot: &'a Robot, plan: &Plan, hold: &'a ArmHold) -> Result<Holding<'a>, SimError> {
-    let arm = robot.arms.iter().find(|arm| arm.name == hold.name).ok_or_else(|| SimError::UnknownArm {
+    let arm_index = robot.arm_index(&hold.name).ok_or_else(|| SimError::UnknownArm {
         found: hold.name.clone(),
         expected: robot.arms.iter().map(|arm| arm.name.as_str()).collect::<Vec<_>>().join(", "),
     })?;
+    let arm = &robot.arms[arm_index];
     let names: Vec<&str> = arm.joints.iter().map(|&joint| robot.joints[joint].name.as_str()).collect();
     if hold.joints != names {
         return Err(SimError::Joints {
@@ -83,7 +84,7 @@ fn holding<'a>(robot: &'a Robot, plan: &Plan, hold: &'a ArmHold) -> Result<Holdi
         return Err(SimError::Opening { arm: hold.name.clone(), thickness_m, closed_m: closed_m.max(0.0), open_m });
     }
     straddles(hold)?;
-    Ok(Holding { arm, hold })
+    Ok(Holding { arm_index, hold })
 }
 
 /// The fingers must close on the two faces of the board, which must lie between them.

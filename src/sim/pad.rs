@@ -2,11 +2,13 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::{
-    ColliderBuilder, ColliderHandle, ContactManifold, Group, InteractionGroups, InteractionTestMode, NEW_CONTACT_BIT,
-    PhysicsWorld, RigidBodyHandle,
+    ColliderBuilder, ColliderHandle, ContactManifold, NEW_CONTACT_BIT, PhysicsWorld, RigidBodyHandle,
 };
 
-use super::border;
+use super::{
+    border,
+    world::{pad_groups, penetration_m, substep_s},
+};
 use crate::{
     model::{frames::Pose, trace::PadSample, wrench::Wrench},
     robot::Pad,
@@ -14,16 +16,6 @@ use crate::{
 
 /// Depth of the collider behind a pad's face, m: nothing reaches its back.
 const DEPTH_M: f64 = 0.004;
-
-/// Pads touch the board and nothing else.
-pub(super) fn pad_groups() -> InteractionGroups {
-    InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And)
-}
-
-/// The board touches the pads and nothing else.
-pub(super) fn board_groups() -> InteractionGroups {
-    InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And)
-}
 
 /// The board, as the pads see it.
 #[derive(Clone, Copy)]
@@ -34,10 +26,23 @@ pub(super) struct TouchedBoard {
     pub collider: ColliderHandle,
 }
 
-/// How far the whole face of a pad lies behind the square that carries the load, m: more than the square sinks in (6 um
-/// at a grip of 35 N), so that an evenly pressed pad rests on the square alone, and little enough that a tilting pad
-/// meets the edge of its face after 2 mrad.
-const RECESS_M: f64 = 15e-6;
+/// How a pad touches the board.
+#[derive(Clone, Copy)]
+pub(super) struct PadContact {
+    /// Coulomb coefficient.
+    pub friction: f64,
+    /// How far the whole face lies behind the square that carries the load, m.
+    recess_m: f64,
+}
+
+impl PadContact {
+    /// The contact of pads that grip a board of this mass with this force. The recess is twice what the square sinks
+    /// in: an evenly pressed pad rests on the square alone, and a pad that tilts meets the edge of its whole face
+    /// after a fraction of a milliradian.
+    pub fn new(world: &PhysicsWorld, friction: f64, grip_force_n: f64, board_mass_kg: f64) -> Self {
+        Self { friction, recess_m: 2.0 * penetration_m(world, grip_force_n, board_mass_kg) }
+    }
+}
 
 /// Mean distance of a rectangle's points from its centre, m: `(1/A) integral of r dA` for half sides a and b,
 /// `(d + a^2/(2b) ln((b+d)/a) + b^2/(2a) ln((a+d)/b)) / 3` with `d` the half diagonal (METHOD section 6).
@@ -51,9 +56,9 @@ fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
 /// The engine holds two flat boxes together in four corners. Corners of the whole face would turn too hard; those of a
 /// square at the face's mean radius turn exactly as hard as an evenly pressed face. The whole face, a little recessed,
 /// comes to bear where the pad tilts.
-fn boxes(half_m: [f64; 2]) -> [([f64; 2], f64); 2] {
+fn boxes(half_m: [f64; 2], recess_m: f64) -> [([f64; 2], f64); 2] {
     let square_m = mean_radius_m(half_m) * std::f64::consts::FRAC_1_SQRT_2;
-    [([square_m; 2], 0.0), (half_m, RECESS_M)]
+    [([square_m; 2], 0.0), (half_m, recess_m)]
 }
 
 /// A pad of the scene.
@@ -73,7 +78,7 @@ impl SimPad {
         k: usize,
         finger: RigidBodyHandle,
         x_gf: &Pose,
-        friction: f64,
+        contact: PadContact,
     ) -> Self {
         let side = if k == 0 { 1.0 } else { -1.0 };
         let z_p = Vector3::y() * -side;
@@ -83,11 +88,11 @@ impl SimPad {
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
         );
         let x_fp = x_gf.inverse() * x_gp;
-        let colliders = boxes(pad.size_m.map(|side| side / 2.0)).map(|([x, y], recess_m)| {
+        let colliders = boxes(pad.size_m.map(|side| side / 2.0), contact.recess_m).map(|([x, y], recess_m)| {
             let x_pc = Isometry3::translation(0.0, 0.0, -recess_m - DEPTH_M / 2.0);
             let collider = ColliderBuilder::cuboid(x, y, DEPTH_M / 2.0)
                 .density(0.0)
-                .friction(friction)
+                .friction(contact.friction)
                 .position(border::engine_pose(&(x_fp * x_pc)))
                 .collision_groups(pad_groups());
             world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
@@ -95,15 +100,16 @@ impl SimPad {
         Self { finger, x_fp, colliders }
     }
 
-    /// What the pad does to the board in the last of the substeps, `substep_s` long, of the step that led here.
-    pub fn observe(&self, world: &PhysicsWorld, board: TouchedBoard, substep_s: f64) -> PadSample {
+    /// What the pad does to the board in the last substep: the engine keeps the friction of no other.
+    pub fn observe(&self, world: &PhysicsWorld, board: TouchedBoard) -> PadSample {
         let x_wp = border::from_engine_pose(world.bodies[self.finger].position()) * self.x_fp;
         let p_wp_m = x_wp.translation.vector;
         let mut wrench_w = Wrench::default();
         for collider in &self.colliders {
             let Some(pair) = world.narrow_phase.contact_pair(*collider, board.collider) else { continue };
             for manifold in pair.solver_manifolds() {
-                wrench_w = wrench_w + impulse_on_board(world, manifold, board.body, &p_wp_m).scaled(1.0 / substep_s);
+                wrench_w =
+                    wrench_w + impulse_on_board(world, manifold, board.body, &p_wp_m).scaled(1.0 / substep_s(world));
             }
         }
         PadSample { normal_force_n: wrench_w.force_n.dot(&(x_wp.rotation * Vector3::z())), wrench_w, p_wp_m }

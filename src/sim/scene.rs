@@ -1,36 +1,24 @@
 //! The scene: the arms that hold, the board, gravity and the tool.
 
-use nalgebra::Vector3;
-use rapier3d_f64::prelude::{
-    ColliderBuilder, IntegrationParameters, PhysicsWorld, RigidBodyBuilder, SpringCoefficients,
-};
+use nalgebra::{Isometry3, Point3, Vector3};
+use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 
 use super::{
     SimError,
     arm::SimArm,
     border, check,
-    pad::{TouchedBoard, board_groups},
+    pad::TouchedBoard,
+    world::{board_groups, new_world},
 };
 use crate::{
     model::{
-        GRAVITY_W,
         frames::Pose,
         plan::{PlacedObject, Plan},
-        trace::Sample,
+        trace::{ArmSample, PadSample, Phase, Sample},
         wrench::Wrench,
     },
     robot::Robot,
 };
-
-/// Substeps of the engine's solver in a step.
-const SUBSTEPS: usize = 4;
-
-/// Stiffness of the contacts as a frequency, Hz: at 30 Hz pads sink in by millimetres, at 10 kHz the solver stops
-/// converging; between lies a plateau.
-const CONTACT_FREQUENCY_HZ: f64 = 1000.0;
-
-/// Damping of the contacts, as a multiple of the critical one.
-const CONTACT_DAMPING_RATIO: f64 = 10.0;
 
 /// A joint speed that no servo reaches, rad/s: beyond it the engine has lost the state. (A board that was dropped may
 /// well reach any speed under a steady load.)
@@ -45,6 +33,10 @@ pub struct Scene {
     wrench_o: Wrench,
     /// The tool point in O, m.
     p_ot_m: Vector3<f64>,
+    /// The multiple of the wrench that acted in the last step.
+    load_factor: f64,
+    /// The wrench that acted then, about the tool point, world axes.
+    tool_wrench_w: Wrench,
 }
 
 impl Scene {
@@ -59,12 +51,20 @@ impl Scene {
         let board = insert_board(&mut world, &plan.object, friction);
         let mut arms = Vec::with_capacity(holds.len());
         for hold in holds {
-            let arm = SimArm::new(&mut world, robot, hold.arm, hold.hold, &plan.object, friction)?;
+            let arm = SimArm::new(&mut world, robot, hold.arm_index, hold.hold, &plan.object, friction)?;
             check::hand_is_where_planned(hold.hold, &plan.object.x_wo, &arm.gripper.x_wg(&world))?;
             arms.push(arm);
         }
         let Plan { operation, .. } = plan;
-        Ok(Self { world, arms, board, wrench_o: operation.wrench_o, p_ot_m: operation.x_ot.translation.vector })
+        Ok(Self {
+            world,
+            arms,
+            board,
+            wrench_o: operation.wrench_o,
+            p_ot_m: operation.x_ot.translation.vector,
+            load_factor: 0.0,
+            tool_wrench_w: Wrench::default(),
+        })
     }
 
     /// One time step under `load_factor` times the operation's wrench, which turns with the board.
@@ -73,14 +73,22 @@ impl Scene {
         for arm in &mut self.arms {
             arm.drive(&mut self.world, timestep_s);
         }
-        let wrench_w = self.tool_wrench_w(load_factor);
-        let tip_w = self.x_wo() * nalgebra::Point3::from(self.p_ot_m);
+        self.load_factor = load_factor;
+        self.push_board();
+        self.world.step();
+    }
+
+    /// Lays the tool's wrench on the board for one step.
+    fn push_board(&mut self) {
+        let x_wo = self.x_wo();
+        let Wrench { force_n, moment_nm } = self.wrench_o.scaled(self.load_factor);
+        self.tool_wrench_w = Wrench::new(x_wo.rotation * force_n, x_wo.rotation * moment_nm);
+        let tip_w = x_wo * Point3::from(self.p_ot_m);
         let body = &mut self.world.bodies[self.board.body];
         body.reset_forces(false);
         body.reset_torques(false);
-        body.add_force_at_point(border::vector(&wrench_w.force_n), border::vector(&tip_w.coords), false);
-        body.add_torque(border::vector(&wrench_w.moment_nm), false);
-        self.world.step();
+        body.add_force_at_point(border::vector(&self.tool_wrench_w.force_n), border::vector(&tip_w.coords), false);
+        body.add_torque(border::vector(&self.tool_wrench_w.moment_nm), false);
     }
 
     /// Pose of the board.
@@ -88,24 +96,17 @@ impl Scene {
         border::from_engine_pose(self.world.bodies[self.board.body].position())
     }
 
-    /// `load_factor` times the operation's wrench about the tool point, world axes.
-    fn tool_wrench_w(&self, load_factor: f64) -> Wrench {
-        let rotation = self.x_wo().rotation;
-        let Wrench { force_n, moment_nm } = self.wrench_o.scaled(load_factor);
-        Wrench::new(rotation * force_n, rotation * moment_nm)
-    }
-
-    /// Writes the state into a sample that has a place for every arm, joint and pad.
-    pub fn observe(&self, load_factor: f64, sample: &mut Sample) {
-        let substep_s = self.world.integration_parameters.dt / SUBSTEPS as f64;
-        sample.load_factor = load_factor;
-        sample.tool_wrench_w = self.tool_wrench_w(load_factor);
+    /// Writes the state, and the forces of the last step, into a sample of [`blank_sample`]'s shape. Time and phase are
+    /// the caller's.
+    pub fn observe(&self, sample: &mut Sample) {
+        sample.load_factor = self.load_factor;
+        sample.tool_wrench_w = self.tool_wrench_w;
         sample.x_wo = self.x_wo();
         for (arm, sample_arm) in self.arms.iter().zip(&mut sample.arms) {
             arm.observe_joints(&self.world, sample_arm);
             sample_arm.x_oc = sample.x_wo.inverse() * arm.gripper.x_wc(&self.world);
             for (pad, sample_pad) in arm.gripper.pads.iter().zip(&mut sample_arm.pads) {
-                *sample_pad = pad.observe(&self.world, self.board, substep_s);
+                *sample_pad = pad.observe(&self.world, self.board);
             }
         }
     }
@@ -121,32 +122,6 @@ impl Scene {
     }
 }
 
-/// A world with the settings of this module's documentation.
-fn new_world(timestep_s: f64) -> PhysicsWorld {
-    let softness = SpringCoefficients::new(CONTACT_FREQUENCY_HZ, CONTACT_DAMPING_RATIO);
-    PhysicsWorld {
-        gravity: border::vector(&GRAVITY_W),
-        integration_parameters: IntegrationParameters {
-            dt: timestep_s,
-            num_solver_iterations: SUBSTEPS,
-            num_internal_pgs_iterations: 1,
-            num_internal_stabilization_iterations: 1,
-            contact_softness: softness,
-            static_contact_softness: softness,
-            // A recycled contact outlives the geometry: a hand would hold on to a board that it has left.
-            contact_recycling: false,
-            // Clustering would merge the boxes of a pad into one with four corners.
-            contact_clustering: false,
-            // Without it every change of load slides the hands a little: 3 mrad and 0.16 mm short of the limit, against
-            // 0.1 mrad and 0.001 mm.
-            friction_in_bias_pass: true,
-            normalized_prediction_distance: 0.002,
-            ..IntegrationParameters::default()
-        },
-        ..PhysicsWorld::default()
-    }
-}
-
 /// The board as a free body of evenly spread mass.
 fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) -> TouchedBoard {
     let [hx, hy, hz] = object.size_m.map(|side| side / 2.0);
@@ -158,4 +133,25 @@ fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) 
     let collider = world.colliders.insert_with_parent(collider, body, &mut world.bodies);
     world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
     TouchedBoard { body, collider }
+}
+
+/// A sample of the right shape, with nothing observed yet.
+pub fn blank_sample(plan: &Plan) -> Sample {
+    let pad = PadSample { normal_force_n: 0.0, wrench_w: Wrench::default(), p_wp_m: Vector3::zeros() };
+    let arms = plan.arms.iter().map(|hold| ArmSample {
+        q_rad: hold.q_rad.clone(),
+        finger_m: vec![0.0; 2],
+        torque_demanded_nm: vec![0.0; hold.q_rad.len()],
+        torque_applied_nm: vec![0.0; hold.q_rad.len()],
+        x_oc: Isometry3::identity(),
+        pads: vec![pad; 2],
+    });
+    Sample {
+        time_s: 0.0,
+        phase: Phase::Settle,
+        load_factor: 0.0,
+        tool_wrench_w: Wrench::default(),
+        x_wo: plan.object.x_wo,
+        arms: arms.collect(),
+    }
 }

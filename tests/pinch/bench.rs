@@ -15,7 +15,7 @@ use benchdog::{
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
 /// Time step of all tests, s.
-pub const TIMESTEP_S: f64 = 0.002;
+const TIMESTEP_S: f64 = 0.002;
 
 /// Half sides of the pad along x_G and z_G, m.
 pub const PAD_HALF_M: [f64; 2] = [0.0202, 0.018];
@@ -48,21 +48,22 @@ fn joint(kind: JointKind, links: [usize; 2], x_pj: Pose, axis_j: Vector3<f64>, l
     }
 }
 
-fn pad(name: &str, link: usize) -> Pad {
-    Pad {
+fn finger(name: &str, link: usize, opening_sign: f64) -> Finger {
+    let pad = Pad {
         name: name.into(),
         link,
         size_m: PAD_HALF_M.map(|half| 2.0 * half),
         centre_m: [0.0, -0.0149],
         offset_m: -0.00185,
-    }
+    };
+    Finger { joint: link - 1, closed_m: 0.0, opening_sign, max_travel_m: 0.020833, pad }
 }
 
 /// A gripper of the measures of Baxter's, welded to the world with G at `x_wg`, or carried at `x_wg` by one hinge about
 /// the world's z.
 pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
     // G lies 0.15 m before the finger joints; slot 1 of the palm.
-    let finger = |side: f64| Isometry3::translation(0.0, -0.011 * side, -0.1327);
+    let finger_at = |side: f64| Isometry3::translation(0.0, -0.011 * side, -0.1327);
     let carrier = if hinge.is_some() { JointKind::Revolute } else { JointKind::Fixed };
     let links = vec![
         link("world", None, 0.0, [0.1; 3]),
@@ -72,8 +73,8 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
     ];
     let joints = vec![
         joint(carrier, [0, 1], x_wg, x_wg.rotation.inverse() * Vector3::z(), [-3.0, 3.0]),
-        joint(JointKind::Prismatic, [1, 2], finger(1.0), Vector3::y(), [0.0, 0.020833]),
-        joint(JointKind::Prismatic, [1, 3], finger(-1.0), Vector3::y(), [-0.020833, 0.0]),
+        joint(JointKind::Prismatic, [1, 2], finger_at(1.0), Vector3::y(), [0.0, 0.020833]),
+        joint(JointKind::Prismatic, [1, 3], finger_at(-1.0), Vector3::y(), [-0.020833, 0.0]),
     ];
     let arm = Arm {
         name: "arm".into(),
@@ -84,7 +85,7 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
         gripper: Gripper {
             frame_link: 1,
             palm_link: 1,
-            fingers: [Finger { joint: 1, pad: pad("left", 2) }, Finger { joint: 2, pad: pad("right", 3) }],
+            fingers: [finger("left", 2, 1.0), finger("right", 3, -1.0)],
             opening_m: [-0.0037, 0.038],
             max_force_n: 100.0,
         },
@@ -180,7 +181,7 @@ impl Bench {
         for step in 1..=steps {
             self.scene.step(from + (to - from) * step as f64 / steps as f64);
         }
-        self.scene.observe(to, &mut self.sample);
+        self.scene.observe(&mut self.sample);
         &self.sample
     }
 
@@ -192,14 +193,4 @@ impl Bench {
         let moved = before.inverse() * after;
         (moved.translation.vector.norm(), moved.rotation.angle())
     }
-}
-
-/// The largest load that does not move the hand, as a multiple of a predicted one: by bisection to a part in 4000.
-pub fn yield_factor(grip: &Grip, wrench_g: Wrench, moves: impl Fn((f64, f64)) -> bool) -> f64 {
-    let (mut low, mut high) = (0.2, 2.2);
-    while high - low > 5e-4 {
-        let middle = (low + high) / 2.0;
-        if moves(Bench::welded(grip, wrench_g).motion_under(middle)) { high = middle } else { low = middle }
-    }
-    (low + high) / 2.0
 }

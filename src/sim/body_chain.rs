@@ -51,14 +51,14 @@ impl ChainLink {
 }
 
 /// The bodies of an arm in the engine.
-pub(super) struct Chain {
+pub(super) struct BodyChain {
     /// The world end.
     root: RigidBodyHandle,
     /// In the order of the moving bodies.
     pub links: Vec<ChainLink>,
 }
 
-impl Chain {
+impl BodyChain {
     /// Inserts a fixed root and the bodies, every joint at position zero and without damping.
     ///
     /// # Errors
