@@ -89,7 +89,7 @@ pub fn plan(robot: &Robot, operation: Operation, mass_kg: f64, grip_force_n: f64
 }
 
 /// Compliance of an arm's gripper, `J K^-1 J'`, in W axes about G.
-pub fn compliance(chain: &Chain, stiffness_nm_rad: &[f64], q_rad: &[f64]) -> Matrix6<f64> {
+fn compliance(chain: &Chain, stiffness_nm_rad: &[f64], q_rad: &[f64]) -> Matrix6<f64> {
     let j: Matrix6xX<f64> = chain.jacobian_w(q_rad);
     let softness = DVector::from_iterator(stiffness_nm_rad.len(), stiffness_nm_rad.iter().map(|k| 1.0 / k));
     let scaled = &j * nalgebra::DMatrix::from_diagonal(&softness);

@@ -5,9 +5,9 @@
 mod baxter;
 mod bench;
 
-use std::thread;
+use std::{ops::AddAssign, thread};
 
-use baxter::{BOARD_KG, compliance, welded_displacement_m};
+use baxter::{BOARD_KG, welded_displacement_m};
 use bench::{Bench, Grip, Hinge, PAD_HALF_M, THICKNESS_M, fingers_level};
 use benchdog::{
     model::{
@@ -20,7 +20,7 @@ use benchdog::{
     robot::{Chain, Robot},
     sim::{SimError, simulate},
 };
-use nalgebra::{Point3, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Point3, Vector3};
 
 /// A light block, so that its weight takes no part of the friction that counts.
 const LIGHT_KG: f64 = 0.05;
@@ -105,7 +105,7 @@ fn the_pads_carry_the_block_and_press_as_told() {
     }
 }
 
-/// A gripper on a hinge whose servo gives at most 1 N m, and the hinge's sample after a second under a moment about it.
+/// A gripper on a hinge whose servo gives at most 1 N m, after two seconds under a moment about the hinge.
 fn hinge_under(moment_nm: f64) -> Sample {
     let hinge = Hinge { effort_nm: 1.0, stiffness_nm_rad: 843.0, damping_nm_s_rad: 30.0 };
     let robot = bench::robot(fingers_level(), Some(hinge));
@@ -114,23 +114,25 @@ fn hinge_under(moment_nm: f64) -> Sample {
     let plan = bench::plan(&robot, fingers_level(), &grip, moment_g(-Vector3::x(), moment_nm));
     let mut bench = Bench::new(&robot, &plan, grip.friction);
     bench.motion_under(1.0);
+    // The end of the ramp overshoots the limit, which leaves little to stop the swing.
+    bench.run(1.0, 1.0, 1.0);
     bench.sample
 }
 
 #[test]
 fn a_servo_holds_up_to_its_limit_and_yields_beyond() {
     let below = hinge_under(0.999).arms.remove(0);
-    // tau / K; the last millionth of the settling is left.
-    assert!((below.q_rad[0] - 0.999 / 843.0).abs() < 1e-6, "{}", below.q_rad[0]);
-    assert!((below.torque_demanded_nm[0] + 0.999).abs() < 1e-3);
-    assert_eq!(below.torque_demanded_nm, below.torque_applied_nm);
+    // tau / K, and rounding with what is left of the settling: 1e-12 rad and 1e-9 N m were measured.
+    assert!((below.q_rad[0] - 0.999 / 843.0).abs() < 1e-10, "{}", below.q_rad[0]);
+    assert!((below.torque_demanded_nm[0] + 0.999).abs() < 1e-7);
+    assert!((below.torque_applied_nm[0] + 0.999).abs() < 1e-7);
 
     let beyond = hinge_under(1.001).arms.remove(0);
     // Free of the servo, a thousandth of a newton metre turns gripper and block by tens of milliradians in a second.
     assert!(beyond.q_rad[0] > 0.01, "{}", beyond.q_rad[0]);
     assert!(beyond.torque_demanded_nm[0] < -1.5, "the demand must show the overload");
-    // The spring follows the joint within a step; what is left is of second order in the step.
-    assert!((beyond.torque_applied_nm[0] + 1.0).abs() < 1e-3, "{}", beyond.torque_applied_nm[0]);
+    // Within a step the torque drifts by D a dt, 0.3 % here.
+    assert!((beyond.torque_applied_nm[0] + 1.0).abs() < 1e-2, "{}", beyond.torque_applied_nm[0]);
 }
 
 /// Long enough to settle, and short otherwise.
@@ -151,33 +153,49 @@ fn drill(force_n: f64) -> Operation {
     Operation::drill([0.0, 0.0], force_n, THICKNESS_M)
 }
 
+/// Displacement of the gripper under a force at G, m: `J (K + dg/dq)^-1 J' f`. The torque that holds the arm's weight is
+/// fed forward for the planned angles, so the change of the weight's torque adds to the servos' stiffness.
+fn free_arm_displacement_m(robot: &Robot, q_rad: &[f64], force_w: &Vector3<f64>) -> Vector3<f64> {
+    let chain = Chain::new(robot, 0, 0.0);
+    let mut stiffness = DMatrix::from_diagonal(&DVector::from_column_slice(&robot.arms[0].stiffness_nm_rad));
+    for column in 0..q_rad.len() {
+        // Central differences of a smooth function: wrong by 1e-8.
+        let gravity = |step: f64| {
+            let mut q = q_rad.to_vec();
+            q[column] += step;
+            chain.gravity_torque_nm(&q)
+        };
+        let slope = (gravity(1e-4) - gravity(-1e-4)) / 2e-4;
+        stiffness.column_mut(column).add_assign(&slope);
+    }
+    let jacobian = chain.jacobian_w(q_rad);
+    let linear = jacobian.rows(0, 3);
+    let dq = stiffness.lu().solve(&(linear.transpose() * force_w)).unwrap();
+    Vector3::from_iterator((linear * dq).iter().copied())
+}
+
 #[test]
 fn a_free_arm_gives_way_as_its_compliance_says() {
     let robot = baxter::robot();
     // A board of ten grams in one hand, pushed where the hand holds it.
     let mut plan = baxter::plan(&robot, drill(0.0), 0.01, 30.0);
     plan.arms.truncate(1);
-    let hold = &plan.arms[0];
-    let chain = Chain::new(&robot, 0, 0.0);
-    let p_og = hold.x_og.translation.vector;
-    for force_o in [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * 1.5) {
-        let mut pushed = plan.clone();
-        pushed.operation.wrench_o = Wrench::from_force(force_o);
-        pushed.operation.x_ot.translation.vector = p_og;
-        let trace = simulate(&robot, &pushed, 0.6, &QUICK).unwrap();
-        let hand = |phase| {
-            let sample = last(&trace, phase);
+    plan.operation.x_ot.translation = plan.arms[0].x_og.translation;
+    for force_o in [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * 0.5) {
+        plan.operation.wrench_o = Wrench::from_force(force_o);
+        let settings = SimulationSettings { settle_s: 2.0, ramp_s: 1.0, hold_s: 2.0, ..QUICK };
+        let trace = simulate(&robot, &plan, 0.6, &settings).unwrap();
+        let p_wg = |sample: &Sample| {
             let p_cg = -robot.arms[0].gripper.grasp_point_g();
             sample.x_wo * sample.arms[0].x_oc * Point3::from(p_cg)
         };
-        let moved_m = hand(Phase::Hold) - hand(Phase::Settle);
+        let settled = last(&trace, Phase::Settle);
+        let moved_m = p_wg(last(&trace, Phase::Hold)) - p_wg(settled);
         let force_w = plan.object.x_wo.rotation * force_o;
-        let wrench_w = Vector6::new(force_w.x, force_w.y, force_w.z, 0.0, 0.0, 0.0);
-        let q_rad = &last(&trace, Phase::Settle).arms[0].q_rad;
-        let predicted = compliance(&chain, &robot.arms[0].stiffness_nm_rad, q_rad) * wrench_w;
-        let predicted_m = predicted.fixed_rows::<3>(0).into_owned();
+        let predicted_m = free_arm_displacement_m(&robot, &settled.arms[0].q_rad, &force_w);
         let error = (moved_m - predicted_m).norm() / predicted_m.norm();
-        // The arm's weight changes its lever by 1e-3 over such a displacement; 0.5 % is asked for.
+        println!("free arm: {error}");
+        // The lever arms change by 1e-3 over such a displacement; 0.5 % is asked for.
         assert!(error < 5e-3, "moved {moved_m}, predicted {predicted_m}: off by {error}");
     }
 }
@@ -235,11 +253,11 @@ fn a_board_without_a_load_stays() {
 #[test]
 fn after_the_release_the_board_returns() {
     let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(5.0), BOARD_KG, 30.0);
+    let plan = baxter::plan(&robot, drill(1.5), BOARD_KG, 30.0);
     let trace = simulate(&robot, &plan, 0.6, &QUICK).unwrap();
     let bent_m = displacement_m(&trace, last(&trace, Phase::Hold)).norm();
     let left_m = displacement_m(&trace, last(&trace, Phase::Release)).norm();
-    // A sudden release lets the hands slide by micrometres; the swing has died out by then.
+    // The swing has died out by then; a sudden release lets the hands slide by micrometres, 5 % of the bend.
     assert!(left_m < 0.1 * bent_m, "bent {bent_m} m, left {left_m} m");
 }
 
