@@ -114,3 +114,31 @@ impl ArmBodies {
         Self { bodies, of_joint, seats }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::UnitQuaternion;
+
+    use super::*;
+
+    fn box_link(mass_kg: f64, [x, y, z]: [f64; 3], com_l: Vector3<f64>) -> Link {
+        let diagonal = Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y) * (mass_kg / 12.0);
+        let inertia_l = Matrix3::from_diagonal(&diagonal);
+        Link { name: "box".into(), parent_joint: None, mass_kg, com_l, inertia_l, shapes: Vec::new() }
+    }
+
+    #[test]
+    fn two_halves_make_a_whole() {
+        // A box 0.4 m long, cut in two; the halves' frames are turned and off their centres of mass.
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
+        let x_bl = |x: f64| Isometry3::from_parts(Vector3::new(x, 0.0, 0.0).into(), turn);
+        // Turned by a quarter about z, the half's long side lies along y_L, and x_B is -y_L.
+        let half = box_link(1.5, [0.1, 0.2, 0.3], Vector3::new(0.0, -0.05, 0.0));
+        let merged = MassSum::NOTHING.with_link(&half, &x_bl(-0.15)).with_link(&half, &x_bl(0.05));
+        let whole = box_link(3.0, [0.4, 0.1, 0.3], Vector3::zeros());
+        assert_eq!(merged.mass_kg, 3.0);
+        // Rounding of products of numbers below one.
+        assert!(merged.com_b.norm() < 1e-15, "{}", merged.com_b);
+        assert!((merged.inertia_b - whole.inertia_l).norm() < 1e-15, "{}", merged.inertia_b);
+    }
+}

@@ -99,7 +99,7 @@ fn insert_body(
 ) -> Result<ChainLink, SimError> {
     let joint = &robot.joints[moving.joint];
     let mass = &moving.mass;
-    if !(mass.mass_kg > 0.0) {
+    if mass.mass_kg <= 0.0 {
         return Err(SimError::Massless { link: robot.links[joint.child_link].name.clone() });
     }
     let properties = MassProperties::with_inertia_matrix(

@@ -3,6 +3,12 @@
 use super::SimError;
 use crate::model::{scenario::SimulationSettings, trace::Phase};
 
+/// The longest time step, s: beyond it contacts sink in so far that a light board's hold loses its meaning.
+const MAX_TIMESTEP_S: f64 = 0.004;
+
+/// The largest number of steps: 200 s at 2 ms, a trace of about 100 MB.
+const MAX_STEPS: usize = 100_000;
+
 /// The load over the steps of a simulation: none while settling, growing evenly in the ramp, whole in the hold, none
 /// after the release.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,11 +23,13 @@ impl LoadProfile {
     /// The profile of these settings, each phase rounded to whole steps.
     ///
     /// # Errors
-    /// [`SimError::Settings`] when the time step is not positive, a phase negative, or one of them not finite.
+    /// [`SimError::Settings`] when the time step is not positive or longer than 4 ms, a phase negative or not finite, or
+    /// the whole longer than 100 000 steps.
     pub fn new(settings: &SimulationSettings) -> Result<Self, SimError> {
         let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
-        if !(timestep_s.is_finite() && timestep_s > 0.0) {
-            return Err(SimError::Settings { key: "timestep_s", found: timestep_s, expected: "a positive time" });
+        if !(timestep_s > 0.0 && timestep_s <= MAX_TIMESTEP_S) {
+            let expected = "a positive time of at most 0.004 s";
+            return Err(SimError::Settings { key: "timestep_s", found: timestep_s, expected });
         }
         let steps = |key, duration_s: f64| {
             if duration_s.is_finite() && duration_s >= 0.0 {
@@ -31,17 +39,22 @@ impl LoadProfile {
                 Err(SimError::Settings { key, found: duration_s, expected: "a time of at least zero" })
             }
         };
-        Ok(Self {
+        let profile = Self {
             settle: steps("settle_s", settle_s)?,
             ramp: steps("ramp_s", ramp_s)?,
             hold: steps("hold_s", hold_s)?,
             release: steps("release_s", release_s)?,
-        })
+        };
+        if profile.steps() > MAX_STEPS {
+            let found = settle_s + ramp_s + hold_s + release_s;
+            return Err(SimError::Settings { key: "duration in s", found, expected: "at most 100000 time steps" });
+        }
+        Ok(profile)
     }
 
     /// How many steps there are.
     pub fn steps(&self) -> usize {
-        self.settle + self.ramp + self.hold + self.release
+        self.settle.saturating_add(self.ramp).saturating_add(self.hold).saturating_add(self.release)
     }
 
     /// The phase and the multiple of the operation's wrench that acts in a step; steps count from 1, and 0 stands for
@@ -87,11 +100,13 @@ mod tests {
 
     #[test]
     fn settings_that_make_no_sense_are_refused() {
-        for timestep_s in [0.0, -0.002, f64::NAN, f64::INFINITY] {
+        for timestep_s in [0.0, -0.002, 0.005, f64::NAN, f64::INFINITY] {
             let settings = SimulationSettings { timestep_s, ..SimulationSettings::default() };
             assert!(matches!(LoadProfile::new(&settings), Err(SimError::Settings { key: "timestep_s", .. })));
         }
         let settings = SimulationSettings { hold_s: -1.0, ..SimulationSettings::default() };
         assert!(matches!(LoadProfile::new(&settings), Err(SimError::Settings { key: "hold_s", .. })));
+        let settings = SimulationSettings { hold_s: 1e300, ..SimulationSettings::default() };
+        assert!(matches!(LoadProfile::new(&settings), Err(SimError::Settings { key: "duration in s", .. })));
     }
 }
