@@ -26,6 +26,7 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod cli;
 pub mod collision;
 pub mod human;
 pub mod judge;
@@ -36,4 +37,5 @@ pub mod record;
 pub mod report;
 pub mod robot;
 pub mod scenario;
+pub mod sim;
 pub mod statics;
