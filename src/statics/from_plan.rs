@@ -99,7 +99,12 @@ impl HandModel {
 }
 
 /// The Jacobian of the grasp point in O axes, from that of G's origin in W axes.
-fn jacobian_o(chain: &Chain, plan_arm: &ArmHold, object: &PlacedObject, grasp_point_g: &Vector3<f64>) -> Matrix6xX<f64> {
+fn jacobian_o(
+    chain: &Chain,
+    plan_arm: &ArmHold,
+    object: &PlacedObject,
+    grasp_point_g: &Vector3<f64>,
+) -> Matrix6xX<f64> {
     let mut jacobian = chain.jacobian_w(&plan_arm.q_rad);
     let r_ow = object.x_wo.rotation.inverse();
     // The board's pose and the plan's X_OG say where the hand is; the arm's angles agree with them.

@@ -139,7 +139,9 @@ pub enum HoldError {
         pad: String,
     },
     /// A gripper that does not straddle the board's faces.
-    #[error("{hand} hand: found the finger axis {angle_deg:.3} degrees from the board's normal, expected less than {limit_deg}")]
+    #[error(
+        "{hand} hand: found the finger axis {angle_deg:.3} degrees from the board's normal, expected less than {limit_deg}"
+    )]
     FingersNotAcross {
         /// The hand.
         hand: String,

@@ -142,13 +142,17 @@ fn binding(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Vec<String>
     for (hand_number, hand) in hold.hands.iter().enumerate() {
         for (pad_number, pad) in hand.pads.iter().enumerate() {
             let of_pad = pad_terms(hold, program, raw, hand_number, pad_number);
-            terms.extend(of_pad.map(|(term, limit)| (term, format!("{} {} pad: {}", hand.name, pad.name, limit.name()))));
+            terms.extend(
+                of_pad.map(|(term, limit)| (term, format!("{} {} pad: {}", hand.name, pad.name, limit.name()))),
+            );
         }
         if layout.has_torque_rows() {
             let row = layout.torque_rows(hand_number);
             // The rows are divided by the limit, so the multipliers are the terms.
             let of_joint = |joint: usize| raw.z[row + joint] + raw.z[row + hand.dof() + joint];
-            terms.extend(hand.joints.iter().enumerate().map(|(joint, name)| (of_joint(joint), format!("{name}: torque"))));
+            terms.extend(
+                hand.joints.iter().enumerate().map(|(joint, name)| (of_joint(joint), format!("{name}: torque"))),
+            );
         }
     }
     let largest = terms.iter().map(|(term, _)| *term).fold(0.0, f64::max);
@@ -163,13 +167,7 @@ fn binding(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Vec<String>
 }
 
 /// `d lambda* / d ln(limit)` of a pad's four limits.
-fn pad_terms(
-    hold: &Hold,
-    program: &Program,
-    raw: &RawSolution<'_>,
-    hand: usize,
-    pad: usize,
-) -> [(f64, PadLimit); 4] {
+fn pad_terms(hold: &Hold, program: &Program, raw: &RawSolution<'_>, hand: usize, pad: usize) -> [(f64, PadLimit); 4] {
     let layout = &program.layout;
     let model = &hold.hands[hand].pads[pad];
     let normal = raw.x[Layout::pad_variables(hand, pad) + 2];
