@@ -26,13 +26,16 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod cli;
 pub mod collision;
 pub mod human;
 pub mod judge;
 pub mod model;
+pub mod planner;
 #[cfg(feature = "recording")]
 pub mod record;
 pub mod report;
 pub mod robot;
 pub mod scenario;
+pub mod sim;
 pub mod statics;

@@ -26,18 +26,19 @@ pub struct Run {
     /// The plan that was judged; none when there is none.
     pub plan: Option<Plan>,
     /// The simulation, with what the judge made of it; none when there was nothing to simulate.
+    #[cfg_attr(not(feature = "recording"), expect(dead_code, reason = "only a recording needs more than the verdict"))]
     pub simulated: Option<(Trace, Judgement)>,
 }
 
 /// Plans where the scenario names no plan, then simulates and judges.
 ///
 /// # Errors
-/// When the simulation cannot be built from the plan.
+/// When the person or the tool is none, or the simulation cannot be built from the plan.
 pub fn run_scenario(loaded: &LoadedScenario) -> Result<Run, CliError> {
     let scenario = &loaded.scenario;
     let plan = match &loaded.plan {
         Some(plan) => plan.clone(),
-        None => match timed_plan(scenario, &loaded.robot) {
+        None => match timed_plan(scenario, &loaded.robot)? {
             PlanOutcome::Found(plan) => *plan,
             PlanOutcome::Infeasible(why) => {
                 return Ok(Run { verdict: infeasible(scenario, why.to_string()), plan: None, simulated: None });
@@ -60,15 +61,18 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
 }
 
 /// Plans a scenario, with the time that it took in the plan.
-pub fn timed_plan(scenario: &Scenario, robot: &Robot) -> PlanOutcome {
+///
+/// # Errors
+/// When the scenario's person or tool is none.
+pub fn timed_plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, CliError> {
     let start = Instant::now();
-    let mut outcome = planner::plan(scenario, robot);
+    let mut outcome = planner::plan(scenario, robot)?;
     if let PlanOutcome::Found(plan) = &mut outcome
         && let Some(record) = &mut plan.planner
     {
         record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);
     }
-    outcome
+    Ok(outcome)
 }
 
 /// The verdict on a scenario that has no plan.

@@ -13,7 +13,7 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     if let Some(seed) = args.seed {
         loaded.scenario.planner.seed = seed;
     }
-    match pipeline::timed_plan(&loaded.scenario, &loaded.robot) {
+    match pipeline::timed_plan(&loaded.scenario, &loaded.robot)? {
         PlanOutcome::Found(plan) => {
             let text = report::json::plan(&plan);
             match &args.output {

@@ -42,7 +42,7 @@ pub struct Trace {
     pub p_ot_m: nalgebra::Vector3<f64>,
     /// One sample a step, the first at time 0. The sample's forces are those of the step that led to it.
     pub samples: Vec<Sample>,
-    /// Why the simulation stopped early, with the time; none when it ran to its end.
+    /// When and why the simulation broke down, in words; the samples end before. None when it ran to its end.
     pub broke_down: Option<String>,
 }
 

@@ -11,12 +11,12 @@ use crate::{
     model::{
         frames::Pose,
         grasp::EdgeGrasp,
-        plan::{ArmHold, Comfort, PlacedObject, Stability},
-        scenario::StabilityKind,
+        plan::{ArmHold, Comfort, PlacedObject},
+        scenario::Scenario,
         wrench::Wrench,
     },
     robot::{ArmState, Gripper},
-    statics::Hold,
+    statics::{HandModel, Hold},
 };
 
 /// Height of the board's centre in W, m (METHOD section 3).
@@ -94,13 +94,6 @@ impl Tally {
         removed.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
         Infeasible { candidates: self.candidates, removed }
     }
-}
-
-/// The figures of a candidate that keeps every constraint.
-#[derive(Clone, Debug)]
-pub struct Assessment {
-    pub comfort: Comfort,
-    pub stability: Stability,
 }
 
 /// The poses that follow from a candidate's posture and place, with the load on the person.
@@ -210,19 +203,21 @@ pub fn arm_holds(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
         .collect()
 }
 
-/// The stability of a candidate, or that it does not stand the load.
-pub fn stability(problem: &Problem<'_>, candidate: &Candidate, placed: &Placed) -> Result<Stability, Rejection> {
-    let scenario = problem.scenario;
-    let object = PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo: placed.x_wo };
-    let operation = scenario.operation.rolled(candidate.roll_rad);
-    let arms = arm_holds(problem, candidate);
-    let hold = Hold::from_plan(problem.robot, &arms, &object, &operation, scenario.grip.friction);
-    let stability = hold.stability(&scenario.limits).ok_or(Rejection::Stability)?;
-    let least = scenario.limits.load_factor;
-    let compliant = scenario.planner.stability == StabilityKind::Compliant;
-    let stands = stability.load_factor >= least
-        && (!compliant
-            || (stability.compliant_load_factor >= least
-                && stability.predicted_deflection_mm <= scenario.limits.deflection_mm));
-    if stands { Ok(stability) } else { Err(Rejection::Stability) }
+/// Tests that a candidate stands the load.
+pub fn stability(problem: &mut Problem<'_>, candidate: &Candidate, placed: &Placed) -> Result<(), Rejection> {
+    let Scenario { object, operation, grip, limits, planner, .. } = problem.scenario;
+    let object = PlacedObject { size_m: object.size_m, mass_kg: object.mass_kg(), x_wo: placed.x_wo };
+    let hands: Result<Vec<_>, _> = arm_holds(problem, candidate)
+        .iter()
+        .zip(&problem.arms)
+        .map(|(hold, arm)| HandModel::from_plan(problem.robot, &arm.chain, hold, &object, grip.friction))
+        .collect();
+    let stands = hands
+        .map(|hands| Hold::from_hands(hands, &object, &operation.rolled(candidate.roll_rad)))
+        .and_then(|hold| problem.stability.stands(&hold, limits, planner.stability));
+    match stands {
+        Ok(true) => Ok(()),
+        // A hold that the statics call broken, say by a pad off the board, stands nothing.
+        Ok(false) | Err(_) => Err(Rejection::Stability),
+    }
 }

@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 
 use super::{
     Problem,
-    assess::{self, Assessment, BOARD_X_M, BOARD_Y_M, Placed, Rejection, Tally},
+    assess::{self, BOARD_X_M, BOARD_Y_M, Placed, Rejection, Tally},
     candidate::{Candidate, Hold},
 };
 use crate::{
@@ -15,6 +15,7 @@ use crate::{
     model::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
+        plan::Comfort,
     },
 };
 
@@ -23,9 +24,13 @@ const POSTURES: usize = 20_000;
 /// The best postures that candidates are made of.
 const POSTURES_KEPT: usize = 4_000;
 /// Candidates that are drawn.
-const DRAWS: usize = 6_000;
+const DRAWS: usize = 30_000;
+/// Headings that are tried for a posture, and grasps for an arm, before the candidate is given up.
+const TRIES: usize = 16;
 /// Random seeds that each arm's inverse kinematics is given for a drawn grasp.
 const ARM_SEEDS: usize = 3;
+/// Probability that a second arm holds the edge opposite to the first's, not the same one.
+const OPPOSITE: f64 = 0.75;
 /// Candidates that are handed on.
 const KEPT: usize = 8;
 
@@ -38,11 +43,11 @@ pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
 #[derive(Clone, Debug)]
 pub struct Feasible {
     pub candidate: Candidate,
-    pub assessment: Assessment,
+    pub comfort: Comfort,
 }
 
 /// Draws candidates and returns the best that keep every constraint, the best first.
-pub fn best_candidates(problem: &Problem<'_>, random: &mut Pcg64, tally: &mut Tally) -> Vec<Feasible> {
+pub fn best_candidates(problem: &mut Problem<'_>, random: &mut Pcg64, tally: &mut Tally) -> Vec<Feasible> {
     let postures = comfortable_postures(problem, random);
     let mut reachable = Vec::new();
     for _ in 0..DRAWS {
@@ -66,7 +71,7 @@ pub fn best_candidates(problem: &Problem<'_>, random: &mut Pcg64, tally: &mut Ta
             break;
         }
         match assess::stability(problem, &candidate, &placed) {
-            Ok(stability) => kept.push(Feasible { candidate, assessment: Assessment { comfort, stability } }),
+            Ok(()) => kept.push(Feasible { candidate, comfort }),
             Err(why) => tally.remove(why),
         }
     }
@@ -87,61 +92,73 @@ fn comfortable_postures(problem: &Problem<'_>, random: &mut Pcg64) -> Vec<ArmAng
 }
 
 /// One candidate whose arms reach and where nothing collides.
-fn draw(
-    problem: &Problem<'_>,
-    postures: &[ArmAngles],
-    random: &mut Pcg64,
-) -> Result<(Candidate, Placed), Rejection> {
-    let roll_is_free = problem.scenario.operation.kind.roll_is_free();
-    let mut candidate = Candidate {
-        // The square leans towards the comfortable end of the list.
-        q_h_rad: postures[(uniform(random, 0.0, 1.0).powi(2) * postures.len() as f64) as usize],
-        heading_rad: uniform(random, -PI, PI),
-        roll_rad: if roll_is_free { uniform(random, -PI, PI) } else { 0.0 },
-        p_wo_xy_m: [uniform(random, BOARD_X_M[0], BOARD_X_M[1]), uniform(random, BOARD_Y_M[0], BOARD_Y_M[1])],
-        holds: Vec::new(),
-    };
-    let placed = assess::place(problem, &candidate)?;
-    for (arm, grasp) in problem.arms.iter().zip(draw_grasps(problem, random)) {
+fn draw(problem: &Problem<'_>, postures: &[ArmAngles], random: &mut Pcg64) -> Result<(Candidate, Placed), Rejection> {
+    let (mut candidate, placed) = draw_place(problem, postures, random)?;
+    let size_m = problem.scenario.object.size_m;
+    let first = random.random_range(0..Edge::ALL.len());
+    for (index, arm) in problem.arms.iter().enumerate() {
+        // Each next arm holds opposite to the first or on the same edge (METHOD section 2).
+        let opposite = index > 0 && random.random_bool(OPPOSITE);
+        let edge = Edge::ALL[if opposite { (first + 2) % Edge::ALL.len() } else { first }];
         let gripper = &problem.robot.arms[arm.index].gripper;
-        if !assess::pads_on_board(gripper, &grasp, problem.scenario.object.size_m) {
-            return Err(Rejection::PadOverEdge);
-        }
-        let x_wg = placed.x_wo * grasp.x_og(problem.scenario.object.size_m);
-        let q_rad = draw_arm(problem, arm.index, &x_wg, random).ok_or(Rejection::RobotReach)?;
+        let grasp = (0..TRIES)
+            .map(|_| draw_grasp(edge, size_m, random))
+            .find(|grasp| assess::pads_on_board(gripper, grasp, size_m))
+            .ok_or(Rejection::PadOverEdge)?;
+        let q_rad = draw_arm(problem, arm.index, &(placed.x_wo * grasp.x_og(size_m)), random)?;
         candidate.holds.push(Hold { grasp, q_rad });
     }
     assess::collisions(problem, &candidate, &placed)?;
     Ok((candidate, placed))
 }
 
-/// A grasp for every arm: each next arm opposite to the first or on the same edge (METHOD section 2).
-fn draw_grasps(problem: &Problem<'_>, random: &mut Pcg64) -> Vec<EdgeGrasp> {
-    let first = random.random_range(0..Edge::ALL.len());
-    let mut grasps = Vec::with_capacity(problem.arms.len());
-    for index in 0..problem.arms.len() {
-        let opposite = index > 0 && random.random_bool(0.75);
-        let edge = Edge::ALL[if opposite { (first + 2) % Edge::ALL.len() } else { first }];
-        let (_, half_length_m) = edge.reach_and_half_length_m(problem.scenario.object.size_m);
-        grasps.push(EdgeGrasp {
-            edge,
-            along_m: uniform(random, -half_length_m, half_length_m),
-            depth_m: uniform(random, DEPTH_M[0], DEPTH_M[1]),
-            angle_rad: uniform(random, ANGLE_RAD[0], ANGLE_RAD[1]),
-            flipped: random.random_bool(0.5),
-        });
+/// A candidate without its grasps: a comfortable posture, somewhere in the domain of the search.
+fn draw_place(
+    problem: &Problem<'_>,
+    postures: &[ArmAngles],
+    random: &mut Pcg64,
+) -> Result<(Candidate, Placed), Rejection> {
+    let roll_is_free = problem.scenario.operation.kind.roll_is_free();
+    // The square leans towards the comfortable end of the list.
+    let rank = uniform(random, 0.0, 1.0).powi(2) * postures.len() as f64;
+    let mut candidate = Candidate {
+        q_h_rad: postures[rank as usize],
+        heading_rad: 0.0,
+        roll_rad: if roll_is_free { uniform(random, -PI, PI) } else { 0.0 },
+        p_wo_xy_m: [uniform(random, BOARD_X_M[0], BOARD_X_M[1]), uniform(random, BOARD_Y_M[0], BOARD_Y_M[1])],
+        holds: Vec::new(),
+    };
+    let mut placed = Err(Rejection::Facing);
+    for _ in 0..TRIES {
+        candidate.heading_rad = uniform(random, -PI, PI);
+        placed = assess::place(problem, &candidate);
+        if !matches!(placed, Err(Rejection::Facing)) {
+            break;
+        }
     }
-    grasps
+    placed.map(|placed| (candidate, placed))
+}
+
+fn draw_grasp(edge: Edge, size_m: [f64; 3], random: &mut Pcg64) -> EdgeGrasp {
+    let (_, half_length_m) = edge.reach_and_half_length_m(size_m);
+    EdgeGrasp {
+        edge,
+        along_m: uniform(random, -half_length_m, half_length_m),
+        depth_m: uniform(random, DEPTH_M[0], DEPTH_M[1]),
+        angle_rad: uniform(random, ANGLE_RAD[0], ANGLE_RAD[1]),
+        flipped: random.random_bool(0.5),
+    }
 }
 
 /// A configuration of an arm that brings its gripper there.
-fn draw_arm(problem: &Problem<'_>, arm: usize, x_wg: &Pose, random: &mut Pcg64) -> Option<Vec<f64>> {
+fn draw_arm(problem: &Problem<'_>, arm: usize, x_wg: &Pose, random: &mut Pcg64) -> Result<Vec<f64>, Rejection> {
     let arm = &problem.arms[arm];
-    (0..ARM_SEEDS).find_map(|_| {
+    let found = (0..ARM_SEEDS).find_map(|_| {
         let limits = arm.chain.lower().iter().zip(arm.chain.upper());
         let seed: Vec<_> = limits.map(|(&low, &high)| uniform(random, low, high)).collect();
         arm.inverse.local(x_wg, &seed).found()
-    })
+    });
+    found.ok_or(Rejection::RobotReach)
 }
 
 /// A number drawn uniformly between two others.

@@ -27,6 +27,7 @@ use crate::{
         wrench::Wrench,
     },
     robot::{Chain, InverseKinematics, Robot},
+    statics::{Hold, StabilityWorkspace},
 };
 use assess::{Rejection, Tally};
 use candidate::Candidate;
@@ -70,6 +71,7 @@ struct Problem<'a> {
     /// The operation's wrench about the tool tip in T axes, where it does not change.
     wrench_t: Wrench,
     collision: CollisionModel,
+    stability: StabilityWorkspace,
     arms: Vec<ProblemArm>,
 }
 
@@ -111,6 +113,7 @@ impl<'a> Problem<'a> {
             human: Human::new(&scenario.human, &scenario.tool)?,
             wrench_t: Wrench::new(to_tool * wrench_o.force_n, to_tool * wrench_o.moment_nm),
             collision: CollisionModel::new(robot),
+            stability: StabilityWorkspace::new(),
             arms,
         })
     }
@@ -121,12 +124,15 @@ impl<'a> Problem<'a> {
 /// # Errors
 /// When the scenario's person or tool is none; a scenario that was read from a file is checked for that.
 pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanError> {
-    let problem = Problem::new(scenario, robot)?;
+    let mut problem = Problem::new(scenario, robot)?;
     let mut tally = Tally::default();
     let mut random = Pcg64::new(u128::from(scenario.planner.seed), 0);
-    let drawn = draw::best_candidates(&problem, &mut random, &mut tally);
-    for found in refine::refine(&problem, drawn, &mut random, &mut tally) {
-        let plan = assemble(&problem, &found, tally.candidates());
+    let drawn = draw::best_candidates(&mut problem, &mut random, &mut tally);
+    for found in refine::refine(&mut problem, drawn, &mut random, &mut tally) {
+        let Some(plan) = assemble(&mut problem, &found, tally.candidates()) else {
+            tally.remove(Rejection::Stability);
+            continue;
+        };
         // The search and the check share no code above the metrics, so what both accept can be trusted.
         if verify(&plan, scenario, robot)?.is_empty() {
             return Ok(PlanOutcome::Found(Box::new(plan)));
@@ -136,27 +142,28 @@ pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanErro
     Ok(PlanOutcome::Infeasible(tally.into_infeasible()))
 }
 
-/// The plan of a candidate that passed every test.
-fn assemble(problem: &Problem<'_>, found: &Feasible, evaluations: u64) -> Plan {
+/// The plan of a candidate that passed every test; none when its stability cannot be stated.
+fn assemble(problem: &mut Problem<'_>, found: &Feasible, evaluations: u64) -> Option<Plan> {
     let scenario = problem.scenario;
-    let Feasible { candidate, assessment } = found;
+    let Feasible { candidate, comfort } = found;
     let PlannerSettings { kind, seed, .. } = scenario.planner;
-    Plan {
+    let operation = scenario.operation.rolled(candidate.roll_rad);
+    let x_wo = candidate.x_wo(problem);
+    let object = PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo };
+    let arms = assess::arm_holds(problem, candidate);
+    let hold = Hold::from_plan(problem.robot, &arms, &object, &operation, scenario.grip.friction).ok()?;
+    Some(Plan {
         format: FORMAT,
         name: scenario.name.clone(),
         robot: problem.robot.description.clone(),
-        operation: scenario.operation.rolled(candidate.roll_rad),
-        object: PlacedObject {
-            size_m: scenario.object.size_m,
-            mass_kg: scenario.object.mass_kg(),
-            x_wo: candidate.x_wo(problem),
-        },
-        arms: assess::arm_holds(problem, candidate),
+        operation,
+        object,
+        arms,
         human: Some(HumanPosture::new(&scenario.human, candidate.x_wb(problem), candidate.q_h_rad)),
-        comfort: Some(assessment.comfort),
-        stability: Some(assessment.stability.clone()),
+        comfort: Some(*comfort),
+        stability: Some(problem.stability.predict(&hold, &scenario.limits).ok()??),
         planner: Some(PlannerRecord { kind, seed, wall_ms: None, evaluations }),
         scenario: Some(scenario.clone()),
         benchdog: Some(env!("CARGO_PKG_VERSION").into()),
-    }
+    })
 }

@@ -8,7 +8,7 @@ use rand_pcg::Pcg64;
 
 use super::{
     Problem,
-    assess::{self, Assessment, Tally},
+    assess::{self, Tally},
     candidate::Candidate,
     draw::{ANGLE_RAD, DEPTH_M, Feasible, uniform},
 };
@@ -29,13 +29,13 @@ const CHANGE_PROBABILITY: f64 = 0.4;
 
 /// What small steps lead to from each start, the best first.
 pub fn refine(
-    problem: &Problem<'_>,
+    problem: &mut Problem<'_>,
     starts: Vec<Feasible>,
     random: &mut Pcg64,
     tally: &mut Tally,
 ) -> Vec<Feasible> {
     let mut refined: Vec<_> =
-        starts.into_iter().map(|start| climb(problem, start, FIRST_STEPS, random, tally)).collect();
+        starts.into_iter().map(|start| climb(&mut *problem, start, FIRST_STEPS, random, tally)).collect();
     sort_best_first(&mut refined);
     if let Some(best) = refined.first().cloned() {
         refined.insert(0, climb(problem, best, LAST_STEPS, random, tally));
@@ -44,15 +44,15 @@ pub fn refine(
 }
 
 fn sort_best_first(found: &mut [Feasible]) {
-    found.sort_by(|a, b| b.assessment.comfort.objective.total_cmp(&a.assessment.comfort.objective));
+    found.sort_by(|a, b| b.comfort.objective.total_cmp(&a.comfort.objective));
 }
 
-fn climb(problem: &Problem<'_>, start: Feasible, steps: usize, random: &mut Pcg64, tally: &mut Tally) -> Feasible {
+fn climb(problem: &mut Problem<'_>, start: Feasible, steps: usize, random: &mut Pcg64, tally: &mut Tally) -> Feasible {
     let mut best = start;
     let mut size = START_SIZE;
     for _ in 0..steps {
         tally.draw();
-        let least = best.assessment.comfort.objective;
+        let least = best.comfort.objective;
         match step(problem, &best.candidate, size, random).and_then(|next| better(problem, next, least)) {
             Some(next) => {
                 best = next;
@@ -66,15 +66,15 @@ fn climb(problem: &Problem<'_>, start: Feasible, steps: usize, random: &mut Pcg6
 }
 
 /// The candidate's figures when it is better than `least` and keeps every constraint.
-fn better(problem: &Problem<'_>, candidate: Candidate, least: f64) -> Option<Feasible> {
+fn better(problem: &mut Problem<'_>, candidate: Candidate, least: f64) -> Option<Feasible> {
     let placed = assess::place(problem, &candidate).ok()?;
     let comfort = assess::comfort(problem, &candidate, &placed);
     if comfort.objective <= least {
         return None;
     }
     assess::collisions(problem, &candidate, &placed).ok()?;
-    let stability = assess::stability(problem, &candidate, &placed).ok()?;
-    Some(Feasible { candidate, assessment: Assessment { comfort, stability } })
+    assess::stability(problem, &candidate, &placed).ok()?;
+    Some(Feasible { candidate, comfort })
 }
 
 /// A neighbour of a candidate whose arms reach, with steps of `size` times: 0.15 rad in the person's joints and heading,

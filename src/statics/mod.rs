@@ -21,6 +21,7 @@ mod from_plan;
 mod hold;
 mod load_factor;
 mod patch;
+mod prediction;
 mod program;
 mod workspace;
 

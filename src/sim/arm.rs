@@ -1,0 +1,139 @@
+//! One arm of the scene: a servo in every joint, a gripper at the end.
+
+use rapier3d_f64::prelude::{MultibodyJointHandle, PhysicsWorld};
+
+use super::{
+    SimError,
+    bodies::ArmBodies,
+    body_chain::{BodyChain, ChainLink},
+    gripper::SimGripper,
+    pad::PadContact,
+    servo::Servo,
+};
+use crate::{
+    model::{
+        plan::{ArmHold, PlacedObject},
+        trace::ArmSample,
+    },
+    robot::{Arm, Chain, Robot},
+};
+
+/// A servo, where it acts, and where its spring rests in this step.
+struct DrivenJoint {
+    servo: Servo,
+    place: ChainLink,
+    rest_rad: f64,
+}
+
+/// An arm of the scene.
+pub(super) struct SimArm {
+    /// Any of the arm's joints: the way to its multibody.
+    multibody: MultibodyJointHandle,
+    joints: Vec<DrivenJoint>,
+    /// What it holds with.
+    pub gripper: SimGripper,
+}
+
+impl SimArm {
+    /// Builds an arm that stands still at `hold.q_rad` with its pads on the object's faces.
+    ///
+    /// # Errors
+    /// [`SimError::Massless`] when a part that moves has no mass.
+    pub fn new(
+        world: &mut PhysicsWorld,
+        robot: &Robot,
+        arm_index: usize,
+        hold: &ArmHold,
+        object: &PlacedObject,
+        friction: f64,
+    ) -> Result<Self, SimError> {
+        let arm = &robot.arms[arm_index];
+        let merged = ArmBodies::new(robot, arm);
+        let chain = BodyChain::insert(world, robot, &merged.bodies)?;
+        let place = |joint: usize| chain.links[merged.of_joint[joint]];
+        let arm_joints: Vec<_> = (0..arm.joints.len()).map(place).collect();
+        let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
+        let contact = PadContact::new(world, friction, hold.grip_force_n, object.mass_kg);
+        let gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
+
+        let PhysicsWorld { bodies, colliders, multibody_joints, .. } = world;
+        let handle = fingers[0].joint;
+        let (multibody, _) = multibody_joints.get_mut(handle).ok_or(SimError::Engine)?;
+        let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
+        gripper.close(multibody, hold.grip_force_n, finger_m, object.mass_kg);
+        let mut positions = vec![0.0; chain.links.len()];
+        for (joint, q_rad) in arm_joints.iter().zip(&hold.q_rad) {
+            positions[joint.dof] = *q_rad;
+        }
+        for (finger, position_m) in fingers.iter().zip(finger_m) {
+            positions[finger.dof] = position_m;
+        }
+        multibody.apply_displacements(&positions);
+        multibody.forward_kinematics(bodies, false);
+        multibody.update_rigid_bodies(bodies, true);
+        bodies.propagate_modified_body_positions_to_colliders(colliders);
+        let weight_nm = weight_torque_nm(robot, arm_index, &hold.q_rad, object.size_m[2]);
+        let joints = driven_joints(arm, hold, &arm_joints, &weight_nm);
+        for DrivenJoint { place, servo, .. } in &joints {
+            multibody.damping_mut()[place.dof] = servo.damping_nm_s_rad;
+        }
+        Ok(Self { multibody: handle, joints, gripper })
+    }
+
+    /// Lets every servo react to the state before a step.
+    pub fn drive(&mut self, world: &mut PhysicsWorld, timestep_s: f64) {
+        let Some((multibody, _)) = world.multibody_joints.get_mut(self.multibody) else { return };
+        for joint in &mut self.joints {
+            let (q_rad, velocity_rad_s) = (joint.place.position(multibody), joint.place.velocity(multibody));
+            joint.rest_rad = joint.servo.rest_rad(q_rad, velocity_rad_s, timestep_s);
+            joint.place.set_spring(multibody, joint.servo.stiffness_nm_rad, joint.rest_rad);
+        }
+    }
+
+    /// The largest joint speed, rad/s.
+    pub fn fastest_joint_rad_s(&self, world: &PhysicsWorld) -> f64 {
+        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return 0.0 };
+        self.joints.iter().map(|joint| joint.place.velocity(multibody).abs()).fold(0.0, f64::max)
+    }
+
+    /// Writes the joints' part of the state after a step.
+    pub fn observe_joints(&self, world: &PhysicsWorld, sample: &mut ArmSample) {
+        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return };
+        for (k, DrivenJoint { servo, place, rest_rad }) in self.joints.iter().enumerate() {
+            let (q_rad, velocity_rad_s) = (place.position(multibody), place.velocity(multibody));
+            sample.q_rad[k] = q_rad;
+            sample.torque_demanded_nm[k] = servo.demanded_nm(q_rad, velocity_rad_s);
+            sample.torque_applied_nm[k] = servo.applied_nm(*rest_rad, q_rad, velocity_rad_s);
+        }
+        for (travel_m, found_m) in sample.finger_m.iter_mut().zip(self.gripper.travel_m(multibody)) {
+            *travel_m = found_m;
+        }
+    }
+}
+
+/// The servos that hold an arm at its planned angles.
+fn driven_joints(arm: &Arm, hold: &ArmHold, places: &[ChainLink], weight_nm: &[f64]) -> Vec<DrivenJoint> {
+    places
+        .iter()
+        .enumerate()
+        .map(|(k, &place)| {
+            let servo = Servo {
+                wanted_rad: hold.q_rad[k],
+                feed_forward_nm: weight_nm[k],
+                stiffness_nm_rad: arm.stiffness_nm_rad[k],
+                damping_nm_s_rad: arm.damping_nm_s_rad[k],
+                effort_nm: arm.effort_nm[k],
+            };
+            DrivenJoint { servo, place, rest_rad: servo.rest_rad(servo.wanted_rad, 0.0, 0.0) }
+        })
+        .collect()
+}
+
+/// The joint torques with which the robot's model holds the arm's own weight, N m.
+fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
+    if q_rad.is_empty() {
+        return Vec::new();
+    }
+    let travel_m = robot.arms[arm_index].gripper.travel_for_gap_m(0, gap_m);
+    Chain::new(robot, arm_index, travel_m).gravity_torque_nm(q_rad).as_slice().to_vec()
+}

@@ -1,0 +1,144 @@
+//! The moving bodies of one arm: the links of a [`Robot`] with everything that does not move between them merged.
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+use crate::{
+    model::frames::Pose,
+    robot::{Arm, Link, Robot},
+};
+
+/// A link that moves with one joint of the arm or gripper, and all links fixed to it.
+pub(super) struct MovingBody {
+    /// The joint that moves it, an index into [`Robot::joints`].
+    pub joint: usize,
+    /// The body that the joint hangs on, an index into [`ArmBodies::bodies`]; none for the world.
+    pub parent: Option<usize>,
+    /// Pose of the joint's frame in the parent body, or in W.
+    pub x_pj: Pose,
+    /// Mass and its distribution in the frame of the joint's child link.
+    pub mass: MassSum,
+}
+
+/// Mass, centre of mass and inertia of several links together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MassSum {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Centre of mass in the body's frame, m.
+    pub com_b: Vector3<f64>,
+    /// Inertia about the centre of mass in the body's axes, kg m^2.
+    pub inertia_b: Matrix3<f64>,
+}
+
+impl MassSum {
+    const NOTHING: Self = Self {
+        mass_kg: 0.0,
+        com_b: Vector3::new(0.0, 0.0, 0.0),
+        inertia_b: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    };
+
+    /// This and a link at `x_bl`, by the parallel axis theorem.
+    fn with_link(&self, link: &Link, x_bl: &Pose) -> Self {
+        let mass_kg = self.mass_kg + link.mass_kg;
+        if mass_kg == 0.0 {
+            return *self;
+        }
+        let link_com_b = (x_bl * nalgebra::Point3::from(link.com_l)).coords;
+        let com_b = (self.com_b * self.mass_kg + link_com_b * link.mass_kg) / mass_kg;
+        let rotation = x_bl.rotation.to_rotation_matrix();
+        let link_inertia_b = rotation.matrix() * link.inertia_l * rotation.matrix().transpose();
+        let inertia_b = self.inertia_b
+            + steiner(self.mass_kg, &(self.com_b - com_b))
+            + link_inertia_b
+            + steiner(link.mass_kg, &(link_com_b - com_b));
+        Self { mass_kg, com_b, inertia_b }
+    }
+}
+
+/// Inertia of a point mass at `r`, kg m^2.
+fn steiner(mass_kg: f64, r: &Vector3<f64>) -> Matrix3<f64> {
+    (Matrix3::identity() * r.norm_squared() - r * r.transpose()) * mass_kg
+}
+
+/// Where a link sits: in a moving body, or in the world.
+#[derive(Clone, Copy)]
+pub(super) struct Seat {
+    /// An index into [`ArmBodies::bodies`]; none for the world.
+    pub body: Option<usize>,
+    /// Pose of the link in that body, or in W.
+    pub x_bl: Pose,
+}
+
+/// An arm and its gripper as moving bodies.
+pub(super) struct ArmBodies {
+    /// Parents before children.
+    pub bodies: Vec<MovingBody>,
+    /// The body of each joint of the arm, then of each finger.
+    pub of_joint: Vec<usize>,
+    /// The seat of every link of the robot, in the robot's order.
+    pub seats: Vec<Seat>,
+}
+
+impl ArmBodies {
+    /// Merges the robot's links into the bodies that this arm moves. Joints that are no part of the arm stay at zero, or
+    /// at the limit next to it.
+    pub fn new(robot: &Robot, arm: &Arm) -> Self {
+        let moving: Vec<usize> =
+            arm.joints.iter().copied().chain(arm.gripper.fingers.iter().map(|finger| finger.joint)).collect();
+        let at_rest = robot.positions(&[]);
+        let mut bodies: Vec<MovingBody> = Vec::new();
+        let mut of_joint = vec![0; moving.len()];
+        let mut seats: Vec<Seat> = Vec::with_capacity(robot.links.len());
+        for link in &robot.links {
+            let seat = match link.parent_joint {
+                None => Seat { body: None, x_bl: Isometry3::identity() },
+                Some(joint) => {
+                    let hinge = &robot.joints[joint];
+                    let parent = seats[hinge.parent_link];
+                    let x_bj = parent.x_bl * hinge.x_pj;
+                    match moving.iter().position(|&m| m == joint) {
+                        None => Seat { body: parent.body, x_bl: parent.x_bl * hinge.x_pc(at_rest[joint]) },
+                        Some(place) => {
+                            of_joint[place] = bodies.len();
+                            bodies.push(MovingBody { joint, parent: parent.body, x_pj: x_bj, mass: MassSum::NOTHING });
+                            Seat { body: Some(bodies.len() - 1), x_bl: Isometry3::identity() }
+                        }
+                    }
+                }
+            };
+            if let Some(body) = seat.body {
+                bodies[body].mass = bodies[body].mass.with_link(link, &seat.x_bl);
+            }
+            seats.push(seat);
+        }
+        Self { bodies, of_joint, seats }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::UnitQuaternion;
+
+    use super::*;
+
+    fn box_link(mass_kg: f64, [x, y, z]: [f64; 3], com_l: Vector3<f64>) -> Link {
+        let diagonal = Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y) * (mass_kg / 12.0);
+        let inertia_l = Matrix3::from_diagonal(&diagonal);
+        Link { name: "box".into(), parent_joint: None, mass_kg, com_l, inertia_l, shapes: Vec::new() }
+    }
+
+    #[test]
+    fn two_halves_make_a_whole() {
+        // A box 0.4 m long, cut in two; the halves' frames are turned and off their centres of mass.
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
+        let x_bl = |x: f64| Isometry3::from_parts(Vector3::new(x, 0.0, 0.0).into(), turn);
+        // Turned by a quarter about z, the half's long side lies along y_L, and x_B is -y_L.
+        let half = box_link(1.5, [0.1, 0.2, 0.3], Vector3::new(0.0, -0.05, 0.0));
+        let merged = MassSum::NOTHING.with_link(&half, &x_bl(-0.15)).with_link(&half, &x_bl(0.05));
+        let whole = box_link(3.0, [0.4, 0.1, 0.3], Vector3::zeros());
+        assert_eq!(merged.mass_kg, 3.0);
+        // Rounding of products of numbers below one.
+        assert!(merged.com_b.norm() < 1e-15, "{}", merged.com_b);
+        assert!((merged.inertia_b - whole.inertia_l).norm() < 1e-15, "{}", merged.inertia_b);
+    }
+}

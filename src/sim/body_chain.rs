@@ -1,0 +1,137 @@
+//! A chain of bodies in the engine: the moving bodies of an arm on a fixed root, one joint each.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use rapier3d_f64::prelude::{
+    GenericJoint, GenericJointBuilder, JointAxesMask, JointAxis, MassProperties, Multibody, MultibodyJointHandle,
+    PhysicsWorld, RigidBodyBuilder, RigidBodyHandle,
+};
+
+use super::{SimError, bodies::MovingBody, border};
+use crate::robot::{JointKind, Robot};
+
+/// A moving body in the engine and the joint that moves it.
+#[derive(Clone, Copy)]
+pub(super) struct ChainLink {
+    /// The body.
+    pub body: RigidBodyHandle,
+    /// Its joint: the way to the multibody.
+    pub joint: MultibodyJointHandle,
+    /// The body's link in the multibody.
+    pub link: usize,
+    /// The joint's place in the multibody's velocities, damping and displacements.
+    pub dof: usize,
+    /// The joint's axis among the engine's six.
+    pub axis: JointAxis,
+}
+
+impl ChainLink {
+    /// The joint's position, rad or m.
+    pub fn position(&self, multibody: &Multibody) -> f64 {
+        multibody.link(self.link).map_or(f64::NAN, |link| link.joint().coords()[self.axis as usize])
+    }
+
+    /// The joint's velocity, rad/s or m/s.
+    pub fn velocity(&self, multibody: &Multibody) -> f64 {
+        multibody.generalized_velocity()[self.dof]
+    }
+
+    /// A spring in the joint, which the engine integrates implicitly: `stiffness (rest - position)`.
+    pub fn set_spring(&self, multibody: &mut Multibody, stiffness: f64, rest: f64) {
+        if let Some(link) = multibody.link_mut(self.link) {
+            link.joint.set_spring(self.axis as usize, stiffness, rest);
+        }
+    }
+
+    /// Limits of the joint's position.
+    pub fn set_limits(&self, multibody: &mut Multibody, limits: [f64; 2]) {
+        if let Some(link) = multibody.link_mut(self.link) {
+            link.joint.data.set_limits(self.axis, limits);
+        }
+    }
+}
+
+/// The bodies of an arm in the engine.
+pub(super) struct BodyChain {
+    /// The world end.
+    root: RigidBodyHandle,
+    /// In the order of the moving bodies.
+    pub links: Vec<ChainLink>,
+}
+
+impl BodyChain {
+    /// Inserts a fixed root and the bodies, every joint at position zero and without damping.
+    ///
+    /// # Errors
+    /// [`SimError::Massless`] when a body has no mass: the engine could not move it.
+    pub fn insert(world: &mut PhysicsWorld, robot: &Robot, moving: &[MovingBody]) -> Result<Self, SimError> {
+        let mut chain =
+            Self { root: world.bodies.insert(RigidBodyBuilder::fixed()), links: Vec::with_capacity(moving.len()) };
+        for body in moving {
+            let parent = chain.body(body.parent);
+            chain.links.push(insert_body(world, robot, body, parent)?);
+        }
+        let PhysicsWorld { bodies, multibody_joints, .. } = world;
+        if let Some((multibody, _)) = chain.links.first().and_then(|first| multibody_joints.get_mut(first.joint)) {
+            // Only now does the engine know that the root is fixed, and so where every joint's coordinates lie.
+            multibody.forward_kinematics(bodies, true);
+            // The engine would give every revolute joint a damping of 0.1.
+            multibody.damping_mut().fill(0.0);
+            multibody.set_self_contacts_enabled(false);
+            for place in &mut chain.links {
+                place.dof = multibody.link(place.link).map_or(0, |link| link.assembly_id());
+            }
+        }
+        Ok(chain)
+    }
+
+    /// The body in the engine of a moving body, or of the world end.
+    pub fn body(&self, moving: Option<usize>) -> RigidBodyHandle {
+        moving.map_or(self.root, |body| self.links[body].body)
+    }
+}
+
+/// One body with its mass, and its joint.
+fn insert_body(
+    world: &mut PhysicsWorld,
+    robot: &Robot,
+    moving: &MovingBody,
+    parent: RigidBodyHandle,
+) -> Result<ChainLink, SimError> {
+    let joint = &robot.joints[moving.joint];
+    let mass = &moving.mass;
+    if mass.mass_kg <= 0.0 {
+        return Err(SimError::Massless { link: robot.links[joint.child_link].name.clone() });
+    }
+    let properties = MassProperties::with_inertia_matrix(
+        border::vector(&mass.com_b),
+        mass.mass_kg,
+        border::symmetric(&mass.inertia_b),
+    );
+    let builder = RigidBodyBuilder::dynamic().additional_mass_properties(properties).can_sleep(false);
+    let body = world.bodies.insert(builder);
+    // Until this the engine reports no mass, and the torque that should hold the arm's weight would come out as zero.
+    world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
+
+    let (data, axis) = engine_joint(joint.kind, &joint.axis_j, moving);
+    let handle = world.multibody_joints.insert(parent, body, data, true).ok_or(SimError::Engine)?;
+    let (_, link) = world.multibody_joints.get(handle).ok_or(SimError::Engine)?;
+    Ok(ChainLink { body, joint: handle, link, dof: 0, axis })
+}
+
+/// The engine's joints move along or about their own x, so both frames are turned to bring x onto the axis.
+fn engine_joint(kind: JointKind, axis_j: &Vector3<f64>, moving: &MovingBody) -> (GenericJoint, JointAxis) {
+    let turn = UnitQuaternion::rotation_between(&Vector3::x(), axis_j)
+        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
+    let x_ja = Isometry3::from_parts(Vector3::zeros().into(), turn);
+    let (locked, axis) = match kind {
+        JointKind::Prismatic => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
+        // A fixed joint never becomes a moving body.
+        JointKind::Revolute | JointKind::Fixed => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
+    };
+    let data = GenericJointBuilder::new(locked)
+        .local_frame1(border::engine_pose(&(moving.x_pj * x_ja)))
+        .local_frame2(border::engine_pose(&x_ja))
+        .contacts_enabled(false)
+        .build();
+    (data, axis)
+}

@@ -1,0 +1,127 @@
+//! A parallel gripper in the engine: two coupled fingers, pushed with a constant force, and their pads.
+
+use nalgebra::{Isometry3, Translation3};
+use rapier3d_f64::prelude::{Multibody, MultibodyDofCoupling, PhysicsWorld, RigidBodyHandle};
+
+use super::{
+    bodies::ArmBodies,
+    body_chain::{BodyChain, ChainLink},
+    border,
+    pad::{PadContact, SimPad},
+};
+use crate::{
+    model::frames::Pose,
+    robot::{Arm, Finger, Gripper, Robot},
+};
+
+/// Damping of each finger, N s/m (METHOD gives none): a finger of 30 g with its share of the board comes to rest within
+/// a few milliseconds, far faster than an arm.
+const FINGER_DAMPING_N_S_M: f64 = 50.0;
+
+/// Stiffness, N/m, of the spring that stands for the constant force on a finger: so soft that over a whole travel of
+/// 20 mm the force changes by less than a thousandth of 30 N. It acts in the joint, so it pulls the palm exactly as
+/// hard as it pushes the finger.
+const PUSH_STIFFNESS_N_M: f64 = 1.0;
+
+/// A finger of the gripper.
+struct SimFinger {
+    place: ChainLink,
+    finger: Finger,
+    /// Limits of the joint position, m.
+    limits_m: [f64; 2],
+}
+
+/// A gripper of the scene.
+pub(super) struct SimGripper {
+    fingers: [SimFinger; 2],
+    /// The finger on the +y_G side first.
+    pub pads: [SimPad; 2],
+    /// The body that carries G.
+    hand: RigidBodyHandle,
+    /// The frame with the axes of G at the centre between the pads, in that body.
+    x_bc: Pose,
+    /// G in that body.
+    x_bg: Pose,
+}
+
+impl SimGripper {
+    /// Puts pads on the fingers of an arm.
+    pub fn new(
+        world: &mut PhysicsWorld,
+        robot: &Robot,
+        arm: &Arm,
+        merged: &ArmBodies,
+        chain: &BodyChain,
+        contact: PadContact,
+    ) -> Self {
+        let seat = merged.seats[arm.gripper.frame_link];
+        let parts = [0, 1].map(|k| {
+            let body = merged.of_joint[arm.joints.len() + k];
+            let x_gj = seat.x_bl.inverse() * merged.bodies[body].x_pj;
+            let joint = &robot.joints[arm.gripper.fingers[k].joint];
+            let finger = arm.gripper.fingers[k].clone();
+            let place = chain.links[body];
+            let x_gf = x_gj * Translation3::from(joint.axis_j.into_inner() * finger.closed_m);
+            let pad = SimPad::new(world, &finger.pad, k, place.body, &x_gf, contact);
+            (SimFinger { place, finger, limits_m: [joint.lower, joint.upper] }, pad)
+        });
+        let [(first, upper), (second, lower)] = parts;
+        Self {
+            fingers: [first, second],
+            pads: [upper, lower],
+            hand: chain.body(seat.body),
+            x_bc: seat.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
+            x_bg: seat.x_bl,
+        }
+    }
+
+    /// Joint positions of the fingers with the pads `gap_m` apart.
+    pub fn positions_at_gap_m(&self, gripper: &Gripper, gap_m: f64) -> [f64; 2] {
+        [0, 1].map(|k| gripper.fingers[k].joint_position_m(gripper.travel_for_gap_m(k, gap_m)))
+    }
+
+    /// Couples the fingers, so that both open by the same travel, and pushes each with `force_n` towards the other, which is
+    /// exact at `positions_m`.
+    ///
+    /// A geared drive adds its own inertia to each finger; no figure is known, and no state of rest depends on it.
+    /// The solver, which goes from contact to contact, converges when the masses on both sides of them are alike:
+    /// measured, a bare finger of 30 g shakes a board of more than 0.3 kg out of its grip, and a drive of 0.3 to 20
+    /// times the board's mass holds every board still. So the caller gives the board's mass.
+    pub fn close(&self, multibody: &mut Multibody, force_n: f64, positions_m: [f64; 2], drive_inertia_kg: f64) {
+        let [first, second] = &self.fingers;
+        let coeff = first.finger.opening_sign * second.finger.opening_sign;
+        multibody.add_dof_coupling(MultibodyDofCoupling {
+            link1: first.place.link,
+            dof1: 0,
+            axis1: first.place.axis as usize,
+            link2: second.place.link,
+            dof2: 0,
+            axis2: second.place.axis as usize,
+            coeff,
+            offset: second.finger.closed_m - coeff * first.finger.closed_m,
+        });
+        // The coupling hands the first finger's limits on to the second.
+        first.place.set_limits(multibody, first.limits_m);
+        for (SimFinger { place, finger, .. }, position_m) in self.fingers.iter().zip(positions_m) {
+            let rest_m = position_m - finger.opening_sign * force_n / PUSH_STIFFNESS_N_M;
+            place.set_spring(multibody, PUSH_STIFFNESS_N_M, rest_m);
+            multibody.damping_mut()[place.dof] = FINGER_DAMPING_N_S_M;
+            multibody.armature_mut()[place.dof] = drive_inertia_kg;
+        }
+    }
+
+    /// Travel of each finger from its closed limit, m.
+    pub fn travel_m(&self, multibody: &Multibody) -> [f64; 2] {
+        self.fingers.each_ref().map(|f| f.finger.opening_sign * (f.place.position(multibody) - f.finger.closed_m))
+    }
+
+    /// Pose of G in the world.
+    pub fn x_wg(&self, world: &PhysicsWorld) -> Pose {
+        border::from_engine_pose(world.bodies[self.hand].position()) * self.x_bg
+    }
+
+    /// Pose of the frame with the axes of G at the centre between the pads, in the world.
+    pub fn x_wc(&self, world: &PhysicsWorld) -> Pose {
+        border::from_engine_pose(world.bodies[self.hand].position()) * self.x_bc
+    }
+}
