@@ -4,16 +4,17 @@
 //! `(weight + lambda load) . y <= sum_i h_i(-y)`, `h_i(-y)` the largest work of hand i on the twist `-y`. That is weak
 //! duality of the load program with a dual vector made from `y`; a few twists that loads tend to drive are tried.
 //!
-//! The largest work of a hand is the smaller of two bounds. Of its pads, `2 F max_c (v_n + mu |(v_t1, v_t2, e w_n)| +
-//! b |w_t1| + a |w_t2|)`, with `(v, w)` the twist at the pad in pad axes. Of its motors, `sum_k |a_k| tau_max,k - a_k
-//! g_k`, with `a` any joint motion that gives the hand that twist, `J a = -y`.
+//! Only the pads are asked: the largest work of a hand is `2 F max_c (v_n + mu |(v_t1, v_t2, e w_n)| + b |w_t1| +
+//! a |w_t2|)`, with `(v, w)` the twist at pad c in pad axes. Torque limits are left to the program: twists that they
+//! reject and the pads do not are too rare to look for here.
 
-use nalgebra::{Matrix6, Vector3};
+use nalgebra::Vector3;
 
 use super::{
-    compliance::{Twist, inverse},
+    compliance::Twist,
     hold::{HandModel, Hold, PadModel},
 };
+use crate::model::wrench::Wrench;
 
 /// How much more than the hands can undo a twist must ask for, relative, before it counts: rounding only.
 const ROUNDING_MARGIN: f64 = 1e-9;
@@ -38,8 +39,6 @@ pub enum LostMotion {
     Turn,
     /// About the line through two grasp points.
     Hinge,
-    /// The way the arms' springs would let it go.
-    GiveWay,
 }
 
 impl std::fmt::Display for CannotHold {
@@ -48,43 +47,31 @@ impl std::fmt::Display for CannotHold {
             LostMotion::Slide => "slides along the force on it",
             LostMotion::Turn => "turns about a hand",
             LostMotion::Hinge => "turns about the line through two hands",
-            LostMotion::GiveWay => "goes the way the arms give",
         };
         let percent = 100.0 * self.capacity_j / self.demand_j;
         write!(f, "the board {motion}: the hands can undo at most {percent:.0} % of weight and load")
     }
 }
 
-/// The first of the tried twists whose demand is more than the hands can undo.
-pub(super) fn cannot_hold(hold: &Hold, load_factor: f64) -> Option<CannotHold> {
-    let outer = hold.weight + hold.load.scaled(load_factor);
-    let exceeds = |motion: LostMotion, twist: &Twist, undo: &dyn Fn(usize, &Twist) -> f64| {
-        let back = Twist { linear: -twist.linear, angular: -twist.angular };
-        let demand_j = twist.work(&outer);
-        let capacity_j: f64 = (0..hold.hands.len()).map(|hand| undo(hand, &back)).sum();
-        let lost = demand_j > capacity_j + ROUNDING_MARGIN * demand_j.abs();
-        lost.then_some(CannotHold { motion, demand_j, capacity_j })
-    };
-    let of_pads = |hand: usize, back: &Twist| work_of_pads(&hold.hands[hand], back);
-    let rigid = rigid_motions(hold, load_factor);
-    if let Some(reason) = rigid.iter().find_map(|(motion, twist)| exceeds(*motion, twist, &of_pads)) {
-        return Some(reason);
+impl Hold {
+    /// A reason why this hold cannot stand a load factor; none means that it may or may not. A necessary test of two
+    /// microseconds: what it rejects, [`StabilityWorkspace::load_factor`](super::StabilityWorkspace::load_factor)
+    /// rejects.
+    pub fn cannot_hold(&self, load_factor: f64) -> Option<CannotHold> {
+        let outer = self.weight + self.load.scaled(load_factor);
+        let lost = |(motion, twist): (LostMotion, Twist)| {
+            let back = Twist { linear: -twist.linear, angular: -twist.angular };
+            let demand_j = twist.work(&outer);
+            let capacity_j: f64 = self.hands.iter().map(|hand| work_of_pads(hand, &back)).sum();
+            let is_lost = demand_j > capacity_j + ROUNDING_MARGIN * demand_j.abs();
+            is_lost.then_some(CannotHold { motion, demand_j, capacity_j })
+        };
+        rigid_motions(self, &outer).into_iter().find_map(lost)
     }
-    let springs: Option<Vec<Matrix6<f64>>> = hold.hands.iter().map(|hand| inverse(&hand.compliance())).collect();
-    let springs = springs?;
-    let of_hand = |hand: usize, back: &Twist| {
-        let model = &hold.hands[hand];
-        work_of_pads(model, back).min(work_of_motors(model, &springs[hand], back))
-    };
-    let welded = super::WeldedHold::from_stiffness(hold, &springs)?;
-    let gives = welded.twist_at_tip(&outer).at(&-hold.p_ot);
-    let all = rigid.iter().copied().chain([(LostMotion::GiveWay, gives)]);
-    all.into_iter().find_map(|(motion, twist)| exceeds(motion, &twist, &of_hand))
 }
 
 /// The twists that are tried, stated for O's origin.
-fn rigid_motions(hold: &Hold, load_factor: f64) -> Vec<(LostMotion, Twist)> {
-    let outer = hold.weight + hold.load.scaled(load_factor);
+fn rigid_motions(hold: &Hold, outer: &Wrench) -> Vec<(LostMotion, Twist)> {
     let turn_about = |point: &Vector3<f64>, axis: Vector3<f64>| Twist { linear: -axis.cross(point), angular: axis };
     let mut motions = vec![(LostMotion::Slide, Twist { linear: outer.force_n, angular: Vector3::zeros() })];
     for (number, hand) in hold.hands.iter().enumerate() {
@@ -114,12 +101,4 @@ fn work_per_normal_force(pad: &PadModel, twist: &Twist) -> f64 {
     let [a, b] = pad.half_sides_m;
     let friction = v.x.hypot(v.y).hypot(pad.torsion_radius_m() * w.z);
     v.z + pad.friction * friction + b * w.x.abs() + a * w.y.abs()
-}
-
-/// The most work of an arm's motors; its joints move as its springs would, `a = K_q^-1 J' C^-1 twist`.
-fn work_of_motors(hand: &HandModel, stiffness: &Matrix6<f64>, twist: &Twist) -> f64 {
-    let at_hand = twist.at(&hand.grasp_point_o).to_vector();
-    let motion = hand.jacobian_o.tr_mul(&(stiffness * at_hand)).component_div(&hand.stiffness_nm_rad);
-    let joints = motion.iter().zip(hand.effort_nm.iter()).zip(hand.gravity_torque_nm.iter());
-    joints.map(|((motion, effort), gravity)| motion.abs() * effort - motion * gravity).sum()
 }

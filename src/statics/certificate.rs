@@ -4,9 +4,11 @@
 //! `q'x = -lambda` that is `lambda <= b'z - r'x`, and every variable is bounded by the grip: `fn <= 2 F`, the others
 //! by friction and the pad's size. So any `z` gives a bound, and a good one a tight bound.
 
+use nalgebra::Vector6;
+
 use super::{
-    hold::{Hold, HoldError},
-    program::{FORCE_UNIT_N, Layout, MAX_LOAD_FACTOR, Program, ProgramKind},
+    hold::{HandModel, Hold, HoldError},
+    program::{FORCE_UNIT_N, Layout, MAX_LOAD_FACTOR, Program, ProgramKind, wrench_units},
 };
 
 /// A dual vector of a hold's load program, in the program's scaled rows.
@@ -73,7 +75,23 @@ fn largest_variables(hold: &Hold, program: &Program) -> Vec<f64> {
             let friction = pad.friction * normal;
             largest.extend([friction, friction, normal, normal, normal, friction]);
         }
+        largest.extend(largest_wrench(hand).iter());
     }
     largest.push(MAX_LOAD_FACTOR * program.load_scale);
     largest
+}
+
+/// Bounds of the components of a hand's scaled wrench: each pad's force is at most `(1 + mu) 2 F`, and its moment about
+/// the grasp point that times the distance, plus its own.
+fn largest_wrench(hand: &HandModel) -> Vector6<f64> {
+    let normal_n = 2.0 * hand.grip_force_n;
+    let (mut force_n, mut moment_nm) = (0.0, 0.0);
+    for pad in &hand.pads {
+        let pad_force_n = normal_n * (1.0 + pad.friction);
+        let [a, b] = pad.half_sides_m;
+        let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
+        force_n += pad_force_n;
+        moment_nm += pad_force_n * lever_m + normal_n * (a + b + pad.friction * pad.torsion_radius_m());
+    }
+    Vector6::new(force_n, force_n, force_n, moment_nm, moment_nm, moment_nm).component_div(&wrench_units())
 }

@@ -76,18 +76,13 @@ impl WeldedHold {
     /// twist at the tool tip to that at the grasp point. None when an arm has a direction in which its joints' springs
     /// do not give way at all (fewer than six joints, or a singular posture): its stiffness there is not finite.
     pub fn new(hold: &Hold) -> Option<Self> {
-        let springs: Option<Vec<Matrix6<f64>>> = hold.hands.iter().map(|hand| inverse(&hand.compliance())).collect();
-        Self::from_stiffness(hold, &springs?)
-    }
-
-    /// The same, for the arms' stiffness at their grasp points.
-    pub(super) fn from_stiffness(hold: &Hold, springs: &[Matrix6<f64>]) -> Option<Self> {
         let mut stiffness_t = Matrix6::zeros();
         let mut hands = Vec::with_capacity(hold.hands.len());
-        for (hand, stiffness) in hold.hands.iter().zip(springs) {
+        for hand in &hold.hands {
+            let stiffness = inverse(&hand.compliance())?;
             let map = twist_map(&(hand.grasp_point_o - hold.p_ot));
             stiffness_t += map.transpose() * stiffness * map;
-            hands.push((*stiffness, map));
+            hands.push((stiffness, map));
         }
         Some(Self { p_ot: hold.p_ot, stiffness_t, factor: stiffness_t.cholesky()?, hands })
     }
@@ -126,7 +121,7 @@ fn twist_map(lever: &Vector3<f64>) -> Matrix6<f64> {
 }
 
 /// The inverse of a positive definite compliance; none when it is singular but for rounding.
-pub(super) fn inverse(compliance: &Matrix6<f64>) -> Option<Matrix6<f64>> {
+fn inverse(compliance: &Matrix6<f64>) -> Option<Matrix6<f64>> {
     // Rotations measured at this lever, so that pivots compare.
     let lever = super::program::LENGTH_UNIT_M;
     let mut scale = Matrix6::identity();

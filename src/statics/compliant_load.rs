@@ -6,8 +6,8 @@ use super::{
     equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome},
     hold::Hold,
     load_factor::LoadFactorOutcome,
-    program::{HandBlock, MAX_LOAD_FACTOR},
-    workspace::energy_blocks,
+    program::{HandEnergy, MAX_LOAD_FACTOR},
+    workspace::hand_energies,
 };
 use crate::model::scenario::Limits;
 
@@ -127,7 +127,7 @@ struct Search<'a> {
     workspace: &'a mut StabilityWorkspace,
     hold: &'a Hold,
     limits: &'a Limits,
-    blocks: Vec<HandBlock>,
+    energies: Vec<HandEnergy>,
     solves: usize,
 }
 
@@ -139,8 +139,8 @@ struct Search<'a> {
 /// work done by the load grows with it, since the complementary energy is convex; that each limit's own measure grows as
 /// well is taken for granted.
 pub(super) fn search(workspace: &mut StabilityWorkspace, hold: &Hold, limits: &Limits) -> CompliantLoadFactor {
-    let blocks = energy_blocks(hold);
-    let mut search = Search { workspace, hold, limits, blocks, solves: 0 };
+    let energies = hand_energies(hold);
+    let mut search = Search { workspace, hold, limits, energies, solves: 0 };
     match search.run() {
         Ok((load_factor, first_limit)) => CompliantLoadFactor { load_factor, first_limit, equilibria: search.solves },
         Err(crossing) => {
@@ -190,7 +190,7 @@ impl Search<'_> {
 
     fn unloaded(&mut self) -> Result<Equilibrium, Crossing> {
         self.solves += 1;
-        match self.workspace.solve_equilibrium(self.hold, &self.blocks, 0.0) {
+        match self.workspace.solve_equilibrium(self.hold, &self.energies, 0.0) {
             EquilibriumOutcome::Found(unloaded) => Ok(unloaded),
             EquilibriumOutcome::None => Err(Crossing::NoEquilibrium { binding: Vec::new() }),
             EquilibriumOutcome::Unknown { status } => Err(Crossing::Unknown { status }),
@@ -209,7 +209,7 @@ impl Search<'_> {
     fn probe(&mut self, unloaded: &Equilibrium, load_factor: f64) -> Probe {
         self.solves += 1;
         let failed = |crossing| Probe { load_factor, ratio: f64::INFINITY, crossing };
-        match self.workspace.solve_equilibrium(self.hold, &self.blocks, load_factor) {
+        match self.workspace.solve_equilibrium(self.hold, &self.energies, load_factor) {
             EquilibriumOutcome::Found(loaded) => {
                 let response = CompliantResponse::between(self.hold, unloaded, loaded);
                 let (ratio, crossing) = response.worst(self.hold, self.limits);

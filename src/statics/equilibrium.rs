@@ -18,13 +18,13 @@
 //! multipliers and changes the board's displacement by less than a ten-thousandth.
 
 use clarabel::solver::SolverStatus;
-use nalgebra::{DVector, Matrix6, SMatrix, Vector3};
+use nalgebra::{DVector, Vector3};
 
 use super::{
     compliance::Twist,
     hold::{HandModel, Hold},
     load_factor::{balance_twist, joint_torque},
-    program::{FORCE_UNIT_N, HAND_VARIABLES, HandBlock, RawSolution, pad_map, pad_wrenches},
+    program::{FORCE_UNIT_N, HandEnergy, RawSolution, pad_wrenches, wrench_units},
 };
 use crate::model::wrench::Wrench;
 
@@ -128,18 +128,13 @@ pub enum ResponseOutcome {
     },
 }
 
-/// The energy's matrix over one hand's scaled variables, in units of 10 N x 1 mm.
-pub(super) fn energy_block(hand: &HandModel) -> HandBlock {
-    let mut map = SMatrix::<f64, 6, HAND_VARIABLES>::zeros();
-    for (number, pad) in hand.pads.iter().enumerate() {
-        let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
-        let of_pad: Matrix6<f64> = pad_map(pad, &lever_o);
-        map.fixed_view_mut::<6, 6>(0, 6 * number).copy_from(&of_pad);
-    }
+/// One hand's energy in the scaled variables, in units of 10 N x 1 mm.
+pub(super) fn hand_energy(hand: &HandModel) -> HandEnergy {
     let energy_unit_j = FORCE_UNIT_N * DISPLACEMENT_UNIT_M;
+    let units = wrench_units();
+    let arm = hand.compliance().component_mul(&(units * units.transpose())) / energy_unit_j;
     // The pads' variables are scaled by the levers that divide their compliance, so it is the same for all.
-    let pad = PAD_COMPLIANCE_M_N * FORCE_UNIT_N * FORCE_UNIT_N;
-    (map.transpose() * hand.compliance() * map + HandBlock::identity() * pad) / energy_unit_j
+    HandEnergy { arm, pads: PAD_COMPLIANCE_M_N * FORCE_UNIT_N * FORCE_UNIT_N / energy_unit_j }
 }
 
 /// Reads clarabel's answer to an equilibrium program.

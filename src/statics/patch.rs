@@ -13,14 +13,13 @@ pub fn mean_distance_from_centre_m(half_sides_m: [f64; 2]) -> f64 {
     a.hypot(b) / 3.0 + a * a / (6.0 * b) * (b / a).asinh() + b * b / (6.0 * a) * (a / b).asinh()
 }
 
-/// The part of a pad that counts when it overhangs a face: the largest rectangle with the pad's own axes, of those that
-/// trimming each of its four sides inward gives, that lies in the face.
+/// The part of a pad that counts when it overhangs a face: a rectangle with the pad's own axes that lies in both.
 ///
 /// The face is the rectangle of half sides `face_half_m` about its own centre; `x_fp` is the pad's pose in the face.
-/// Each edge of the face that the pad crosses is kept by moving one of the pad's sides inward until no corner is
-/// outside; of the two sides that could move, the one that leaves the larger area does. What remains is never more than
-/// the true intersection, so a bound computed with it errs on the safe side; for a pad with its sides along the face's
-/// it is exactly the intersection.
+/// The face's edges are taken one after the other: where a corner of the pad lies beyond one, one of the pad's sides is
+/// moved inward until none does; of the two sides that could be, the one whose move leaves the larger area. What remains
+/// is never more than the true intersection, so what is computed with it errs on the safe side; for a pad with its
+/// sides along the face's it is the intersection itself.
 ///
 /// Returns the remaining rectangle's centre in the face and its half sides along the pad's axes, m; none when nothing
 /// remains.

@@ -15,7 +15,7 @@ impl StabilityWorkspace {
     /// When the hold is broken.
     pub fn stands(&mut self, hold: &Hold, limits: &Limits, kind: StabilityKind) -> Result<bool, HoldError> {
         let least = limits.load_factor;
-        if Self::cannot_hold(hold, least).is_some() {
+        if hold.cannot_hold(least).is_some() {
             return Ok(false);
         }
         if self.load_factor(hold)?.load_factor().is_none_or(|load_factor| load_factor < least) {

@@ -1,18 +1,20 @@
 //! The cone programs of a hold in clarabel's form, `min 1/2 x'Px + q'x  s.t.  A x + s = b, s in K`, scaled.
 //!
-//! Variables: for each hand, for each of its pads, `(ft1, ft2, fn, mt1, mt2, mn)` in pad axes about the pad's centre,
-//! then, in the load program, the load factor. Rows, in the order of the cones:
+//! Variables: for each hand, for each of its pads, `(ft1, ft2, fn, mt1, mt2, mn)` in pad axes about the pad's centre;
+//! then the hand's wrench about its grasp point, which torque rows and energy are written in, half as wide as they
+//! would be in the pads' variables; last, in the load program, the load factor. Rows, in the order of the cones:
 //!
 //! | rows | cone | what |
 //! |---|---|---|
-//! | 6 | zero | balance of the object: sum of the pads' wrenches + lambda load = -weight |
+//! | 6 | zero | balance of the object: sum of the hands' wrenches + lambda load = -weight |
+//! | 6 a hand | zero | the hand's wrench is the sum of its pads' |
 //! | 1 a hand | zero | `fn_1 + fn_2 = 2 F` |
 //! | 2 (load program) | nonnegative | `0 <= lambda <= 100` |
 //! | 4 a pad | nonnegative | centre of pressure: `|mt1| <= b fn`, `|mt2| <= a fn`; `fn >= 0` follows |
 //! | 2 n a hand (with torque limits) | nonnegative | `J' w <= tau_max - tau_g`, `-J' w <= tau_max + tau_g` |
 //! | 4 a pad | second order | friction: `(mu fn, ft1, ft2, mn / e)` |
 //!
-//! Scales: forces in units of 10 N, moments of 10 N x 0.2 m in the balance rows; a pad's own moments by its half sides
+//! Scales: forces in units of 10 N, moments of 10 N x 0.2 m in hands' wrenches and balance; a pad's own moments by its half sides
 //! and torsion radius, so that every pad's rows look alike; torque rows by the joint's limit; lambda by the load's size.
 //! With these clarabel needs no equilibration of its own, whose memory of earlier data would make results depend on
 //! the order of solves.
@@ -24,7 +26,7 @@ use clarabel::{
         SupportedConeT::{self, NonnegativeConeT, SecondOrderConeT, ZeroConeT},
     },
 };
-use nalgebra::{Matrix6, Matrix6xX, SMatrix, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::hold::{HandModel, Hold, PadModel};
 use crate::model::wrench::Wrench;
@@ -38,11 +40,14 @@ pub(super) const FORCE_UNIT_N: f64 = 10.0;
 /// Unit of length of the moments in the balance rows, m.
 pub(super) const LENGTH_UNIT_M: f64 = 0.2;
 
+/// Clarabel's tolerance of gap and feasibility, in the scaled units.
+const SOLVER_TOLERANCE: f64 = 1e-7;
+
 /// Variables of one pad.
 pub(super) const PAD_VARIABLES: usize = 6;
 
-/// Variables of one hand.
-pub(super) const HAND_VARIABLES: usize = 2 * PAD_VARIABLES;
+/// Variables of one hand: its pads' and its wrench.
+pub(super) const HAND_VARIABLES: usize = 2 * PAD_VARIABLES + 6;
 
 /// What a program contains beside the balance, the grip and the pads' limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,13 +94,18 @@ impl Layout {
         HAND_VARIABLES * hand + PAD_VARIABLES * pad
     }
 
+    /// First of the six rows that say what a hand's wrench is.
+    fn wrench_rows(&self, hand: usize) -> usize {
+        6 + 6 * hand
+    }
+
     pub(super) fn grip_row(&self, hand: usize) -> usize {
-        6 + hand
+        self.wrench_rows(self.hands()) + hand
     }
 
     /// The row `-lambda <= 0`; the next one is `lambda <= 100`.
     pub(super) fn load_rows(&self) -> usize {
-        6 + self.hands()
+        self.grip_row(self.hands())
     }
 
     /// First of the four rows of a pad's centre of pressure: `+mt1, -mt1, +mt2, -mt2`.
@@ -173,7 +183,7 @@ impl Program {
         let size = load.norm();
         // Without a load any lambda will do.
         let load_scale = if size > 0.0 { size } else { 1.0 };
-        let mut columns = pad_columns(hold, &layout);
+        let mut columns = hand_columns(hold, &layout);
         columns.begin();
         (0..6).for_each(|row| columns.push(row, load[row] / load_scale));
         columns.push(layout.load_rows(), -1.0);
@@ -186,25 +196,37 @@ impl Program {
         Self { p: CscMatrix::zeros((q.len(), q.len())), q, a, b, layout, load_scale }
     }
 
-    /// Minimise `1/2 x'Px` at the given lambda; `p` is the compliance of each hand's pads in the scaled variables.
-    pub(super) fn equilibrium(hold: &Hold, blocks: &[HandBlock], lambda: f64) -> Self {
+    /// Minimise `1/2 x'Px` at the given lambda, `P` made of the energy of each hand.
+    pub(super) fn equilibrium(hold: &Hold, energies: &[HandEnergy], lambda: f64) -> Self {
         let layout = Layout::new(hold, ProgramKind::Equilibrium);
         let mut p = Columns::default();
-        for (hand, block) in blocks.iter().enumerate() {
-            for column in 0..HAND_VARIABLES {
+        for (hand, energy) in energies.iter().enumerate() {
+            let first = HAND_VARIABLES * hand;
+            for variable in first..first + 2 * PAD_VARIABLES {
                 p.begin();
-                (0..=column).for_each(|row| p.push(HAND_VARIABLES * hand + row, block[(row, column)]));
+                p.push(variable, energy.pads);
+            }
+            let wrench = first + 2 * PAD_VARIABLES;
+            for column in 0..6 {
+                p.begin();
+                (0..=column).for_each(|row| p.push(wrench + row, energy.arm[(row, column)]));
             }
         }
-        let a = pad_columns(hold, &layout).into_matrix(layout.rows());
+        let a = hand_columns(hold, &layout).into_matrix(layout.rows());
         let q = vec![0.0; layout.variables()];
         let b = limits(hold, &layout, lambda);
         Self { p: p.into_matrix(layout.variables()), q, a, b, layout, load_scale: 1.0 }
     }
 }
 
-/// A 12 x 12 block over the variables of one hand.
-pub(super) type HandBlock = SMatrix<f64, HAND_VARIABLES, HAND_VARIABLES>;
+/// The second derivatives of one hand's energy in the scaled variables.
+#[derive(Clone, Debug)]
+pub(super) struct HandEnergy {
+    /// Of the hand's wrench.
+    pub(super) arm: Matrix6<f64>,
+    /// Of each of its pads' variables.
+    pub(super) pads: f64,
+}
 
 /// Units of a pad's variables: N for the forces, N m for the moments.
 pub(super) fn pad_units(pad: &PadModel) -> Vector6<f64> {
@@ -218,7 +240,7 @@ pub(super) fn scaled(wrench: &Wrench) -> Vector6<f64> {
 }
 
 /// `[R 0; [p]x R, R]` times the variables' units: the wrench about a point, p leading from it to the pad, N and N m.
-pub(super) fn pad_map(pad: &PadModel, lever_o: &nalgebra::Vector3<f64>) -> Matrix6<f64> {
+pub(super) fn pad_map(pad: &PadModel, lever_o: &Vector3<f64>) -> Matrix6<f64> {
     let rotation = pad.rotation();
     let mut map = Matrix6::zeros();
     map.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
@@ -230,27 +252,23 @@ pub(super) fn pad_map(pad: &PadModel, lever_o: &nalgebra::Vector3<f64>) -> Matri
     map
 }
 
-/// The columns of the pads' variables.
-fn pad_columns(hold: &Hold, layout: &Layout) -> Columns {
+/// Units of a hand's wrench variables, N and N m.
+pub(super) fn wrench_units() -> Vector6<f64> {
+    let (force, moment) = (FORCE_UNIT_N, FORCE_UNIT_N * LENGTH_UNIT_M);
+    Vector6::new(force, force, force, moment, moment, moment)
+}
+
+/// The columns of all hands' variables.
+fn hand_columns(hold: &Hold, layout: &Layout) -> Columns {
     let mut columns = Columns::default();
     for (hand_number, hand) in hold.hands.iter().enumerate() {
         for (pad_number, pad) in hand.pads.iter().enumerate() {
-            let torque = layout.has_torque_rows().then(|| torque_map(hand, pad));
-            let place = (hand_number, pad_number);
-            push_pad(&mut columns, layout, place, pad, torque.as_ref());
+            let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
+            push_pad(&mut columns, layout, (hand_number, pad_number), pad, &lever_o);
         }
+        push_wrench(&mut columns, layout, hand_number, hand);
     }
     columns
-}
-
-/// n x 6, transposed to 6 x n: joint torque over limit for each of a pad's variables.
-fn torque_map(hand: &HandModel, pad: &PadModel) -> Matrix6xX<f64> {
-    let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
-    let mut map = pad_map(pad, &lever_o).transpose() * &hand.jacobian_o;
-    for (mut column, effort) in map.column_iter_mut().zip(hand.effort_nm.iter()) {
-        column /= *effort;
-    }
-    map
 }
 
 fn push_pad(
@@ -258,39 +276,48 @@ fn push_pad(
     layout: &Layout,
     (hand, number): (usize, usize),
     pad: &PadModel,
-    torque: Option<&Matrix6xX<f64>>,
+    lever_o: &Vector3<f64>,
 ) {
-    let balance = pad_map(pad, &pad.x_op.translation.vector);
-    let (pressure, friction) = (layout.pressure_rows(hand, number), layout.friction_rows(hand, number));
+    let (map, units) = (pad_map(pad, lever_o), wrench_units());
+    let (wrench, pressure) = (layout.wrench_rows(hand), layout.pressure_rows(hand, number));
+    let friction = layout.friction_rows(hand, number);
     for variable in 0..PAD_VARIABLES {
         columns.begin();
         // A moment has no force: those entries are zero by structure.
         let first = if variable < 3 { 0 } else { 3 };
-        for row in first..6 {
-            let unit = if row < 3 { FORCE_UNIT_N } else { FORCE_UNIT_N * LENGTH_UNIT_M };
-            columns.push(row, balance[(row, variable)] / unit);
-        }
+        (first..6).for_each(|row| columns.push(wrench + row, map[(row, variable)] / units[row]));
         match variable {
+            0 | 1 => columns.push(friction + 1 + variable, -1.0),
             2 => {
                 columns.push(layout.grip_row(hand), 1.0);
                 (0..4).for_each(|row| columns.push(pressure + row, -1.0));
+                columns.push(friction, -pad.friction);
             }
             3 | 4 => {
                 columns.push(pressure + 2 * (variable - 3), 1.0);
                 columns.push(pressure + 2 * (variable - 3) + 1, -1.0);
             }
-            _ => {}
+            _ => columns.push(friction + 3, -1.0),
         }
-        if let Some(torque) = torque {
-            let (row, joints) = (layout.torque_rows(hand), torque.ncols());
-            (0..joints).for_each(|joint| columns.push(row + joint, torque[(variable, joint)]));
-            (0..joints).for_each(|joint| columns.push(row + joints + joint, -torque[(variable, joint)]));
+    }
+}
+
+fn push_wrench(columns: &mut Columns, layout: &Layout, number: usize, hand: &HandModel) {
+    let units = wrench_units();
+    // The wrench about O: the moment gains p x f.
+    let lever = hand.grasp_point_o.cross_matrix() / LENGTH_UNIT_M;
+    for component in 0..6 {
+        columns.begin();
+        columns.push(component, 1.0);
+        if component < 3 {
+            (0..3).filter(|&row| row != component).for_each(|row| columns.push(3 + row, lever[(row, component)]));
         }
-        match variable {
-            0 | 1 => columns.push(friction + 1 + variable, -1.0),
-            2 => columns.push(friction, -pad.friction),
-            5 => columns.push(friction + 3, -1.0),
-            _ => {}
+        columns.push(layout.wrench_rows(number) + component, -1.0);
+        if layout.has_torque_rows() {
+            let (first, dof) = (layout.torque_rows(number), hand.dof());
+            let torque = |joint: usize| hand.jacobian_o[(component, joint)] * units[component] / hand.effort_nm[joint];
+            (0..dof).for_each(|joint| columns.push(first + joint, torque(joint)));
+            (0..dof).for_each(|joint| columns.push(first + dof + joint, -torque(joint)));
         }
     }
 }
@@ -348,26 +375,43 @@ impl ReusedSolver {
             .as_mut()
             .is_some_and(|(known, solver)| known == layout && solver.update_data(p, q, a, b).is_ok());
         if !reusable {
-            let solver = DefaultSolver::new(p, q, a, b, &layout.cones(), settings()).ok()?;
+            let solver = DefaultSolver::new(p, q, a, b, &layout.cones(), settings(false)).ok()?;
             self.solver = Some((layout.clone(), solver));
         }
         let (_, solver) = self.solver.as_mut()?;
         solver.solve();
+        if !is_conclusive(solver.solution.status) {
+            // Settings that may change between solves: neither call can fail.
+            solver.update_settings(settings(true)).ok()?;
+            solver.solve();
+            solver.update_settings(settings(false)).ok()?;
+        }
         let solution = &solver.solution;
         Some(RawSolution { status: solution.status, x: &solution.x, z: &solution.z, s: &solution.s })
     }
 }
 
-/// Clarabel's settings for small, well-scaled programs whose data are replaced between solves.
-fn settings() -> DefaultSettings<f64> {
+fn is_conclusive(status: SolverStatus) -> bool {
+    matches!(status, SolverStatus::Solved | SolverStatus::PrimalInfeasible)
+}
+
+/// Clarabel's settings for small, well-scaled programs whose data are replaced between solves. The refinement of its
+/// linear solves is a third of the time and seldom needed: clarabel measures its own residuals, so a solve without it
+/// either ends well or is repeated with care.
+fn settings(careful: bool) -> DefaultSettings<f64> {
     DefaultSettings {
         verbose: false,
-        // 9 to 15 iterations are usual.
+        // 8 to 15 iterations are usual.
         max_iter: 60,
         max_threads: 1,
         // Both would forbid, or colour, the reuse of a solver: see the module's text.
         presolve_enable: false,
         equilibrate_enable: false,
+        iterative_refinement_enable: careful,
+        // In the scaled units: 1e-7 of a load factor, 1e-4 micrometres.
+        tol_gap_abs: SOLVER_TOLERANCE,
+        tol_gap_rel: SOLVER_TOLERANCE,
+        tol_feas: SOLVER_TOLERANCE,
         ..DefaultSettings::default()
     }
 }

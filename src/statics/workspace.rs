@@ -1,12 +1,11 @@
 //! Solvers that are kept between holds.
 
 use super::{
-    bound::{CannotHold, cannot_hold},
     compliant_load::{self, CompliantLoadFactor},
-    equilibrium::{self, CompliantResponse, EquilibriumOutcome, ResponseOutcome, energy_block},
+    equilibrium::{self, CompliantResponse, EquilibriumOutcome, ResponseOutcome, hand_energy},
     hold::{Hold, HoldError},
     load_factor::{self, LoadFactorOutcome},
-    program::{HandBlock, Program, ProgramKind, ReusedSolver},
+    program::{HandEnergy, Program, ProgramKind, ReusedSolver},
 };
 use crate::model::scenario::Limits;
 
@@ -50,7 +49,7 @@ impl StabilityWorkspace {
     /// When the hold is broken.
     pub fn equilibrium(&mut self, hold: &Hold, load_factor: f64) -> Result<EquilibriumOutcome, HoldError> {
         hold.check()?;
-        Ok(self.solve_equilibrium(hold, &energy_blocks(hold), load_factor))
+        Ok(self.solve_equilibrium(hold, &hand_energies(hold), load_factor))
     }
 
     /// What the load at a load factor does to the hold: the compliant equilibrium against that under the weight alone.
@@ -59,10 +58,10 @@ impl StabilityWorkspace {
     /// When the hold is broken.
     pub fn response(&mut self, hold: &Hold, load_factor: f64) -> Result<ResponseOutcome, HoldError> {
         hold.check()?;
-        let blocks = energy_blocks(hold);
+        let energies = hand_energies(hold);
         let mut equilibria = Vec::with_capacity(2);
         for lambda in [0.0, load_factor] {
-            match self.solve_equilibrium(hold, &blocks, lambda) {
+            match self.solve_equilibrium(hold, &energies, lambda) {
                 EquilibriumOutcome::Found(found) => equilibria.push(found),
                 EquilibriumOutcome::None => return Ok(ResponseOutcome::NoEquilibrium { load_factor: lambda }),
                 EquilibriumOutcome::Unknown { status } => return Ok(ResponseOutcome::Unknown { status }),
@@ -82,19 +81,13 @@ impl StabilityWorkspace {
         Ok(compliant_load::search(self, hold, limits))
     }
 
-    /// A quick reason why a hold cannot stand a load factor; none means that it may or may not. A necessary test of a
-    /// few microseconds, by weak duality: what it rejects, [`StabilityWorkspace::load_factor`] rejects.
-    pub fn cannot_hold(hold: &Hold, load_factor: f64) -> Option<CannotHold> {
-        cannot_hold(hold, load_factor)
-    }
-
     pub(super) fn solve_equilibrium(
         &mut self,
         hold: &Hold,
-        blocks: &[HandBlock],
+        energies: &[HandEnergy],
         load_factor: f64,
     ) -> EquilibriumOutcome {
-        let program = Program::equilibrium(hold, blocks, load_factor);
+        let program = Program::equilibrium(hold, energies, load_factor);
         match self.equilibrium.solve(&program) {
             Some(raw) => equilibrium::interpret(hold, load_factor, &raw),
             None => EquilibriumOutcome::Unknown { status: "data refused".into() },
@@ -115,6 +108,6 @@ fn solve_load(solver: &mut ReusedSolver, hold: &Hold, kind: ProgramKind) -> Load
 }
 
 /// The energy of each hand.
-pub(super) fn energy_blocks(hold: &Hold) -> Vec<HandBlock> {
-    hold.hands.iter().map(energy_block).collect()
+pub(super) fn hand_energies(hold: &Hold) -> Vec<HandEnergy> {
+    hold.hands.iter().map(hand_energy).collect()
 }
