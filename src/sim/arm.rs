@@ -90,10 +90,10 @@ impl SimArm {
         }
     }
 
-    /// The largest joint speed, rad/s.
-    pub fn fastest_joint_rad_s(&self, world: &PhysicsWorld) -> f64 {
-        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return 0.0 };
-        self.joints.iter().map(|joint| joint.place.velocity(multibody).abs()).fold(0.0, f64::max)
+    /// True when no joint is faster than `limit_rad_s`; a speed that is not a number is.
+    pub fn is_slower_than(&self, world: &PhysicsWorld, limit_rad_s: f64) -> bool {
+        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return false };
+        self.joints.iter().all(|joint| joint.place.velocity(multibody).abs() <= limit_rad_s)
     }
 
     /// Writes the joints' part of the state after a step.
