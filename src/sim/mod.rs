@@ -29,11 +29,10 @@
 //!
 //! # Accuracy
 //! `tests/pinch` holds the simulation to closed forms. Found with the settings of `world.rs` at time steps of 2 ms:
-//! slip within 0.1 % for five pairs of force and friction, torsion within 0.1 %, tilt within 1.1 %, no creep; a free arm
+//! slip within 0.02 % for five pairs of force and friction, torsion within 0.04 %, tilt within 1.1 %, no creep; a free arm
 //! gives way as `J (K + dg/dq)^-1 J' f` says within 0.1 %; two arms under a small load as if welded to the board
-//! within 2.2 % for 1 kg and 10 % (0.01 mm) for 0.2 kg. The engine makes a contact as stiff as the lighter of its
-//! bodies is heavy, so light boards sit softer: by 4 um in each hand at 50 g. A scene of two arms takes some 200 us a
-//! step.
+//! within 1.3 % for 1 kg and 6 % (0.006 mm) for 0.2 kg. The engine makes a contact as stiff as the lighter of its
+//! bodies is heavy, so light boards sit softer: 20 % (0.02 mm) at 50 g. A scene of two arms takes some 230 us a step.
 
 mod arm;
 mod bodies;

@@ -211,8 +211,8 @@ fn two_arms_give_way_as_if_welded_under_a_small_load() {
         Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M),
     ];
     // The engine's contacts are as stiff as the lightest body is heavy, so a lighter board sits softer in its hands:
-    // 2.2 % were measured with 1 kg, 10 % (0.01 mm) with the foam board.
-    for (mass_kg, tolerance) in [(1.0, 0.05), (BOARD_KG, 0.11)] {
+    // 1.3 % were measured with 1 kg, 4 to 6 % (0.006 mm) with the foam board.
+    for (mass_kg, tolerance) in [(1.0, 0.02), (BOARD_KG, 0.07)] {
         for operation in operations {
             let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
             let trace = simulate(&robot, &plan, 0.6, &QUICK).unwrap();
@@ -253,8 +253,8 @@ fn no_board_rings_between_the_hands() {
         let normal_n = |step: usize| trace.samples[step].arms[0].pads[0].normal_force_n;
         let steps = trace.samples.len();
         let jump_n = (steps - 50..steps).map(|step| (normal_n(step) - normal_n(step - 1)).abs()).fold(0.0, f64::max);
-        // 1e-3 N a step is the end of the arms' swing; boards that ring do so by 0.1 N and more.
-        assert!(jump_n < 0.01, "{mass_kg} kg: the pads' force jumps by {jump_n} N from step to step");
+        // 0.01 N a step is the end of the arms' swing; boards that ring do so by 0.1 N and more.
+        assert!(jump_n < 0.03, "{mass_kg} kg: the pads' force jumps by {jump_n} N from step to step");
     }
 }
 
