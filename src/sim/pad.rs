@@ -54,8 +54,8 @@ fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
 /// A pad as boxes: half sides along x_P and y_P, and how far the box lies behind the face, m.
 ///
 /// The engine holds two flat boxes together in four corners. Corners of the whole face would turn too hard; those of a
-/// face shrunk until they lie at its mean radius turn exactly as hard as an evenly pressed face. The whole face, a little
-/// recessed, comes to bear where the pad tilts.
+/// face shrunk until they lie at its mean radius turn exactly as hard as an evenly pressed face. The whole face, a
+/// little recessed, comes to bear where the pad tilts.
 fn boxes(half_m: [f64; 2], recess_m: f64) -> [([f64; 2], f64); 2] {
     let [a, b] = half_m;
     let shrink = mean_radius_m(half_m) / a.hypot(b);

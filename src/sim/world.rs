@@ -11,7 +11,8 @@ use crate::model::GRAVITY_W;
 const SUBSTEPS: usize = 4;
 
 /// Sweeps over all contacts that end a substep. With one of them a change of load slides light boards a little, and at
-/// this stiffness they ring between their hands; with six no board of 0.03 to 2 kg does, at time steps of 1, 2 and 4 ms.
+/// this stiffness they ring between their hands; with six no board of 0.03 to 2 kg does, at time steps of 1, 2 and
+/// 4 ms.
 const STABILISATION_SWEEPS: usize = 6;
 
 /// Stiffness of the contacts: oscillations in a substep. Measured with one, light boards sit twice as soft in their
