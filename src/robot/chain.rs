@@ -3,7 +3,7 @@
 //! The chain carries its gripper and fingers as rigid parts of its last link. It knows nothing of grasps, loads or
 //! collisions.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Unit, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Unit, UnitQuaternion, Vector3, Vector6};
 
 use super::tree::{ArmState, Robot};
 use crate::model::{GRAVITY_W, frames::Pose};
@@ -130,6 +130,25 @@ impl Chain {
             column.fixed_rows_mut::<3>(3).copy_from(&axis_w);
         }
         jacobian
+    }
+
+    /// X_WG, and the columns of [`Chain::jacobian_w`] written into `columns` (dof of them): for solvers that call it
+    /// many times.
+    pub(super) fn pose_and_columns(&self, q_rad: &[f64], columns: &mut [Vector6<f64>]) -> Pose {
+        let mut x_wj = Pose::identity();
+        for ((joint, &angle), column) in self.joints.iter().zip(q_rad).zip(columns.iter_mut()) {
+            x_wj = x_wj * joint.x_pj * UnitQuaternion::from_axis_angle(&joint.axis_j, angle);
+            let axis_w = x_wj.rotation * joint.axis_j.into_inner();
+            column.fixed_rows_mut::<3>(0).copy_from(&x_wj.translation.vector);
+            column.fixed_rows_mut::<3>(3).copy_from(&axis_w);
+        }
+        let x_wg = x_wj * self.x_lg;
+        for column in columns {
+            let origin_w = column.fixed_rows::<3>(0).into_owned();
+            let axis_w = column.fixed_rows::<3>(3).into_owned();
+            column.fixed_rows_mut::<3>(0).copy_from(&axis_w.cross(&(x_wg.translation.vector - origin_w)));
+        }
+        x_wg
     }
 
     /// X_WG from the frames of all joints.

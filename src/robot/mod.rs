@@ -7,11 +7,13 @@
 mod assemble;
 pub mod chain;
 mod description;
+pub mod inverse;
 pub mod tree;
 mod urdf;
 
 pub use chain::Chain;
 pub use description::BUILTIN;
+pub use inverse::{InverseKinematics, Solution};
 pub use tree::{
     Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Pad, PlacedShape, Robot, RobotError, Shape,
 };

@@ -1,0 +1,30 @@
+# What a contributor does; `.ci/run` does the same.
+
+# The whole of what CI does
+ci:
+    bash .ci/run
+
+# Build, and run the main job
+quickstart:
+    cargo run --release -- run scenarios/quickstart.toml
+
+# Every test
+test:
+    cargo test --release
+
+# Format and lint
+lint:
+    cargo fmt --check
+    cargo clippy --release --all-targets -- -D warnings
+
+# Every scenario, four lines a minute on two cores
+scenarios:
+    cargo run --release -- run scenarios/*.toml
+
+# Write the JSON Schemas again after a change of the file formats
+schemas:
+    for of in scenario plan verdict; do cargo run --release -- schema $of > schemas/$of.schema.json; done
+
+# Licences, duplicate crates and sources of the dependencies (needs cargo-deny)
+deny:
+    cargo deny check licenses bans sources

@@ -1,0 +1,238 @@
+//! Who touches whom: the robot with itself, with the board, with the person and the tool; the person with the board.
+//!
+//! The robot's and the board's primitives and the person's capsules are compared with parry; pairs that are far apart
+//! are sorted out by spheres about links and about primitives. This module knows geometry and the distances that must be
+//! kept (METHOD section 3); it does not know why a pose was chosen.
+
+mod shapes;
+
+use nalgebra::Point3;
+
+use crate::{model::frames::Pose, robot::Robot};
+use shapes::{Piece, Placed, place_all, sphere_about};
+
+/// A scene to be checked, in W.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// Poses of the robot's links, as [`Robot::link_poses`] gives them.
+    pub link_poses: &'a [Pose],
+    /// The arms (indices) that hold the board: their fingers may touch it.
+    pub holding: &'a [usize],
+    /// Sides of the board, m.
+    pub board_size_m: [f64; 3],
+    /// Pose of the board.
+    pub x_wo: Pose,
+    /// The person and the tool in the hand.
+    pub person: &'a [PersonPart],
+}
+
+/// A capsule of the person's body, or the tool, with the distances that it must keep.
+#[derive(Clone, Copy, Debug)]
+pub struct PersonPart {
+    /// What it is, for messages.
+    pub name: &'static str,
+    /// One end of the capsule's axis in W, m.
+    pub p0_w: Point3<f64>,
+    /// The other end, m.
+    pub p1_w: Point3<f64>,
+    /// Radius, m.
+    pub radius_m: f64,
+    /// Least distance to the robot, m.
+    pub robot_clearance_m: f64,
+    /// Least distance to the board, m; none when it may touch it.
+    pub board_clearance_m: Option<f64>,
+}
+
+/// A body of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// A link of the robot, by its index.
+    Link(usize),
+    /// The board.
+    Board,
+    /// A part of the person, or the tool, by its name.
+    Person(&'static str),
+}
+
+/// Two bodies that touch or come closer than they may.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Violation {
+    /// The two bodies.
+    pub bodies: [Body; 2],
+    /// The distance that they must keep, m; zero when they must only not touch.
+    pub required_m: f64,
+    /// Their distance, m; zero when they overlap.
+    pub distance_m: f64,
+}
+
+/// The robot's primitives and the pairs of links that may not touch.
+#[derive(Clone)]
+pub struct CollisionModel {
+    links: Vec<LinkShapes>,
+    self_pairs: Vec<[usize; 2]>,
+    /// For every arm, its fingers: the links that may touch the board.
+    fingers: Vec<Vec<usize>>,
+}
+
+#[derive(Clone)]
+struct LinkShapes {
+    pieces: Vec<Piece>,
+    centre_l: Point3<f64>,
+    radius_m: f64,
+}
+
+impl LinkShapes {
+    /// The pair of primitives, one of each link, that is closer than allowed.
+    fn hits(&self, x_wl: &Pose, other: &Self, x_wm: &Pose) -> bool {
+        let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
+        centres_m <= self.radius_m + other.radius_m
+            && place_all(&self.pieces, x_wl).any(|a| place_all(&other.pieces, x_wm).any(|b| a.closer_than(&b, 0.0)))
+    }
+
+    /// The lesser of `bound_m` and the distance to another link, m.
+    fn distance_within(&self, x_wl: &Pose, other: &Self, x_wm: &Pose, bound_m: f64) -> f64 {
+        let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
+        if centres_m >= self.radius_m + other.radius_m + bound_m {
+            return bound_m;
+        }
+        let others: Vec<Placed<'_>> = place_all(&other.pieces, x_wm).collect();
+        others.iter().fold(bound_m, |bound_m, other| self.distance_to_within(x_wl, other, bound_m))
+    }
+
+    /// The lesser of `bound_m` and the distance to a foreign body, m.
+    fn distance_to_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64) -> f64 {
+        place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.distance_within(other, bound_m))
+    }
+
+    /// Distance to a foreign body when it is closer than `required_m`.
+    fn too_close(&self, x_wl: &Pose, other: &Placed<'_>, required_m: f64) -> Option<f64> {
+        if self.pieces.is_empty() || !other.meets_sphere(&(x_wl * self.centre_l), self.radius_m + required_m) {
+            return None;
+        }
+        let close = place_all(&self.pieces, x_wl).filter(|piece| piece.closer_than(other, required_m));
+        close.map(|piece| piece.distance_m(other)).min_by(f64::total_cmp)
+    }
+}
+
+impl CollisionModel {
+    /// The collision model of a robot.
+    pub fn new(robot: &Robot) -> Self {
+        let links: Vec<_> = robot
+            .links
+            .iter()
+            .map(|link| {
+                let pieces = Piece::of_link(link);
+                let (centre_l, radius_m) = sphere_about(&pieces);
+                LinkShapes { pieces, centre_l, radius_m }
+            })
+            .collect();
+        let groups = rigid_groups(robot);
+        let self_pairs = (0..links.len())
+            .flat_map(|a| (a + 1..links.len()).map(move |b| [a, b]))
+            .filter(|&[a, b]| !links[a].pieces.is_empty() && !links[b].pieces.is_empty() && groups[a] != groups[b])
+            .filter(|pair| !robot.allowed_collisions.contains(pair))
+            .collect();
+        Self { links, self_pairs, fingers: robot.arms.iter().map(|arm| fingers(robot, &arm.gripper)).collect() }
+    }
+
+    /// The first rule that a scene breaks: the robot with itself, then with the board, then the person.
+    pub fn first_violation(&self, scene: &Scene<'_>) -> Option<Violation> {
+        self.robot_self(scene.link_poses)
+            .or_else(|| self.robot_board(scene))
+            .or_else(|| scene.person.iter().find_map(|part| self.person(scene, part)))
+    }
+
+    /// The least that any two bodies are farther apart than they must be, m: at most 0 when a rule is broken, infinite
+    /// when there is nothing to compare.
+    pub fn min_margin_m(&self, scene: &Scene<'_>) -> f64 {
+        let poses = scene.link_poses;
+        let board = Piece::cuboid(scene.board_size_m);
+        let board = board.placed(&scene.x_wo);
+        let mut margin_m = f64::INFINITY;
+        for &[a, b] in &self.self_pairs {
+            margin_m = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], margin_m);
+        }
+        for link in (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
+            margin_m = self.links[link].distance_to_within(&poses[link], &board, margin_m);
+        }
+        for part in scene.person {
+            let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
+            let capsule = capsule.placed(&Pose::identity());
+            if let Some(clearance_m) = part.board_clearance_m {
+                margin_m = capsule.distance_within(&board, margin_m + clearance_m) - clearance_m;
+            }
+            let clearance_m = part.robot_clearance_m;
+            let bound_m = margin_m + clearance_m;
+            let links = self.links.iter().zip(poses);
+            let nearest = links.fold(bound_m, |bound_m, (link, x_wl)| link.distance_to_within(x_wl, &capsule, bound_m));
+            margin_m = nearest - clearance_m;
+        }
+        margin_m
+    }
+
+    /// True for the fingers of a gripper that holds the board.
+    fn may_touch_board(&self, scene: &Scene<'_>, link: usize) -> bool {
+        scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link))
+    }
+
+    fn robot_self(&self, poses: &[Pose]) -> Option<Violation> {
+        let hit = |&&[a, b]: &&[usize; 2]| self.links[a].hits(&poses[a], &self.links[b], &poses[b]);
+        let [a, b] = *self.self_pairs.iter().find(hit)?;
+        Some(Violation { bodies: [Body::Link(a), Body::Link(b)], required_m: 0.0, distance_m: 0.0 })
+    }
+
+    fn robot_board(&self, scene: &Scene<'_>) -> Option<Violation> {
+        let board = Piece::cuboid(scene.board_size_m);
+        let board = board.placed(&scene.x_wo);
+        (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
+            let distance_m = self.links[link].too_close(&scene.link_poses[link], &board, 0.0)?;
+            Some(Violation { bodies: [Body::Link(link), Body::Board], required_m: 0.0, distance_m })
+        })
+    }
+
+    /// What one part of the person comes too close to.
+    fn person(&self, scene: &Scene<'_>, part: &PersonPart) -> Option<Violation> {
+        let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
+        let capsule = capsule.placed(&Pose::identity());
+        let violation = |other, required_m, distance_m| Violation {
+            bodies: [Body::Person(part.name), other],
+            required_m,
+            distance_m,
+        };
+        if let Some(required_m) = part.board_clearance_m {
+            let board = Piece::cuboid(scene.board_size_m);
+            let board = board.placed(&scene.x_wo);
+            if capsule.closer_than(&board, required_m) {
+                return Some(violation(Body::Board, required_m, capsule.distance_m(&board)));
+            }
+        }
+        let required_m = part.robot_clearance_m;
+        self.links.iter().zip(scene.link_poses).enumerate().find_map(|(index, (link, x_wl))| {
+            let distance_m = link.too_close(x_wl, &capsule, required_m)?;
+            Some(violation(Body::Link(index), required_m, distance_m))
+        })
+    }
+}
+
+/// For every link, the first link of the rigid group that it belongs to: links joined by fixed joints never move against
+/// each other.
+fn rigid_groups(robot: &Robot) -> Vec<usize> {
+    let mut groups: Vec<usize> = (0..robot.links.len()).collect();
+    for joint in &robot.joints {
+        if joint.kind == crate::robot::JointKind::Fixed {
+            groups[joint.child_link] = groups[joint.parent_link];
+        }
+    }
+    groups
+}
+
+/// The links that move with a gripper's fingers.
+fn fingers(robot: &Robot, gripper: &crate::robot::Gripper) -> Vec<usize> {
+    let mut fingers: Vec<usize> = gripper.fingers.iter().map(|finger| robot.joints[finger.joint].child_link).collect();
+    for joint in &robot.joints {
+        if fingers.contains(&joint.parent_link) && !fingers.contains(&joint.child_link) {
+            fingers.push(joint.child_link);
+        }
+    }
+    fingers
+}

@@ -1,0 +1,128 @@
+//! Primitives as parry knows them. Its poses are glam's: they are converted here and nowhere else.
+
+use nalgebra::Point3;
+use parry3d_f64::{
+    glamx::{DQuat, DVec3},
+    math::Pose as ParryPose,
+    query,
+    shape::SharedShape,
+};
+
+use crate::{
+    model::frames::Pose,
+    robot::{Link, Shape},
+};
+
+/// A primitive in the frame of what it belongs to, inside a sphere about its centre.
+#[derive(Clone)]
+pub struct Piece {
+    x_ls: ParryPose,
+    shape: SharedShape,
+    radius_m: f64,
+}
+
+/// A primitive in the world.
+pub struct Placed<'a> {
+    pose: ParryPose,
+    shape: &'a SharedShape,
+    radius_m: f64,
+}
+
+impl Piece {
+    /// A box about the origin.
+    pub fn cuboid(size_m: [f64; 3]) -> Self {
+        let [x, y, z] = size_m.map(|side| side / 2.0);
+        Self::at(&Pose::identity(), SharedShape::cuboid(x, y, z), DVec3::new(x, y, z).length())
+    }
+
+    /// A capsule between two points of the world; its frame is the world's, moved to its middle.
+    pub fn capsule_w(p0_w: &Point3<f64>, p1_w: &Point3<f64>, radius_m: f64) -> Self {
+        let middle = nalgebra::center(p0_w, p1_w);
+        let half = (p1_w - p0_w) / 2.0;
+        let end = DVec3::new(half.x, half.y, half.z);
+        let shape = SharedShape::capsule(-end, end, radius_m);
+        Self::at(&Pose::translation(middle.x, middle.y, middle.z), shape, half.norm() + radius_m)
+    }
+
+    /// All primitives of a link.
+    pub fn of_link(link: &Link) -> Vec<Self> {
+        link.shapes.iter().map(|placed| Self::primitive(&placed.x_ls, placed.shape)).collect()
+    }
+
+    fn primitive(x_ls: &Pose, shape: Shape) -> Self {
+        match shape {
+            Shape::Box { half_m: [x, y, z] } => {
+                Self::at(x_ls, SharedShape::cuboid(x, y, z), DVec3::new(x, y, z).length())
+            }
+            Shape::Cylinder { radius_m, half_length_m } => {
+                // parry's cylinders lie along y, a URDF's along z.
+                let y_to_z =
+                    nalgebra::UnitQuaternion::from_axis_angle(&nalgebra::Vector3::x_axis(), 90_f64.to_radians());
+                let shape = SharedShape::cylinder(half_length_m, radius_m);
+                Self::at(&(x_ls * y_to_z), shape, radius_m.hypot(half_length_m))
+            }
+            Shape::Sphere { radius_m } => Self::at(x_ls, SharedShape::ball(radius_m), radius_m),
+        }
+    }
+
+    fn at(x_ls: &Pose, shape: SharedShape, radius_m: f64) -> Self {
+        Self { x_ls: to_parry(x_ls), shape, radius_m }
+    }
+
+    /// The primitive where its link is.
+    pub fn placed(&self, x_wl: &Pose) -> Placed<'_> {
+        self.placed_by(&to_parry(x_wl))
+    }
+
+    fn placed_by(&self, x_wl: &ParryPose) -> Placed<'_> {
+        Placed { pose: x_wl * self.x_ls, shape: &self.shape, radius_m: self.radius_m }
+    }
+}
+
+/// All primitives of a link where it is.
+pub fn place_all<'a>(pieces: &'a [Piece], x_wl: &Pose) -> impl Iterator<Item = Placed<'a>> + use<'a> {
+    let x_wl = to_parry(x_wl);
+    pieces.iter().map(move |piece| piece.placed_by(&x_wl))
+}
+
+/// A sphere about several primitives, in the frame of what they belong to: centre and radius, m.
+pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
+    let count = pieces.len().max(1) as f64;
+    let centre = pieces.iter().map(|piece| piece.x_ls.translation).sum::<DVec3>() / count;
+    let radius_m =
+        pieces.iter().map(|piece| (piece.x_ls.translation - centre).length() + piece.radius_m).fold(0.0, f64::max);
+    (Point3::new(centre.x, centre.y, centre.z), radius_m)
+}
+
+impl Placed<'_> {
+    /// True when two primitives overlap or are closer than `required_m`.
+    pub fn closer_than(&self, other: &Placed<'_>, required_m: f64) -> bool {
+        let centres_m = (self.pose.translation - other.pose.translation).length();
+        centres_m <= self.radius_m + other.radius_m + required_m && self.distance_m(other) <= required_m
+    }
+
+    /// The lesser of `bound_m` and the distance to another primitive, m.
+    pub fn distance_within(&self, other: &Placed<'_>, bound_m: f64) -> f64 {
+        let centres_m = (self.pose.translation - other.pose.translation).length();
+        let within = centres_m < self.radius_m + other.radius_m + bound_m;
+        if within { bound_m.min(self.distance_m(other)) } else { bound_m }
+    }
+
+    /// False when the primitive is certainly outside this sphere.
+    pub fn meets_sphere(&self, centre_w: &Point3<f64>, radius_m: f64) -> bool {
+        let centre = DVec3::new(centre_w.x, centre_w.y, centre_w.z);
+        (self.pose.translation - centre).length() <= self.radius_m + radius_m
+    }
+
+    /// Distance between two primitives, m; zero when they overlap.
+    pub fn distance_m(&self, other: &Placed<'_>) -> f64 {
+        // Unsupported pairs do not occur: boxes, cylinders, balls and capsules are all support mapped.
+        query::distance(&self.pose, &**self.shape, &other.pose, &**other.shape).map_or(0.0, |found| found.distance)
+    }
+}
+
+fn to_parry(pose: &Pose) -> ParryPose {
+    let t = pose.translation.vector;
+    let r = pose.rotation.coords;
+    ParryPose::from_parts(DVec3::new(t.x, t.y, t.z), DQuat::from_xyzw(r.x, r.y, r.z, r.w))
+}
