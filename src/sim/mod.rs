@@ -35,8 +35,8 @@
 //! | slip, five pairs of force and friction | `2 mu N - m g` | 0.02 % |
 //! | torsion | `2 mu N e` | 0.04 % |
 //! | tilt about either axis of the pad | `N (2 b + mu t)` | 1.1 %, 0.6 % |
-//! | creep at 50 % and 90 % of the slip load | 0 | 1e-12 mm/s |
-//! | a free arm under 0.5 N | `J (K + dg/dq)^-1 J' f` | 0.1 % |
+//! | creep at 50 % and 90 % of the slip load | 0 | 2e-10 mm/s |
+//! | a free arm under 0.5 N | `J (K + dg/dq)^-1 J' f` | 0.11 % |
 //! | two arms and a board of 1 kg, of 0.21 kg, a tenth of the load | `K_O^-1 w` | 1.3 %, 6 % (0.006 mm) |
 //! | drift without a load in the last 1.7 s of 5 s | 0 | 3e-14 m |
 //!
