@@ -2,6 +2,11 @@
 
 use rerun::Color;
 
+/// Behind the scene.
+pub(super) fn background() -> Color {
+    Color::from_rgb(28, 30, 34)
+}
+
 /// Any limit.
 pub(super) fn limit() -> Color {
     Color::from_rgb(213, 94, 0)

@@ -10,7 +10,7 @@ use crate::model::{
 };
 
 /// How many joints the torque plot shows: those that worked hardest. The others are in the file all the same.
-pub(super) const JOINTS_SHOWN: usize = 5;
+pub(super) const JOINTS_SHOWN: usize = 4;
 
 /// Name of the series that is a limit.
 pub(super) const LIMIT: &str = "limit";
