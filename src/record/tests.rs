@@ -309,25 +309,3 @@ fn runs_without_person_verdict_or_samples_are_recorded_too() {
     let bytes = encode(&RecordingInput { person: None, ..example.input() }).unwrap();
     assert_eq!(read(&bytes).unwrap().verdict, example.verdict);
 }
-
-#[test]
-fn tmp_dump() {
-    let e = example();
-    let t = std::time::Instant::now();
-    let b = encode(&e.input()).unwrap();
-    eprintln!("{:?} {} bytes", t.elapsed(), b.len());
-    fs::write("/tmp/rec_shot.rrd", b).unwrap();
-}
-
-#[test]
-fn tmp_diff() {
-    let (a, b) = (encode(&example().input()).unwrap(), encode(&example().input()).unwrap());
-    let (a2, b2) = (&a, &b);
-    eprintln!("len {} {}", a2.len(), b2.len());
-    let diffs: Vec<usize> = (0..a2.len().min(b2.len())).filter(|&i| a2[i] != b2[i]).collect();
-    eprintln!("{} diffs, first {:?} last {:?}", diffs.len(), diffs.first(), diffs.last());
-    if let Some(&i) = diffs.first() {
-        eprintln!("{}", String::from_utf8_lossy(&a2[i.saturating_sub(300)..(i + 300).min(a2.len())]));
-        eprintln!("=====\n{}", String::from_utf8_lossy(&b2[i.saturating_sub(300)..(i + 300).min(a2.len())]));
-    }
-}
