@@ -26,9 +26,13 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod collision;
+pub mod human;
 pub mod judge;
 pub mod model;
 #[cfg(feature = "recording")]
 pub mod record;
 pub mod report;
 pub mod robot;
+pub mod scenario;
+pub mod statics;

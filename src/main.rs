@@ -1,3 +1,7 @@
-//! The `benchdog` command.
+//! The `benchdog` command: parse, dispatch, exit code.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    benchdog::cli::main()
+}

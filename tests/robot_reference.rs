@@ -1,6 +1,6 @@
 //! The built-in Baxter against an independent rigid-body library, and laws that hold for every chain.
 
-use std::path::Path;
+use std::{path::Path, sync::LazyLock};
 
 use benchdog::{
     model::GRAVITY_W,
@@ -36,8 +36,9 @@ struct Sample {
     m_diag_no_gripper: Vec<f64>,
 }
 
-fn baxter() -> Robot {
-    Robot::load("baxter", Path::new(".")).unwrap()
+fn baxter() -> &'static Robot {
+    static BAXTER: LazyLock<Robot> = LazyLock::new(|| Robot::load("baxter", Path::new(".")).unwrap());
+    &BAXTER
 }
 
 fn chain(robot: &Robot, arm: &str) -> Chain {
@@ -76,7 +77,7 @@ fn baxter_without_gripper_masses() -> Robot {
 fn kinematics_agree_with_the_reference() {
     let robot = baxter();
     for (arm, samples) in reference() {
-        let chain = chain(&robot, arm);
+        let chain = chain(robot, arm);
         assert_eq!(samples.len(), 20);
         for sample in samples {
             let x_wg = chain.gripper_pose(&sample.q_rad);
@@ -91,9 +92,9 @@ fn kinematics_agree_with_the_reference() {
 
 #[test]
 fn gravity_and_inertia_agree_with_the_reference() {
-    let robot = baxter_without_gripper_masses();
+    let robot = &baxter_without_gripper_masses();
     for (arm, samples) in reference() {
-        let chain = chain(&robot, arm);
+        let chain = chain(robot, arm);
         for sample in samples {
             let expected = DVector::from_vec(sample.g_no_gripper_nm);
             assert!((chain.gravity_torque_nm(&sample.q_rad) - expected).amax() < GRAVITY_TOLERANCE_NM);
@@ -108,7 +109,7 @@ fn the_chain_agrees_with_the_tree() {
     let robot = baxter();
     for (arm, samples) in reference() {
         let arm_index = robot.arm_index(arm).unwrap();
-        let chain = chain(&robot, arm);
+        let chain = chain(robot, arm);
         for sample in samples {
             let state = ArmState { arm: arm_index, q_rad: &sample.q_rad, finger_travel_m: [0.0; 2] };
             let x_wl = robot.link_poses(&robot.positions(&[state]));
@@ -148,11 +149,11 @@ fn pads_meet_and_open_as_the_figures_say() {
 
 #[test]
 fn heavy_hands_weigh_on_the_arm() {
-    let (with, without) = (baxter(), baxter_without_gripper_masses());
+    let (with, without) = (baxter(), &baxter_without_gripper_masses());
     for arm in ["left", "right"] {
         let q_rad = [0.0; 7];
-        let (mass_with, _) = chain(&with, arm).mass_and_moment_w(&q_rad);
-        let (mass_without, _) = chain(&without, arm).mass_and_moment_w(&q_rad);
+        let (mass_with, _) = chain(with, arm).mass_and_moment_w(&q_rad);
+        let (mass_without, _) = chain(without, arm).mass_and_moment_w(&q_rad);
         // The published masses of the arm with and without its gripper, in g as far as they are written.
         assert!((mass_with - 20.072).abs() < 5e-4, "{mass_with}");
         assert!((mass_without - 19.712).abs() < 5e-4, "{mass_without}");
@@ -195,7 +196,7 @@ fn mirrored(q_rad: &[f64]) -> Vec<f64> {
 
 fn posture() -> impl Strategy<Value = Vec<f64>> {
     let robot = baxter();
-    let chain = chain(&robot, "left");
+    let chain = chain(robot, "left");
     let ranges: Vec<_> = chain.lower().iter().zip(chain.upper()).map(|(lo, hi)| *lo..*hi).collect();
     ranges
 }
@@ -206,7 +207,7 @@ proptest! {
     #[test]
     fn the_jacobian_is_the_derivative_of_the_pose(q_rad in posture()) {
         let robot = baxter();
-        let chain = chain(&robot, "right");
+        let chain = chain(robot, "right");
         let jacobian = chain.jacobian_w(&q_rad);
         let step = 1e-6;
         for joint in 0..7 {
@@ -225,7 +226,7 @@ proptest! {
     #[test]
     fn gravity_is_the_gradient_of_the_potential_energy(q_rad in posture()) {
         let robot = baxter();
-        let chain = chain(&robot, "left");
+        let chain = chain(robot, "left");
         let energy_j = |q_rad: &[f64]| -chain.mass_and_moment_w(q_rad).1.dot(&GRAVITY_W);
         let gravity = chain.gravity_torque_nm(&q_rad);
         let step = 1e-5;
@@ -242,7 +243,7 @@ proptest! {
     #[test]
     fn the_arms_mirror_each_other(q_rad in posture()) {
         let robot = baxter();
-        let (left, right) = (chain(&robot, "left"), chain(&robot, "right"));
+        let (left, right) = (chain(robot, "left"), chain(robot, "right"));
         let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, 1.0));
         let (x_wl, x_wr) = (left.gripper_pose(&q_rad), right.gripper_pose(&mirrored(&q_rad)));
         prop_assert!((mirror * x_wl.translation.vector - x_wr.translation.vector).amax() < 1e-12);
@@ -272,7 +273,7 @@ proptest! {
     #[test]
     fn the_inertia_is_symmetric_and_positive(q_rad in posture()) {
         let robot = baxter();
-        let mass = chain(&robot, "left").mass_matrix(&q_rad);
+        let mass = chain(robot, "left").mass_matrix(&q_rad);
         prop_assert!((&mass - mass.transpose()).amax() < 1e-14);
         prop_assert!(mass.cholesky().is_some());
     }

@@ -4,11 +4,12 @@
 //! are sorted out by spheres about links and about primitives. This module knows geometry and the distances that must be
 //! kept (METHOD section 3); it does not know why a pose was chosen.
 
+mod person;
 mod shapes;
 
 use nalgebra::Point3;
 
-use crate::{model::frames::Pose, robot::Robot};
+use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
 use shapes::{Piece, Placed, place_all, sphere_about};
 
 /// A scene to be checked, in W.
@@ -29,8 +30,8 @@ pub struct Scene<'a> {
 /// A capsule of the person's body, or the tool, with the distances that it must keep.
 #[derive(Clone, Copy, Debug)]
 pub struct PersonPart {
-    /// What it is, for messages.
-    pub name: &'static str,
+    /// What it is.
+    pub name: BodyPart,
     /// One end of the capsule's axis in W, m.
     pub p0_w: Point3<f64>,
     /// The other end, m.
@@ -50,8 +51,8 @@ pub enum Body {
     Link(usize),
     /// The board.
     Board,
-    /// A part of the person, or the tool, by its name.
-    Person(&'static str),
+    /// A part of the person, or the tool.
+    Person(BodyPart),
 }
 
 /// Two bodies that touch or come closer than they may.
@@ -63,6 +64,19 @@ pub struct Violation {
     pub required_m: f64,
     /// Their distance, m; zero when they overlap.
     pub distance_m: f64,
+}
+
+impl Violation {
+    /// The rule that is broken, in words: `left_wrist is 12 mm from the person's Head, expected more than 50 mm`.
+    pub fn describe(&self, robot: &Robot) -> String {
+        let [one, other] = self.bodies.map(|body| match body {
+            Body::Link(link) => robot.links[link].name.clone(),
+            Body::Board => "the board".to_owned(),
+            Body::Person(part) => format!("the person's {part:?}"),
+        });
+        let [distance_mm, required_mm] = [self.distance_m, self.required_m].map(|m| m * 1e3);
+        format!("{one} is {distance_mm:.0} mm from {other}, expected more than {required_mm:.0} mm")
+    }
 }
 
 /// The robot's primitives and the pairs of links that may not touch.
@@ -87,6 +101,21 @@ impl LinkShapes {
         let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
         centres_m <= self.radius_m + other.radius_m
             && place_all(&self.pieces, x_wl).any(|a| place_all(&other.pieces, x_wm).any(|b| a.closer_than(&b, 0.0)))
+    }
+
+    /// The lesser of `bound_m` and the distance to another link, m.
+    fn distance_within(&self, x_wl: &Pose, other: &Self, x_wm: &Pose, bound_m: f64) -> f64 {
+        let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
+        if centres_m >= self.radius_m + other.radius_m + bound_m {
+            return bound_m;
+        }
+        let others: Vec<Placed<'_>> = place_all(&other.pieces, x_wm).collect();
+        others.iter().fold(bound_m, |bound_m, other| self.distance_to_within(x_wl, other, bound_m))
+    }
+
+    /// The lesser of `bound_m` and the distance to a foreign body, m.
+    fn distance_to_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64) -> f64 {
+        place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.distance_within(other, bound_m))
     }
 
     /// Distance to a foreign body when it is closer than `required_m`.
@@ -127,6 +156,39 @@ impl CollisionModel {
             .or_else(|| scene.person.iter().find_map(|part| self.person(scene, part)))
     }
 
+    /// The least that any two bodies are farther apart than they must be, m: at most 0 when a rule is broken, infinite
+    /// when there is nothing to compare.
+    pub fn min_margin_m(&self, scene: &Scene<'_>) -> f64 {
+        let poses = scene.link_poses;
+        let board = Piece::cuboid(scene.board_size_m);
+        let board = board.placed(&scene.x_wo);
+        let mut margin_m = f64::INFINITY;
+        for &[a, b] in &self.self_pairs {
+            margin_m = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], margin_m);
+        }
+        for link in (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
+            margin_m = self.links[link].distance_to_within(&poses[link], &board, margin_m);
+        }
+        for part in scene.person {
+            let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
+            let capsule = capsule.placed(&Pose::identity());
+            if let Some(clearance_m) = part.board_clearance_m {
+                margin_m = capsule.distance_within(&board, margin_m + clearance_m) - clearance_m;
+            }
+            let clearance_m = part.robot_clearance_m;
+            let bound_m = margin_m + clearance_m;
+            let links = self.links.iter().zip(poses);
+            let nearest = links.fold(bound_m, |bound_m, (link, x_wl)| link.distance_to_within(x_wl, &capsule, bound_m));
+            margin_m = nearest - clearance_m;
+        }
+        margin_m
+    }
+
+    /// True for the fingers of a gripper that holds the board.
+    fn may_touch_board(&self, scene: &Scene<'_>, link: usize) -> bool {
+        scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link))
+    }
+
     fn robot_self(&self, poses: &[Pose]) -> Option<Violation> {
         let hit = |&&[a, b]: &&[usize; 2]| self.links[a].hits(&poses[a], &self.links[b], &poses[b]);
         let [a, b] = *self.self_pairs.iter().find(hit)?;
@@ -136,8 +198,7 @@ impl CollisionModel {
     fn robot_board(&self, scene: &Scene<'_>) -> Option<Violation> {
         let board = Piece::cuboid(scene.board_size_m);
         let board = board.placed(&scene.x_wo);
-        let holds = |link: usize| scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link));
-        (0..self.links.len()).filter(|&link| !holds(link)).find_map(|link| {
+        (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
             let distance_m = self.links[link].too_close(&scene.link_poses[link], &board, 0.0)?;
             Some(Violation { bodies: [Body::Link(link), Body::Board], required_m: 0.0, distance_m })
         })

@@ -101,6 +101,13 @@ impl Placed<'_> {
         centres_m <= self.radius_m + other.radius_m + required_m && self.distance_m(other) <= required_m
     }
 
+    /// The lesser of `bound_m` and the distance to another primitive, m.
+    pub fn distance_within(&self, other: &Placed<'_>, bound_m: f64) -> f64 {
+        let centres_m = (self.pose.translation - other.pose.translation).length();
+        let within = centres_m < self.radius_m + other.radius_m + bound_m;
+        if within { bound_m.min(self.distance_m(other)) } else { bound_m }
+    }
+
     /// False when the primitive is certainly outside this sphere.
     pub fn meets_sphere(&self, centre_w: &Point3<f64>, radius_m: f64) -> bool {
         let centre = DVec3::new(centre_w.x, centre_w.y, centre_w.z);

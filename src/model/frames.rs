@@ -45,10 +45,11 @@ pub fn rotation_from_xyzw(xyzw: [f64; 4]) -> Result<UnitQuaternion<f64>, String>
     let [x, y, z, w] = xyzw;
     let quaternion = Quaternion::new(w, x, y, z);
     let length = quaternion.norm();
-    if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+    let deviation = (length - 1.0).abs();
+    if deviation.is_nan() || deviation > UNIT_TOLERANCE {
         return Err(format!("found a quaternion of length {length}, expected unit length"));
     }
-    Ok(if (length - 1.0).abs() <= NORMALISED {
+    Ok(if deviation <= NORMALISED {
         UnitQuaternion::new_unchecked(quaternion)
     } else {
         UnitQuaternion::new_normalize(quaternion)

@@ -1,9 +1,14 @@
-//! Verdicts as JSON, for programs.
+//! Plans and verdicts as JSON, for programs.
 
 use serde::Serialize;
 
 use super::Outcome;
-use crate::model::verdict::Verdict;
+use crate::model::{plan::Plan, verdict::Verdict};
+
+/// A plan as an object, with a line's end.
+pub fn plan(plan: &Plan) -> String {
+    pretty(plan)
+}
 
 /// One verdict as an object, with a line's end.
 pub fn verdict(verdict: &Verdict) -> String {
@@ -20,8 +25,8 @@ pub fn verdicts(outcomes: &[Outcome]) -> String {
 }
 
 fn pretty(value: &impl Serialize) -> String {
-    // Serialisation into a string fails only for maps with keys that are no strings, and verdicts have none.
-    let mut text = serde_json::to_string_pretty(value).expect("a verdict has only string keys");
+    // Serialisation into a string fails only for maps with keys that are no strings, and these have none.
+    let mut text = serde_json::to_string_pretty(value).expect("plans and verdicts have only string keys");
     text.push('\n');
     text
 }

@@ -18,7 +18,7 @@ const PLACEHOLDERS: [&str; 2] = ["{arm}", "{a}"];
 /// The sine of the largest angle between a finger's axis and y_G: what quarter turns written with six digits leave.
 const AXIS_TOLERANCE: f64 = 1e-5;
 
-/// How far a gripper's opening may be from what the finger joints' limits give, m: published gaps are rounded to 0.1 mm.
+/// How far a gripper's opening may be from what the finger joints' limits give, m: published gaps have 0.1 mm.
 const OPENING_TOLERANCE_M: f64 = 1e-4;
 
 /// Puts a description and its URDF together.

@@ -1,6 +1,6 @@
 //! The description file of a robot: what no URDF says, in TOML.
 //!
-//! This module knows the file's form and where files come from; what the entries mean together is `assemble`'s business.
+//! This module knows the file's form and where files come from; what entries mean together is `assemble`'s business.
 //! The table of built-in robots below is the only place in the sources that names one.
 
 use std::{ops::Range, path::Path};

@@ -255,8 +255,8 @@ impl Robot {
         positions
     }
 
-    /// The poses in W of all links, in the order of [`Robot::links`]. `positions` has one entry a joint, rad or m; those
-    /// of fixed joints are ignored.
+    /// The poses in W of all links, in the order of [`Robot::links`]. `positions` has one entry a joint, rad or m;
+    /// those of fixed joints are ignored.
     pub fn link_poses(&self, positions: &[f64]) -> Vec<Pose> {
         let mut x_wl: Vec<Pose> = Vec::with_capacity(self.links.len());
         for link in &self.links {

@@ -8,8 +8,8 @@
 //! r_M = r_E + L2 d + C (a x d)            the wrist, where W1 meets W2
 //! ```
 //!
-//! with `u = a1 x z` and `x_E = y x f`. The target gives the wrist `r_M` and the axes `X, Y, Z` of its frame M. One joint
-//! is free; with W1 chosen, W2 and S0 are bound by one equation, the length of the upper arm:
+//! with `u = a1 x z` and `x_E = y x f`. The target gives the wrist `r_M` and the axes `X, Y, Z` of its frame M. One
+//! joint is free; with W1 chosen, W2 and S0 are bound by one equation, the length of the upper arm:
 //!
 //! ```text
 //! c0 = r_M - (C sin w1 + L2 cos w1) Z     k = C cos w1 - L2 sin w1     b(w2) = X cos w2 - Y sin w2
@@ -17,8 +17,8 @@
 //! ```
 //!
 //! so that each S0 leaves at most two W2, in closed form. Then `r = q - k b` and the forearm's direction `d` are known,
-//! the elbow's axis is one of `+-(r x d) / |r x d|`, and what is left is one residual, `f . a1 = 0`, whose zeros along S0
-//! are the solutions of the slice. The angles follow by `atan2`.
+//! the elbow's axis is one of `+-(r x d) / |r x d|`, and what is left is one residual, `f . a1 = 0`, whose zeros along
+//! S0 are the solutions of the slice. The angles follow by `atan2`.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 

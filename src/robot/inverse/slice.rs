@@ -191,8 +191,8 @@ impl<'a> Slice<'a> {
         zeros
     }
 
-    /// Where the residual is sampled: evenly over the run, and densely where r and d are nearly parallel, since there the
-    /// elbow's axis turns by half a turn within `|across| / |across'|`.
+    /// Where the residual is sampled: evenly over the run, and densely where r and d are nearly parallel, since there
+    /// the elbow's axis turns by half a turn within `|across| / |across'|`.
     fn places(&self, window: &Window, run: [f64; 2], spacing: f64) -> Vec<f64> {
         let count = ((run[1] - run[0]) / spacing).ceil() as usize;
         let place = |number: usize| run[0] + (run[1] - run[0]) * number as f64 / count as f64;
@@ -250,8 +250,8 @@ impl<'a> Slice<'a> {
         windows
     }
 
-    /// Samples of the discriminant, evenly spread, and those at which a window narrower than their spacing may hide: the
-    /// peaks of the parabolas through three negative samples, and the zeros of n between two.
+    /// Samples of the discriminant, evenly spread, and those at which a window narrower than their spacing may hide:
+    /// the peaks of the parabolas through three negative samples, and the zeros of n between two.
     fn samples(&self, [lower, upper]: [f64; 2]) -> Vec<Sample> {
         let spacing = (upper - lower) / WINDOW_SAMPLES as f64;
         let mut samples: Vec<Sample> =

@@ -1,0 +1,103 @@
+//! Exit codes and the errors that lead to them.
+
+use std::process::ExitCode;
+
+use crate::{model::verdict::Verdict, scenario::InputError};
+
+/// How a command ended, in the order of precedence: the last that applies to any scenario wins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Exit {
+    /// All expectations met.
+    Met,
+    /// Some expectation not met, or no verdict was possible.
+    NotMet,
+    /// No feasible plan where one was expected.
+    Infeasible,
+    /// Bad input or usage, or a file that cannot be written.
+    Input,
+    /// A bug in Benchdog.
+    Bug,
+}
+
+impl Exit {
+    /// The process's exit code.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Met => 0,
+            Self::NotMet => 1,
+            Self::Input => 2,
+            Self::Infeasible => 3,
+            Self::Bug => 70,
+        }
+    }
+
+    /// What one verdict means for the exit code.
+    pub fn of(verdict: &Verdict) -> Self {
+        use crate::model::verdict::VerdictKind::Infeasible;
+        match (verdict.met, verdict.verdict) {
+            (true, _) => Self::Met,
+            (false, Infeasible) => Self::Infeasible,
+            (false, _) => Self::NotMet,
+        }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit.code())
+    }
+}
+
+/// Why a command could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// An input file cannot be used.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A plan that the simulation cannot be built from.
+    #[error("{name}: failed to simulate the plan: {source}")]
+    Simulation {
+        /// The plan's name.
+        name: String,
+        /// The cause.
+        source: crate::sim::SimError,
+    },
+    /// The person or the tool is none.
+    #[error(transparent)]
+    Human(#[from] crate::human::HumanError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] crate::report::file::WriteError),
+    /// The JUnit report cannot be made.
+    #[error("failed to write the JUnit report: {0}")]
+    JUnit(#[from] quick_junit::SerializeError),
+    /// A recording cannot be written.
+    #[cfg(feature = "recording")]
+    #[error(transparent)]
+    Record(#[from] crate::record::RecordError),
+    /// The command line asks for what cannot be.
+    #[error("{0}")]
+    Usage(String),
+    /// Standard output cannot be written.
+    #[error("failed to write to standard output: {0}")]
+    Stdout(std::io::Error),
+}
+
+impl CliError {
+    /// The exit code of this error.
+    pub fn exit(&self) -> Exit {
+        Exit::Input
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_end_wins() {
+        let order = [Exit::Met, Exit::NotMet, Exit::Infeasible, Exit::Input, Exit::Bug];
+        assert!(order.is_sorted());
+        assert_eq!(order.map(Exit::code), [0, 1, 3, 2, 70]);
+    }
+}

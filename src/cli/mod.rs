@@ -1,0 +1,55 @@
+//! The commands. They compose the parts of the crate, own the clock, the threads, the terminal and the files that are
+//! written, and turn what happened into an exit code. Nothing below this module knows any of these.
+
+mod args;
+mod exit;
+mod finish;
+mod output;
+mod pipeline;
+mod plan;
+#[cfg(feature = "recording")]
+mod recording;
+#[cfg(not(feature = "recording"))]
+#[path = "no_recording.rs"]
+mod recording;
+mod run;
+mod schema;
+mod simulate;
+mod versions;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+pub use args::{Cli, Command};
+pub use exit::Exit;
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // clap knows which of help, version and usage errors goes to which stream; a closed one is no error.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Input.into() } else { Exit::Met.into() };
+        }
+    };
+    let outcome = std::panic::catch_unwind(|| match &cli.command {
+        Command::Run(args) => run::run(args),
+        Command::Plan(args) => plan::plan(args),
+        Command::Simulate(args) => simulate::simulate(args),
+        Command::Schema(args) => schema::schema(args),
+    });
+    match outcome {
+        Ok(Ok(exit)) => exit.into(),
+        Ok(Err(error)) => {
+            output::complain(&format!("error: {error}"));
+            error.exit().into()
+        }
+        // The panic's own message has been printed by the default hook.
+        Err(_) => {
+            output::complain("error: this is a bug in benchdog; please report it with the message above");
+            Exit::Bug.into()
+        }
+    }
+}

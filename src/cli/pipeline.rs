@@ -1,0 +1,93 @@
+//! The main path: scenario -> plan -> simulation -> judgement -> verdict, for one scenario.
+
+use std::{collections::BTreeMap, time::Instant};
+
+use super::{exit::CliError, versions::versions};
+use crate::{
+    judge::{Judgement, judge},
+    model::{
+        FORMAT,
+        plan::Plan,
+        scenario::Scenario,
+        trace::Trace,
+        verdict::{Verdict, VerdictKind},
+    },
+    planner::{self, PlanOutcome},
+    robot::Robot,
+    scenario::LoadedScenario,
+    sim,
+};
+
+/// One scenario, run to its verdict.
+#[derive(Debug)]
+pub struct Run {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The plan that was judged; none when there is none.
+    pub plan: Option<Plan>,
+    /// The simulation, with what the judge made of it; none when there was nothing to simulate.
+    pub simulated: Option<(Trace, Judgement)>,
+}
+
+/// Plans where the scenario names no plan, then simulates and judges.
+///
+/// # Errors
+/// When the person or the tool is none, or the simulation cannot be built from the plan.
+pub fn run_scenario(loaded: &LoadedScenario) -> Result<Run, CliError> {
+    let scenario = &loaded.scenario;
+    let plan = match &loaded.plan {
+        Some(plan) => plan.clone(),
+        None => match timed_plan(scenario, &loaded.robot)? {
+            PlanOutcome::Found(plan) => *plan,
+            PlanOutcome::Infeasible(why) => {
+                return Ok(Run { verdict: infeasible(scenario, why.to_string()), plan: None, simulated: None });
+            }
+        },
+    };
+    run_plan(scenario, &loaded.robot, plan)
+}
+
+/// Simulates and judges a plan under a scenario's friction, phases, limits and expectation.
+///
+/// # Errors
+/// When the simulation cannot be built from the plan.
+pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
+    let trace = sim::simulate(robot, &plan, scenario.grip.friction, &scenario.simulation)
+        .map_err(|source| CliError::Simulation { name: plan.name.clone(), source })?;
+    let judgement = judge(&trace, &scenario.limits);
+    let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, scenario.planner.seed, versions());
+    Ok(Run { verdict, plan: Some(plan), simulated: Some((trace, judgement)) })
+}
+
+/// Plans a scenario, with the time that it took in the plan.
+///
+/// # Errors
+/// When the scenario's person or tool is none.
+pub fn timed_plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, CliError> {
+    let start = Instant::now();
+    let mut outcome = planner::plan(scenario, robot)?;
+    if let PlanOutcome::Found(plan) = &mut outcome
+        && let Some(record) = &mut plan.planner
+    {
+        record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);
+    }
+    Ok(outcome)
+}
+
+/// The verdict on a scenario that has no plan.
+fn infeasible(scenario: &Scenario, reason: String) -> Verdict {
+    Verdict {
+        format: FORMAT,
+        name: scenario.name.clone(),
+        verdict: VerdictKind::Infeasible,
+        expected: scenario.expect.verdict,
+        met: scenario.expect.verdict == VerdictKind::Infeasible,
+        checks: Vec::new(),
+        first_failure: None,
+        peak_torque_ratio: BTreeMap::new(),
+        reason: Some(reason),
+        versions: versions(),
+        seed: scenario.planner.seed,
+        fingerprint: String::new(),
+    }
+}

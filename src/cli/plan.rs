@@ -1,0 +1,31 @@
+//! `benchdog plan`: a scenario's hold, written to a file or to standard output.
+
+use super::{
+    args::PlanArgs,
+    exit::{CliError, Exit},
+    output, pipeline,
+};
+use crate::{model::verdict::VerdictKind, planner::PlanOutcome, report, scenario};
+
+/// Plans a scenario.
+pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
+    let mut loaded = scenario::load(&args.scenario)?;
+    if let Some(seed) = args.seed {
+        loaded.scenario.planner.seed = seed;
+    }
+    match pipeline::timed_plan(&loaded.scenario, &loaded.robot)? {
+        PlanOutcome::Found(plan) => {
+            let text = report::json::plan(&plan);
+            match &args.output {
+                Some(path) => report::file::write_whole(path, text.as_bytes())?,
+                None => output::print(&text)?,
+            }
+            Ok(Exit::Met)
+        }
+        PlanOutcome::Infeasible(why) => {
+            output::complain(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
+            let expected = loaded.scenario.expect.verdict == VerdictKind::Infeasible;
+            Ok(if expected { Exit::Met } else { Exit::Infeasible })
+        }
+    }
+}

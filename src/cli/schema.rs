@@ -1,0 +1,31 @@
+//! `benchdog schema`: the JSON Schemas of the file formats, made from the types that read and write them.
+
+use schemars::{Schema, schema_for};
+
+use super::{
+    args::{SchemaArgs, SchemaOf},
+    exit::{CliError, Exit},
+    output,
+};
+use crate::{
+    model::{plan::Plan, verdict::Verdict},
+    scenario::file::ScenarioFile,
+};
+
+/// Prints a schema.
+pub fn schema(args: &SchemaArgs) -> Result<Exit, CliError> {
+    output::print(&schema_text(args.of))?;
+    Ok(Exit::Met)
+}
+
+/// The schema of a format, as it is printed and stored under `schemas/`.
+fn schema_text(of: SchemaOf) -> String {
+    let schema: Schema = match of {
+        SchemaOf::Scenario => schema_for!(ScenarioFile),
+        SchemaOf::Plan => schema_for!(Plan),
+        SchemaOf::Verdict => schema_for!(Verdict),
+    };
+    // A JSON value always prints: its keys are strings and its numbers finite.
+    let text = serde_json::to_string_pretty(&schema).expect("a JSON value prints");
+    format!("{text}\n")
+}

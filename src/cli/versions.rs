@@ -1,0 +1,27 @@
+//! Versions of Benchdog and of the engines that decide a verdict.
+
+use std::collections::BTreeMap;
+
+/// The engines, with the versions that `Cargo.lock` holds; a test compares the two.
+const ENGINES: [(&str, &str); 3] = [("clarabel", "0.11.1"), ("parry3d-f64", "0.31.1"), ("rapier3d-f64", "0.36.1")];
+
+/// Name to version, for verdicts and recordings.
+pub fn versions() -> BTreeMap<String, String> {
+    let own = ("benchdog", env!("CARGO_PKG_VERSION"));
+    std::iter::once(own).chain(ENGINES).map(|(name, version)| (name.into(), version.into())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn engine_versions_are_those_of_the_lock_file() {
+        let lock: toml::Table = toml::from_str(include_str!("../../Cargo.lock")).unwrap();
+        let packages = lock["package"].as_array().unwrap();
+        for (name, version) in ENGINES {
+            let found = packages.iter().find(|package| package["name"].as_str() == Some(name)).unwrap();
+            assert_eq!(found["version"].as_str(), Some(version), "{name}");
+        }
+    }
+}

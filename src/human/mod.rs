@@ -1,0 +1,221 @@
+//! The person: body, working arm, strength, and both comfort metrics of the paper.
+//!
+//! [`Human`] is the way in. It takes poses and wrenches as the rest of the crate has them and mirrors them for a
+//! left-handed person; all other parts know a right arm only. A posture is the body's pose X_WB and the seven angles of
+//! the working arm. Nothing here knows robots, boards or how a posture is searched for.
+//!
+//! | part | what it does |
+//! |---|---|
+//! | [`body`] | proportions, masses, standing pose |
+//! | [`shape`] | capsules for collisions and pictures, 64 points of the surface |
+//! | [`arm`] | forward kinematics, Jacobian |
+//! | [`swivel`] | inverse kinematics, ranges of the swivel |
+//! | [`strength`] | largest torque of each joint |
+//! | [`muscular`] | joint torques, activations, muscular comfort |
+//! | [`peripersonal`] | peripersonal comfort |
+//! | [`tools`] | the tools of the paper |
+
+pub mod arm;
+pub mod body;
+pub mod muscular;
+pub mod peripersonal;
+pub mod shape;
+pub mod strength;
+pub mod swivel;
+pub mod tools;
+
+mod mirror;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+
+pub use arm::{Arm, ArmAngles, ArmFrames, ArmJacobian};
+pub use body::{Body, standing_pose_w};
+pub use muscular::{JointTorques, Muscular};
+pub use peripersonal::peripersonal_m;
+pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, Side};
+pub use strength::{Sense, Strength};
+pub use swivel::{ArmSolutions, ShoulderBranch, SwivelCircle, SwivelInterval, SwivelIntervals};
+pub use tools::default_tool;
+
+use nalgebra::{Isometry3, Point3, Vector3};
+
+use self::mirror::Mirrored;
+use crate::model::{
+    GRAVITY_W,
+    frames::{Pose, rotation_from_xyzw},
+    scenario::{Hand, Person, StrengthDirection, Tool},
+    wrench::Wrench,
+};
+
+/// Why a person or a tool is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum HumanError {
+    /// A figure out of its range.
+    #[error("found {found} for the {figure}, expected {expected}")]
+    Figure {
+        /// What was given.
+        figure: &'static str,
+        /// Its value.
+        found: f64,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// The tool's rotation is none.
+    #[error("failed to read the tool's rotation_xyzw: {0}")]
+    ToolRotation(String),
+}
+
+/// A person with a tool in the working hand.
+#[derive(Clone, Debug)]
+pub struct Human {
+    hand: Hand,
+    body: Body,
+    arm: Arm,
+    strength: Strength,
+    tool_kg: f64,
+}
+
+impl Human {
+    /// A person with a tool.
+    ///
+    /// # Errors
+    /// When a height, mass or percentile is out of range or the tool's rotation is none.
+    pub fn new(person: &Person, tool: &Tool) -> Result<Self, HumanError> {
+        let positive = |v: f64| v.is_finite() && v > 0.0;
+        check("person's height_m", person.height_m, positive, "a positive number")?;
+        check("person's mass_kg", person.mass_kg, positive, "a positive number")?;
+        check("person's percentile", person.percentile, |p| p > 0.0 && p < 100.0, "a number between 0 and 100")?;
+        check("tool's mass_kg", tool.mass_kg, |m| m.is_finite() && m >= 0.0, "zero or a positive number")?;
+        for coordinate in tool.tip_h_m {
+            check("tool's tip_h_m", coordinate, f64::is_finite, "a finite number")?;
+        }
+        let rotation = rotation_from_xyzw(tool.rotation_xyzw).map_err(HumanError::ToolRotation)?;
+        let body = Body::new(person);
+        let arm = Arm::new(&body, Isometry3::from_parts(tool.tip_h_m.into(), rotation));
+        let strength = Strength::new(person.sex, person.percentile);
+        Ok(Self { hand: person.hand, body, arm, strength, tool_kg: tool.mass_kg })
+    }
+
+    /// The body, as that of a right-handed person.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// The working arm, as a right arm.
+    pub fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    /// The strengths of the working arm.
+    pub fn strength(&self) -> &Strength {
+        &self.strength
+    }
+
+    /// Pose of the working shoulder's frame in the body's: S has the axes of B.
+    pub fn x_bs(&self) -> Pose {
+        let p_bs_m = self.on_working_side(self.arm.p_bs_m);
+        Isometry3::translation(p_bs_m.x, p_bs_m.y, p_bs_m.z)
+    }
+
+    /// Shoulder to wrist of the straight arm, m.
+    pub fn reach_m(&self) -> f64 {
+        self.arm.reach_m()
+    }
+
+    /// The tool tip's frame in the body's, X_BT. For a left-handed person the tool is mirrored too: x_T and z_T are the
+    /// mirror images, y_T completes a right-handed frame.
+    pub fn tool_pose_b(&self, q_rad: &ArmAngles) -> Pose {
+        self.on_working_side(self.arm.tool_pose_b(q_rad))
+    }
+
+    /// The postures that put the tool's tip at `x_bt`, as a function of the swivel; none out of reach. Ask this once
+    /// when many swivels of one tool pose are of interest. [`swivel`] defines the angle; for a left-handed person it is
+    /// that of the mirrored arm.
+    pub fn swivel_circle(&self, x_bt: &Pose) -> Option<SwivelCircle> {
+        self.arm.swivel_circle(&self.on_working_side(*x_bt))
+    }
+
+    /// The postures of both shoulder branches inside the joints' limits that put the tool's tip at `x_bt` with this
+    /// swivel: none, one or two.
+    pub fn arm_solutions(&self, x_bt: &Pose, swivel_rad: f64) -> ArmSolutions {
+        self.swivel_circle(x_bt).map_or_else(ArmSolutions::new, |circle| circle.solutions(swivel_rad))
+    }
+
+    /// The ranges of the swivel, by shoulder branch, in which the tool's tip can be at `x_bt`.
+    pub fn swivel_intervals(&self, x_bt: &Pose) -> SwivelIntervals {
+        self.swivel_circle(x_bt).map_or_else(SwivelIntervals::new, |circle| circle.intervals())
+    }
+
+    /// The swivel angle of a posture, rad, in [-pi, pi].
+    pub fn swivel_rad(&self, q_rad: &ArmAngles) -> f64 {
+        self.arm.swivel_rad(q_rad)
+    }
+
+    /// The torques of the working arm's joints for the wrench that the hand exerts at the tool's tip: about the tip, in
+    /// world axes.
+    pub fn joint_torques(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench) -> JointTorques {
+        let to_body = x_wb.rotation.inverse();
+        let wrench_b = Wrench::new(to_body * wrench_w.force_n, to_body * wrench_w.moment_nm);
+        let (wrench_b, gravity_b) = (self.on_working_side(wrench_b), self.on_working_side(to_body * GRAVITY_W));
+        muscular::joint_torques(&self.arm, &self.body, self.tool_kg, q_rad, &wrench_b, &gravity_b)
+    }
+
+    /// Torque over strength of each joint of the working arm; arguments as for [`Self::joint_torques`].
+    pub fn activations(
+        &self,
+        q_rad: &ArmAngles,
+        x_wb: &Pose,
+        wrench_w: &Wrench,
+        direction: StrengthDirection,
+    ) -> [f64; 7] {
+        self.joint_torques(q_rad, x_wb, wrench_w).activations(q_rad, &self.strength, direction)
+    }
+
+    /// The muscular comfort of a posture; arguments as for [`Self::joint_torques`].
+    pub fn muscular(
+        &self,
+        q_rad: &ArmAngles,
+        x_wb: &Pose,
+        wrench_w: &Wrench,
+        direction: StrengthDirection,
+    ) -> Muscular {
+        Muscular::of(self.activations(q_rad, x_wb, wrench_w, direction))
+    }
+
+    /// The points spread over the body's surface, in the world.
+    pub fn body_points_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> [Point3<f64>; BODY_POINTS] {
+        self.body.points(&self.arm.frames(q_rad), self.placed(x_wb))
+    }
+
+    /// The capsules of body and tool in the world: head first, then each part working side first, the tool last.
+    pub fn capsules_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> [Capsule; CAPSULES] {
+        let p_ht_m = &self.arm.x_ht.translation.vector;
+        self.body.capsules(&self.arm.frames(q_rad), p_ht_m, self.placed(x_wb))
+    }
+
+    /// Takes a point of the right-handed body to the world.
+    fn placed(&self, x_wb: &Pose) -> impl Fn(&Vector3<f64>) -> Point3<f64> {
+        let (to_w, p_wb_m) = (x_wb.rotation.to_rotation_matrix(), x_wb.translation.vector);
+        move |p_b_m| (to_w * self.on_working_side(*p_b_m) + p_wb_m).into()
+    }
+
+    /// The mirror image for a left-handed person, the thing itself for a right-handed one; its own inverse.
+    fn on_working_side<T: Mirrored>(&self, of_right: T) -> T {
+        match self.hand {
+            Hand::Right => of_right,
+            Hand::Left => of_right.mirrored(),
+        }
+    }
+}
+
+/// A figure, when it is what it must be.
+fn check(
+    figure: &'static str,
+    found: f64,
+    holds: impl Fn(f64) -> bool,
+    expected: &'static str,
+) -> Result<(), HumanError> {
+    if holds(found) { Ok(()) } else { Err(HumanError::Figure { figure, found, expected }) }
+}

@@ -1,0 +1,191 @@
+//! What holds for the whole person: invariances that no part can show alone.
+
+use std::f64::consts::PI;
+
+use approx::assert_abs_diff_eq;
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use proptest::prelude::*;
+use rand::RngExt;
+
+use super::{
+    testing::{average_man, generator, random_angles, worker},
+    *,
+};
+use crate::model::{
+    operation::OperationKind,
+    scenario::{PeripersonalForm, Sex},
+};
+
+const DIRECTIONS: [StrengthDirection; 2] = [StrengthDirection::Paper, StrengthDirection::Torque];
+
+/// Points about where a robot would be.
+fn robot_points(generator: &mut impl RngExt) -> Vec<Point3<f64>> {
+    (0..56).map(|_| Point3::from(Vector3::from_fn(|_, _| generator.random_range(-0.6..0.6)))).collect()
+}
+
+fn wrench(components: [f64; 6]) -> Wrench {
+    Wrench::from(components)
+}
+
+/// Any posture, as fractions of the joints' ranges.
+fn fractions() -> impl Strategy<Value = [f64; 7]> {
+    prop::array::uniform7(0.0..=1.0)
+}
+
+fn posture(human: &Human, fractions: [f64; 7]) -> ArmAngles {
+    std::array::from_fn(|i| {
+        let [low, high] = human.arm().limits_rad[i];
+        low + fractions[i] * (high - low)
+    })
+}
+
+proptest! {
+    #[test]
+    fn a_left_handed_person_is_the_mirror_image(
+        fractions in fractions(),
+        components in prop::array::uniform6(-30.0..30.0),
+        place in prop::array::uniform3(-2.0..2.0),
+    ) {
+        let right = worker(Hand::Right, OperationKind::Cut);
+        let left = worker(Hand::Left, OperationKind::Cut);
+        let q_rad = posture(&right, fractions);
+        let x_wb = standing_pose_w(place[0], place[1], place[2], -0.9);
+        // Mirrored in the plane y_W = 0, the person stands at -y and turns the other way.
+        let x_wb_mirrored = standing_pose_w(place[0], -place[1], -place[2], -0.9);
+        let w = wrench(components);
+        prop_assert_eq!(left.tool_pose_b(&q_rad), right.tool_pose_b(&q_rad).mirrored());
+        for direction in DIRECTIONS {
+            let of_right = right.activations(&q_rad, &x_wb, &w, direction);
+            let of_left = left.activations(&q_rad, &x_wb_mirrored, &w.mirrored(), direction);
+            for (l, r) in of_left.iter().zip(of_right) {
+                // Torques of up to 50 N m over strengths of at least 4, rounded some ten times.
+                prop_assert!((l - r).abs() < 1e-12, "{of_left:?} {of_right:?}");
+            }
+        }
+        let pairs = left.body_points_w(&x_wb_mirrored, &q_rad).into_iter().zip(right.body_points_w(&x_wb, &q_rad));
+        for (l, r) in pairs {
+            prop_assert!((l.coords - r.coords.mirrored()).norm() < 1e-14);
+        }
+        for (l, r) in left.capsules_w(&x_wb_mirrored, &q_rad).iter().zip(right.capsules_w(&x_wb, &q_rad)) {
+            prop_assert_eq!(l.name, r.name);
+            prop_assert!((l.p0_w.coords - r.p0_w.coords.mirrored()).norm() < 1e-14);
+            prop_assert!((l.p1_w.coords - r.p1_w.coords.mirrored()).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_left_handed_person_finds_every_posture_again(fractions in fractions()) {
+        let left = worker(Hand::Left, OperationKind::Drill);
+        let q_rad = posture(&left, fractions);
+        let x_bt = left.tool_pose_b(&q_rad);
+        let swivel_rad = left.swivel_rad(&q_rad);
+        let covered = left.swivel_intervals(&x_bt).iter().any(|interval| {
+            // Sampled fractions include postures on a limit, at the very end of a range.
+            (swivel_rad - interval.from_rad + 1e-6).rem_euclid(2.0 * PI) <= interval.to_rad - interval.from_rad + 2e-6
+        });
+        let solutions = left.arm_solutions(&x_bt, swivel_rad);
+        prop_assert!(!solutions.is_empty());
+        for solution in solutions {
+            prop_assert!((left.tool_pose_b(&solution).translation.vector - x_bt.translation.vector).norm() < 1e-9);
+            prop_assert!(left.tool_pose_b(&solution).rotation.angle_to(&x_bt.rotation) < 1e-7);
+        }
+        prop_assert!(covered || fractions.iter().any(|&f| f == 0.0 || f == 1.0));
+    }
+
+    #[test]
+    fn only_the_relative_placement_counts(
+        fractions in fractions(),
+        components in prop::array::uniform6(-30.0..30.0),
+        move_by in prop::array::uniform3(-3.0..3.0),
+        turn_rad in -PI..PI,
+    ) {
+        let human = worker(Hand::Right, OperationKind::Drill);
+        let q_rad = posture(&human, fractions);
+        let x_wb = standing_pose_w(1.2, -0.1, 2.9, -0.9);
+        let moved = Isometry3::from_parts(
+            Vector3::from(move_by).into(),
+            UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad),
+        );
+        let x_wb_moved = moved * x_wb;
+        let w = wrench(components);
+        let w_turned = Wrench::new(moved.rotation * w.force_n, moved.rotation * w.moment_nm);
+        for direction in DIRECTIONS {
+            let here = human.activations(&q_rad, &x_wb, &w, direction);
+            let there = human.activations(&q_rad, &x_wb_moved, &w_turned, direction);
+            for (a, b) in here.iter().zip(there) {
+                // As for the mirror image.
+                prop_assert!((a - b).abs() < 1e-12, "{here:?} {there:?}");
+            }
+        }
+        let robot = robot_points(&mut generator(7));
+        let robot_moved: Vec<_> = robot.iter().map(|p| moved * p).collect();
+        for form in [PeripersonalForm::Min, PeripersonalForm::Mean, PeripersonalForm::Weighted] {
+            let here = peripersonal_m(form, &human.body_points_w(&x_wb, &q_rad), &robot);
+            let there = peripersonal_m(form, &human.body_points_w(&x_wb_moved, &q_rad), &robot_moved);
+            // Distances of order one from positions of order three.
+            prop_assert!((here - there).abs() < 1e-13);
+        }
+    }
+}
+
+#[test]
+fn the_tool_frame_stays_right_handed_on_either_side() {
+    for hand in [Hand::Right, Hand::Left] {
+        for kind in [OperationKind::Drill, OperationKind::Cut] {
+            let x_bt = worker(hand, kind).tool_pose_b(&[0.0; 7]);
+            let (x_t, y_t, z_t) = (x_bt * Vector3::x(), x_bt * Vector3::y(), x_bt * Vector3::z());
+            assert_abs_diff_eq!(x_t.cross(&y_t), z_t, epsilon = 1e-15);
+            // Hanging: the drill points down, the knife forward with its edge down, on both sides.
+            let expected = if kind == OperationKind::Drill {
+                (-Vector3::z(), Vector3::x())
+            } else {
+                (Vector3::x(), -Vector3::z())
+            };
+            assert_abs_diff_eq!(z_t, expected.0, epsilon = 1e-15);
+            assert_abs_diff_eq!(x_t, expected.1, epsilon = 1e-15);
+        }
+    }
+}
+
+#[test]
+fn the_shoulder_is_on_the_side_of_the_hand() {
+    let right = worker(Hand::Right, OperationKind::Drill).x_bs();
+    let left = worker(Hand::Left, OperationKind::Drill).x_bs();
+    assert_abs_diff_eq!(right.translation.vector, Vector3::new(0.0, -0.22575, 1.4315), epsilon = 1e-12);
+    assert_abs_diff_eq!(left.translation.vector, Vector3::new(0.0, 0.22575, 1.4315), epsilon = 1e-12);
+}
+
+#[test]
+fn the_weaker_feel_the_same_load_more() {
+    let tool = default_tool(OperationKind::Drill);
+    let x_wb = standing_pose_w(1.2, 0.0, PI, -0.9);
+    let w = Wrench::from_force(Vector3::new(-15.0, 0.0, 0.0));
+    let mut generator = generator(11);
+    let man = Human::new(&average_man(), &tool).unwrap();
+    let weak_man = Human::new(&Person { percentile: 5.0, ..average_man() }, &tool).unwrap();
+    for _ in 0..100 {
+        let q_rad = random_angles(man.arm(), &mut generator);
+        let effort = |human: &Human| human.muscular(&q_rad, &x_wb, &w, StrengthDirection::Paper);
+        let (strong, weak) = (effort(&man), effort(&weak_man));
+        assert!(weak.printed < strong.printed);
+        // z at 5 % is -1.644854: strengths fall to 1 - 0.277 x 1.644854 = 0.544375 in every joint.
+        assert!((weak.printed / strong.printed / 0.544_375_f64.powi(2) - 1.0).abs() < 1e-5);
+        assert!(strong.regularised < 100.0 && strong.regularised < strong.printed);
+    }
+}
+
+#[test]
+fn figures_that_no_person_has_are_refused() {
+    let tool = default_tool(OperationKind::Drill);
+    let refused = |person: Person, tool: Tool| Human::new(&person, &tool).unwrap_err().to_string();
+    let message = refused(Person { height_m: -1.75, ..average_man() }, tool);
+    assert_eq!(message, "found -1.75 for the person's height_m, expected a positive number");
+    assert!(refused(Person { mass_kg: f64::NAN, ..average_man() }, tool).contains("person's mass_kg"));
+    for percentile in [0.0, 100.0, f64::NAN] {
+        assert!(refused(Person { percentile, ..average_man() }, tool).contains("percentile"));
+    }
+    assert!(refused(average_man(), Tool { mass_kg: -0.1, ..tool }).contains("tool's mass_kg"));
+    assert!(refused(average_man(), Tool { tip_h_m: [0.0, f64::INFINITY, 0.0], ..tool }).contains("tip_h_m"));
+    assert!(refused(average_man(), Tool { rotation_xyzw: [0.0; 4], ..tool }).contains("unit length"));
+    assert!(Human::new(&Person { sex: Sex::Female, ..average_man() }, &tool).is_ok());
+}

@@ -1,0 +1,56 @@
+//! The tools that a scenario gets when it names none.
+
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use crate::model::{operation::OperationKind, scenario::Tool};
+
+/// `assets/human/tools.toml`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Tools {
+    drill: Tool,
+    knife: Tool,
+}
+
+static TOOLS: LazyLock<Tools> = LazyLock::new(|| {
+    // The file is part of the program and a test reads it: a mistake in it cannot be shipped.
+    toml::from_str(include_str!("../../assets/human/tools.toml")).expect("the shipped tools are sound")
+});
+
+/// The tool for this kind of operation (METHOD section 4): a knife for a cut, a drill for everything else.
+pub fn default_tool(kind: OperationKind) -> Tool {
+    match kind {
+        OperationKind::Cut => TOOLS.knife,
+        OperationKind::Drill | OperationKind::Wrench => TOOLS.drill,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Vector3};
+
+    use super::*;
+    use crate::model::frames::rotation_from_xyzw;
+
+    fn axes_h(kind: OperationKind) -> Matrix3<f64> {
+        rotation_from_xyzw(default_tool(kind).rotation_xyzw).unwrap().to_rotation_matrix().into_inner()
+    }
+
+    #[test]
+    fn the_tools_point_as_the_method_says() {
+        let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+        // A quaternion of 16 digits: its matrix is good to a few roundings.
+        assert!((axes_h(OperationKind::Drill) - Matrix3::from_columns(&[x, -y, -z])).norm() < 1e-15);
+        assert!((axes_h(OperationKind::Cut) - Matrix3::from_columns(&[-z, y, x])).norm() < 1e-15);
+    }
+
+    #[test]
+    fn both_tips_lie_on_the_side_of_the_thumb_beyond_the_wrist() {
+        for kind in [OperationKind::Drill, OperationKind::Cut] {
+            let tool = default_tool(kind);
+            assert!(tool.mass_kg > 0.0 && tool.tip_h_m[0] > 0.0 && tool.tip_h_m[2] < 0.0);
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! The check of a plan from scratch: nothing is taken from the search but the plan itself.
+//!
+//! Every pose is computed again from joint angles, in the world, and every figure that the plan carries is compared with
+//! what comes out. It serves plans of other planners as well.
+
+use nalgebra::Vector3;
+
+use crate::{
+    collision::{CollisionModel, PersonPart, Scene},
+    human::{Human, HumanError, peripersonal_m},
+    model::{
+        plan::{Comfort, HumanPosture, Plan},
+        scenario::{Scenario, StabilityKind},
+        wrench::Wrench,
+    },
+    robot::{ArmState, Chain, Robot},
+    statics::Hold,
+};
+
+/// How exact inverse kinematics must be, m and rad (METHOD section 3).
+const POSE_TOLERANCE: f64 = 1e-6;
+/// How far a figure of the plan may be from the one computed again: rounding, relative.
+const FIGURE_TOLERANCE: f64 = 1e-6;
+
+/// Something that is not as the plan has it, or not allowed, in words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flaw(pub String);
+
+impl std::fmt::Display for Flaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// Everything that is wrong with a plan under a scenario; empty when it keeps every constraint.
+///
+/// # Errors
+/// When the scenario's person or tool is none.
+pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Vec<Flaw>, HumanError> {
+    let mut flaws = Vec::new();
+    arms(plan, robot, &mut flaws);
+    stability(plan, scenario, robot, &mut flaws);
+    match (&plan.human, &plan.comfort) {
+        (Some(posture), Some(comfort)) => {
+            let human = Human::new(&posture.person(), &scenario.tool)?;
+            person(plan, posture, robot, &human, &mut flaws);
+            figures(plan, posture, comfort, scenario, robot, &human, &mut flaws);
+            collisions(plan, posture, robot, &human, &mut flaws);
+        }
+        _ => flaws.push(Flaw("the plan has no person and comfort to check".into())),
+    }
+    Ok(flaws)
+}
+
+fn expect(holds: bool, flaws: &mut Vec<Flaw>, flaw: impl FnOnce() -> String) {
+    if !holds {
+        flaws.push(Flaw(flaw()));
+    }
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= FIGURE_TOLERANCE * a.abs().max(b.abs()).max(1.0)
+}
+
+fn arms(plan: &Plan, robot: &Robot, flaws: &mut Vec<Flaw>) {
+    for hold in &plan.arms {
+        let Some(index) = robot.arm_index(&hold.name) else {
+            flaws.push(Flaw(format!("{}: no such arm", hold.name)));
+            continue;
+        };
+        let chain = Chain::new(robot, index, 0.0);
+        let reached = chain.gripper_pose(&hold.q_rad);
+        let meant = plan.object.x_wo * hold.x_og;
+        let apart_m = (reached.translation.vector - meant.translation.vector).norm();
+        let apart_rad = reached.rotation.angle_to(&meant.rotation);
+        expect(apart_m.max(apart_rad) <= POSE_TOLERANCE, flaws, || {
+            format!("{}: the hand is {apart_m:e} m and {apart_rad:e} rad off its grasp", hold.name)
+        });
+        expect(chain.within_limits(&hold.q_rad, 0.0), flaws, || format!("{}: beyond a joint limit", hold.name));
+    }
+}
+
+fn person(plan: &Plan, posture: &HumanPosture, robot: &Robot, human: &Human, flaws: &mut Vec<Flaw>) {
+    let tool = posture.x_wb * human.tool_pose_b(&posture.q_rad);
+    let meant = plan.object.x_wo * plan.operation.x_ot;
+    let apart_m = (tool.translation.vector - meant.translation.vector).norm();
+    let apart_rad = tool.rotation.angle_to(&meant.rotation);
+    expect(apart_m.max(apart_rad) <= POSE_TOLERANCE, flaws, || {
+        format!("the tool is {apart_m:e} m and {apart_rad:e} rad off the operation")
+    });
+    expect(human.arm().within_limits(&posture.q_rad), flaws, || "the person's arm is beyond a joint limit".into());
+    let off_floor_m = (posture.x_wb.translation.z - robot.floor_z_m).abs();
+    expect(off_floor_m <= POSE_TOLERANCE, flaws, || format!("the person stands {off_floor_m:e} m off the floor"));
+    let tilt_rad = (posture.x_wb.rotation * Vector3::z()).angle(&Vector3::z());
+    expect(tilt_rad <= POSE_TOLERANCE, flaws, || format!("the person leans by {tilt_rad:e} rad"));
+}
+
+/// Link poses of the robot in the plan's configuration.
+fn link_poses(plan: &Plan, robot: &Robot) -> Vec<crate::model::frames::Pose> {
+    let states: Vec<_> = plan
+        .arms
+        .iter()
+        .filter_map(|hold| {
+            let arm = robot.arm_index(&hold.name)?;
+            let gripper = &robot.arms[arm].gripper;
+            let finger_travel_m = [0, 1].map(|finger| gripper.travel_for_gap_m(finger, plan.object.size_m[2]));
+            Some(ArmState { arm, q_rad: &hold.q_rad, finger_travel_m })
+        })
+        .collect();
+    robot.link_poses(&robot.positions(&states))
+}
+
+fn figures(
+    plan: &Plan,
+    posture: &HumanPosture,
+    comfort: &Comfort,
+    scenario: &Scenario,
+    robot: &Robot,
+    human: &Human,
+    flaws: &mut Vec<Flaw>,
+) {
+    let settings = scenario.comfort;
+    let rotation = plan.object.x_wo.rotation;
+    let Wrench { force_n, moment_nm } = plan.operation.wrench_o;
+    let wrench_w = Wrench::new(rotation * force_n, rotation * moment_nm);
+    let muscular = human.muscular(&posture.q_rad, &posture.x_wb, &wrench_w, settings.direction);
+    let strongest = muscular.activations.iter().copied().fold(0.0, f64::max);
+    expect(strongest <= 1.0, flaws, || format!("an activation is {strongest}, more than the person has"));
+    let poses = link_poses(plan, robot);
+    let surface: Vec<_> = robot.body_points.iter().map(|point| poses[point.link] * point.p_l).collect();
+    let body = human.body_points_w(&posture.x_wb, &posture.q_rad);
+    let peripersonal_m = peripersonal_m(settings.peripersonal, &body, &surface);
+    let objective =
+        settings.weight_muscular * muscular.regularised + settings.weight_peripersonal * peripersonal_m;
+    let compared = [
+        ("muscular", comfort.muscular, muscular.printed),
+        ("muscular_regularised", comfort.muscular_regularised, muscular.regularised),
+        ("peripersonal_m", comfort.peripersonal_m, peripersonal_m),
+        ("objective", comfort.objective, objective),
+    ];
+    for (name, written, found) in compared {
+        expect(same(written, found), flaws, || format!("comfort.{name} is {written} in the plan and {found} in fact"));
+    }
+}
+
+fn collisions(plan: &Plan, posture: &HumanPosture, robot: &Robot, human: &Human, flaws: &mut Vec<Flaw>) {
+    let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
+    let person = human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from);
+    let scene = Scene {
+        link_poses: &link_poses(plan, robot),
+        holding: &holding,
+        board_size_m: plan.object.size_m,
+        x_wo: plan.object.x_wo,
+        person: &person,
+    };
+    if let Some(violation) = CollisionModel::new(robot).first_violation(&scene) {
+        flaws.push(Flaw(violation.describe(robot)));
+    }
+}
+
+fn stability(plan: &Plan, scenario: &Scenario, robot: &Robot, flaws: &mut Vec<Flaw>) {
+    let hold = Hold::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction);
+    let (Some(written), Some(found)) = (&plan.stability, hold.stability(&scenario.limits)) else {
+        flaws.push(Flaw("the stability is not stated or cannot be confirmed".into()));
+        return;
+    };
+    let least = scenario.limits.load_factor;
+    expect(found.load_factor >= least, flaws, || format!("the load factor is {}", found.load_factor));
+    if scenario.planner.stability == StabilityKind::Compliant {
+        let (factor, deflection_mm) = (found.compliant_load_factor, found.predicted_deflection_mm);
+        expect(factor >= least, flaws, || format!("the compliant load factor is {factor}"));
+        let limit_mm = scenario.limits.deflection_mm;
+        expect(deflection_mm <= limit_mm, flaws, || format!("the predicted deflection is {deflection_mm} mm"));
+    }
+    // Two solves of the same conic program agree to its tolerance, which is coarser than rounding.
+    let close = (written.load_factor - found.load_factor).abs() <= 1e-4 * found.load_factor.max(1.0);
+    expect(close, flaws, || format!("stability.load_factor is {} in the plan and {} in fact", written.load_factor, found.load_factor));
+}

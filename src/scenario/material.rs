@@ -1,0 +1,40 @@
+//! Board materials: a name and the density that goes with it.
+
+use std::collections::BTreeMap;
+
+/// The shipped table, `assets/materials.toml`: name to density, kg/m^3.
+const TABLE: &str = include_str!("../../assets/materials.toml");
+
+/// Density of a material, kg/m^3.
+///
+/// # Errors
+/// For an unknown name: the names that are known, in one line.
+pub fn density_kg_m3(name: &str) -> Result<f64, String> {
+    let table = table();
+    table.get(name).copied().ok_or_else(|| {
+        let known: Vec<_> = table.keys().map(String::as_str).collect();
+        format!("one of {}", known.join(", "))
+    })
+}
+
+fn table() -> BTreeMap<String, f64> {
+    // The table is part of the program, and a test parses it.
+    toml::from_str(TABLE).expect("assets/materials.toml is a table of numbers")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_density_is_that_of_a_board() {
+        // Between the lightest foam and stone.
+        assert!(table().values().all(|density| (10.0..3000.0).contains(density)));
+        assert_eq!(density_kg_m3("foam"), Ok(35.0));
+    }
+
+    #[test]
+    fn an_unknown_material_names_the_known_ones() {
+        assert!(density_kg_m3("cheese").unwrap_err().contains("plywood"));
+    }
+}

@@ -1,0 +1,85 @@
+//! Scenario and plan files: read, checked, completed with defaults.
+//!
+//! Whatever a file gets wrong is found here, before anything is planned or written, and said with the file, the line,
+//! the key, what was found and what was expected. This module knows files and figures; it never plans or simulates.
+
+mod check;
+pub mod error;
+pub mod file;
+mod locate;
+pub mod material;
+pub mod plan_file;
+mod resolve;
+
+use std::path::{Path, PathBuf};
+
+pub use error::{InputError, InputErrorKind};
+pub use plan_file::read_plan;
+
+use crate::{
+    model::{
+        plan::Plan,
+        scenario::{ArmFigures, PadFigures, RobotFigures, Scenario},
+    },
+    robot::Robot,
+};
+
+/// A scenario that can be run: resolved, with its robot and, where the file names one, the plan to judge.
+#[derive(Clone, Debug)]
+pub struct LoadedScenario {
+    /// Where it was read from.
+    pub path: PathBuf,
+    /// Every figure, defaults filled in.
+    pub scenario: Scenario,
+    /// The robot.
+    pub robot: Robot,
+    /// The plan of `planner.plan`.
+    pub plan: Option<Plan>,
+}
+
+/// Reads, checks and completes a scenario file.
+///
+/// # Errors
+/// When the file, the robot or the plan that it names cannot be read, or any value is not what the format asks for.
+pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
+    let text = error::read_text(path)?;
+    let file = file::parse(path, &text)?;
+    let (scenario, robot) = resolve::resolve(path, &text, &file)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let plan = match &scenario.planner.plan {
+        Some(plan) => Some(read_plan(&folder.join(plan), Some(&robot))?.0),
+        None => None,
+    };
+    Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan })
+}
+
+/// The figures of a robot that a plan's result depends on.
+pub fn robot_figures(robot: &Robot) -> RobotFigures {
+    let arms = robot
+        .arms
+        .iter()
+        .map(|arm| ArmFigures {
+            name: arm.name.clone(),
+            joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
+            stiffness_nm_rad: arm.stiffness_nm_rad.clone(),
+            damping_nm_s_rad: arm.damping_nm_s_rad.clone(),
+            effort_nm: arm.effort_nm.clone(),
+            pads: arm
+                .gripper
+                .fingers
+                .iter()
+                .map(|finger| PadFigures {
+                    name: finger.pad.name.clone(),
+                    size_m: finger.pad.size_m,
+                    centre_m: finger.pad.centre_m,
+                })
+                .collect(),
+        })
+        .collect();
+    RobotFigures { description: robot.description.clone(), arms }
+}
+
+/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
+pub fn for_plan(plan: &Plan, robot: &Robot) -> Scenario {
+    resolve::defaults_for_plan(plan, robot)
+}

@@ -1,0 +1,113 @@
+//! Plan files, ours or anybody's: read and checked against the robot that they name.
+
+use std::path::Path;
+
+use super::{InputError, InputErrorKind, check::Checker, error::read_text};
+use crate::{
+    model::plan::{ArmHold, Plan},
+    robot::{Arm, Chain, Robot},
+};
+
+/// How far a joint angle may lie beyond its limit, rad: rounding of written figures.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-6;
+
+/// How far a hand may be from where the plan puts it on the board: 1 mm and 0.1 degrees.
+const HAND_TOLERANCE: (f64, f64) = (1e-3, 0.1 * std::f64::consts::PI / 180.0);
+
+/// Reads and checks a plan file. The robot that it names is loaded, unless it is the one given.
+///
+/// # Errors
+/// When the file cannot be read, is not a plan of this format, or asks for what the robot is not or cannot do.
+pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), InputError> {
+    let text = read_text(path)?;
+    let plan = parse(path, &text)?;
+    let check = Checker::json(path, &text);
+    check.format(plan.format)?;
+    let robot = match robot {
+        Some(robot) if robot.description == plan.robot => robot.clone(),
+        _ => {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            Robot::load(&plan.robot, folder).map_err(|e| check.robot("robot", e))?
+        }
+    };
+    check_object(&check, &plan)?;
+    check_arms(&check, &plan, &robot)?;
+    Ok((plan, robot))
+}
+
+fn parse(path: &Path, text: &str) -> Result<Plan, InputError> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let key = error.path().to_string();
+        let inner = error.into_inner();
+        InputError {
+            file: path.to_owned(),
+            line: Some(inner.line()),
+            key: (key != ".").then_some(key),
+            kind: InputErrorKind::Syntax(without_position(&inner.to_string())),
+        }
+    })
+}
+
+/// serde_json ends its messages with the line and column, which we say in front.
+fn without_position(message: &str) -> String {
+    message.split(" at line ").next().unwrap_or(message).to_owned()
+}
+
+fn check_object(check: &Checker<'_>, plan: &Plan) -> Result<(), InputError> {
+    check.board_size("object.size_m", plan.object.size_m, std::iter::empty())?;
+    check.positive("object.mass_kg", plan.object.mass_kg, "kg")?;
+    check.on_board("operation.x_ot", &plan.operation.x_ot, plan.object.size_m)
+}
+
+fn check_arms(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), InputError> {
+    check.that(!plan.arms.is_empty(), "arms", "no arm", "at least one")?;
+    for (index, hold) in plan.arms.iter().enumerate() {
+        let key = |rest: &str| format!("arms[{index}].{rest}");
+        let known: Vec<_> = robot.arms.iter().map(|arm| arm.name.as_str()).collect();
+        let arm_index = robot.arm_index(&hold.name).ok_or_else(|| {
+            check.value(
+                &key("name"),
+                format!("\"{}\"", hold.name),
+                format!("an arm of the robot: {}", known.join(", ")),
+            )
+        })?;
+        let twice = plan.arms[..index].iter().any(|other| other.name == hold.name);
+        check.that(!twice, &key("name"), format!("\"{}\" again", hold.name), "every arm once")?;
+        let arm = &robot.arms[arm_index];
+        check_joints(check, index, hold, arm, robot)?;
+        check.grip_force(&key("grip_force_n"), hold.grip_force_n, std::iter::once(arm))?;
+        check.board_size("object.size_m", plan.object.size_m, std::iter::once(arm))?;
+        check_hand(check, &key("x_og"), hold, plan, &Chain::new(robot, arm_index, 0.0))?;
+    }
+    Ok(())
+}
+
+fn check_joints(check: &Checker<'_>, index: usize, hold: &ArmHold, arm: &Arm, robot: &Robot) -> Result<(), InputError> {
+    let names: Vec<_> = arm.joints.iter().map(|&joint| robot.joints[joint].name.as_str()).collect();
+    let same = hold.joints.iter().map(String::as_str).eq(names.iter().copied());
+    let expected = format!("the joints of the {} arm: {}", arm.name, names.join(", "));
+    check.that(same, &format!("arms[{index}].joints"), hold.joints.join(", "), &expected)?;
+    let expected = format!("{} angles in rad", names.len());
+    let count = hold.q_rad.len();
+    check.that(count == names.len(), &format!("arms[{index}].q_rad"), count.to_string(), &expected)?;
+    for (i, (&joint, &q)) in arm.joints.iter().zip(&hold.q_rad).enumerate() {
+        let (lower, upper) = (robot.joints[joint].lower, robot.joints[joint].upper);
+        let inside = q >= lower - LIMIT_TOLERANCE_RAD && q <= upper + LIMIT_TOLERANCE_RAD;
+        let expected = format!("{lower} to {upper} rad, the limits of {}", names[i]);
+        check.that(inside, &format!("arms[{index}].q_rad[{i}]"), q.to_string(), &expected)?;
+    }
+    Ok(())
+}
+
+/// The joint angles must put the hand where `x_og` says that it holds the board.
+fn check_hand(check: &Checker<'_>, key: &str, hold: &ArmHold, plan: &Plan, chain: &Chain) -> Result<(), InputError> {
+    let reached = chain.gripper_pose(&hold.q_rad);
+    let meant = plan.object.x_wo * hold.x_og;
+    let apart_m = (reached.translation.vector - meant.translation.vector).norm();
+    let apart_rad = reached.rotation.angle_to(&meant.rotation);
+    let found =
+        format!("the hand {:.2} mm and {:.2} degrees from where q_rad puts it", apart_m * 1e3, apart_rad.to_degrees());
+    let close = apart_m <= HAND_TOLERANCE.0 && apart_rad <= HAND_TOLERANCE.1;
+    check.that(close, key, found, "x_wo x_og to equal the arm's forward kinematics within 1 mm and 0.1 degrees")
+}

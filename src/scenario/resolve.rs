@@ -1,0 +1,232 @@
+//! From a scenario file to the resolved scenario: defaults filled in, every figure checked.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::{
+    InputError,
+    check::Checker,
+    file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
+    material, robot_figures,
+};
+use crate::{
+    human::tools::default_tool,
+    model::{
+        FORMAT,
+        frames::{Pose, rotation_from_xyzw},
+        operation::{Operation, OperationKind},
+        plan::Plan,
+        scenario::{
+            Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, Scenario, Sex,
+            SimulationSettings, Tool,
+        },
+        wrench::Wrench,
+    },
+    robot::Robot,
+};
+
+/// The largest number of simulation steps that a scenario may ask for: ten minutes at the default step.
+const MAX_STEPS: f64 = 300_000.0;
+
+/// The resolved scenario of a file, and its robot.
+///
+/// # Errors
+/// When the robot cannot be loaded or a figure is not what it must be.
+pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario, Robot), InputError> {
+    let check = Checker::toml(path, text);
+    check.format(file.format)?;
+    name(&check, &file.name)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let robot = Robot::load(&file.robot.description, folder).map_err(|e| check.robot("robot.description", e))?;
+    let object = board(&check, &file.object, &robot)?;
+    let operation = operation(&check, &file.operation, &object)?;
+    grip(&check, &file.grip, &robot)?;
+    comfort(&check, &file.comfort)?;
+    simulation(&check, &file.simulation)?;
+    let scenario = Scenario {
+        format: FORMAT,
+        name: file.name.clone(),
+        robot: robot_figures(&robot),
+        human: person(&check, &file.human)?,
+        tool: tool(&check, file.tool, operation.kind)?,
+        limits: limits(&check, &file.limits, operation.kind)?,
+        object,
+        operation,
+        comfort: file.comfort,
+        planner: file.planner.clone(),
+        grip: file.grip,
+        simulation: file.simulation,
+        expect: file.expect,
+    };
+    Ok((scenario, robot))
+}
+
+fn name(check: &Checker<'_>, name: &str) -> Result<(), InputError> {
+    let fits = !name.is_empty()
+        && !name.starts_with('.')
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
+    check.that(fits, "name", format!("\"{name}\""), "letters, digits, `-`, `_` and `.`, since files are named after it")
+}
+
+/// The person of a file, with the height and mass of typical adults (`assets/human/`) where it gives none.
+fn typical_person(section: &HumanSection) -> Person {
+    let (typical_height_m, typical_mass_kg) = match section.sex {
+        Sex::Male => (1.75, 75.0),
+        Sex::Female => (1.62, 62.0),
+    };
+    Person {
+        height_m: section.height_m.unwrap_or(typical_height_m),
+        mass_kg: section.mass_kg.unwrap_or(typical_mass_kg),
+        sex: section.sex,
+        hand: section.hand,
+        percentile: section.percentile,
+    }
+}
+
+fn person(check: &Checker<'_>, section: &HumanSection) -> Result<Person, InputError> {
+    let person = typical_person(section);
+    check.within("human.height_m", person.height_m, 1.2, 2.3, "m")?;
+    check.within("human.mass_kg", person.mass_kg, 30.0, 250.0, "kg")?;
+    // Outside these the normal distribution of strength would reach zero torque.
+    check.within("human.percentile", person.percentile, 0.1, 99.9, "%")?;
+    Ok(person)
+}
+
+fn tool(check: &Checker<'_>, given: Option<Tool>, kind: OperationKind) -> Result<Tool, InputError> {
+    let Some(tool) = given else { return Ok(default_tool(kind)) };
+    check.within("tool.mass_kg", tool.mass_kg, 0.0, 50.0, "kg")?;
+    for (index, &value) in tool.tip_h_m.iter().enumerate() {
+        check.within(&format!("tool.tip_h_m[{index}]"), value, -2.0, 2.0, "m")?;
+    }
+    rotation_from_xyzw(tool.rotation_xyzw).map_err(|problem| check.syntax("tool.rotation_xyzw", problem))?;
+    Ok(tool)
+}
+
+fn board(check: &Checker<'_>, section: &ObjectSection, robot: &Robot) -> Result<Board, InputError> {
+    let typical = material::density_kg_m3(&section.material)
+        .map_err(|expected| check.value("object.material", format!("\"{}\"", section.material), expected))?;
+    let density_kg_m3 = section.density_kg_m3.unwrap_or(typical);
+    check.within("object.density_kg_m3", density_kg_m3, 1.0, 25_000.0, "kg/m^3")?;
+    check.board_size("object.size_m", section.size_m, robot.arms.iter())?;
+    Ok(Board { size_m: section.size_m, density_kg_m3, material: section.material.clone() })
+}
+
+fn operation(check: &Checker<'_>, section: &OperationSection, board: &Board) -> Result<Operation, InputError> {
+    let operation = match section.kind {
+        OperationKind::Drill | OperationKind::Cut => face_operation(check, section, board)?,
+        OperationKind::Wrench => free_operation(check, section)?,
+    };
+    check.on_board("operation.point_m", &operation.x_ot, board.size_m)?;
+    Ok(operation)
+}
+
+fn face_operation(check: &Checker<'_>, section: &OperationSection, board: &Board) -> Result<Operation, InputError> {
+    check.absent("operation.wrench_o", section.wrench_o.is_some(), "kind = \"wrench\"")?;
+    check.absent("operation.x_ot", section.x_ot.is_some(), "kind = \"wrench\"")?;
+    let point_m = check.present("operation.point_m", section.point_m, "a point [x, y] in m")?;
+    let force_n = check.present("operation.force_n", section.force_n, "a force in N")?;
+    check.finite("operation.point_m", &point_m)?;
+    check.positive("operation.force_n", force_n, "N")?;
+    let thickness_m = board.size_m[2];
+    if section.kind == OperationKind::Drill {
+        check.absent("operation.direction_o", section.direction_o.is_some(), "kind = \"cut\"")?;
+        return Ok(Operation::drill(point_m, force_n, thickness_m));
+    }
+    let given = check.present("operation.direction_o", section.direction_o, "a direction [x, y, 0]")?;
+    check.finite("operation.direction_o", &given)?;
+    let direction_o = Vector3::from(given);
+    let in_plane = direction_o.z == 0.0 && direction_o.norm() > 1e-6;
+    check.that(in_plane, "operation.direction_o", format!("{given:?}"), "a direction [x, y, 0] along the face")?;
+    Ok(Operation::cut(point_m, direction_o.normalize(), force_n, thickness_m))
+}
+
+fn free_operation(check: &Checker<'_>, section: &OperationSection) -> Result<Operation, InputError> {
+    check.absent("operation.point_m", section.point_m.is_some(), "kind = \"drill\" or \"cut\"")?;
+    check.absent("operation.force_n", section.force_n.is_some(), "kind = \"drill\" or \"cut\"")?;
+    check.absent("operation.direction_o", section.direction_o.is_some(), "kind = \"cut\"")?;
+    let wrench = check.present("operation.wrench_o", section.wrench_o, "six components in N and N m")?;
+    let record = check.present("operation.x_ot", section.x_ot, "a pose")?;
+    check.finite("operation.wrench_o", &wrench)?;
+    let some_load = wrench.iter().any(|&component| component != 0.0);
+    check.that(some_load, "operation.wrench_o", "zero", "a wrench that loads the board")?;
+    let x_ot = Pose::try_from(record).map_err(|problem| check.syntax("operation.x_ot", problem))?;
+    Ok(Operation { kind: OperationKind::Wrench, wrench_o: Wrench::from(wrench), x_ot })
+}
+
+fn grip(check: &Checker<'_>, grip: &Grip, robot: &Robot) -> Result<(), InputError> {
+    check.grip_force("grip.force_n", grip.force_n, robot.arms.iter())?;
+    check.positive("grip.friction", grip.friction, "a Coulomb coefficient")?;
+    check.within("grip.friction", grip.friction, 0.0, 2.0, "a Coulomb coefficient")
+}
+
+fn comfort(check: &Checker<'_>, comfort: &ComfortSettings) -> Result<(), InputError> {
+    check.not_negative("comfort.weight_muscular", comfort.weight_muscular, "a weight")?;
+    check.not_negative("comfort.weight_peripersonal", comfort.weight_peripersonal, "a weight in 1/m")
+}
+
+fn simulation(check: &Checker<'_>, settings: &SimulationSettings) -> Result<(), InputError> {
+    let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
+    check.positive("simulation.settle_s", settle_s, "s")?;
+    check.positive("simulation.ramp_s", ramp_s, "s")?;
+    check.positive("simulation.hold_s", hold_s, "s")?;
+    check.not_negative("simulation.release_s", release_s, "s")?;
+    // Above 5 ms the contact settings no longer reach the accuracy that the tests assert.
+    check.within("simulation.timestep_s", timestep_s, 1e-5, 0.005, "s")?;
+    let steps = (settle_s + ramp_s + hold_s + release_s) / timestep_s;
+    check.that(
+        steps <= MAX_STEPS,
+        "simulation",
+        format!("{steps:.0} steps"),
+        &format!("at most {MAX_STEPS:.0} steps in all phases together"),
+    )
+}
+
+/// The limits of a file, with the deflection that suits the operation where it gives none (METHOD section 8).
+fn typical_limits(section: &LimitsSection, kind: OperationKind) -> Limits {
+    let typical_mm = if kind == OperationKind::Cut { 15.0 } else { 5.0 };
+    Limits {
+        slip_mm: section.slip_mm,
+        slip_deg: section.slip_deg,
+        deflection_mm: section.deflection_mm.unwrap_or(typical_mm),
+        creep_mm_s: section.creep_mm_s,
+        torque_ratio: section.torque_ratio,
+        load_factor: section.load_factor,
+    }
+}
+
+fn limits(check: &Checker<'_>, section: &LimitsSection, kind: OperationKind) -> Result<Limits, InputError> {
+    let limits = typical_limits(section, kind);
+    check.positive("limits.slip_mm", limits.slip_mm, "mm")?;
+    check.positive("limits.slip_deg", limits.slip_deg, "degrees")?;
+    check.positive("limits.deflection_mm", limits.deflection_mm, "mm")?;
+    check.positive("limits.creep_mm_s", limits.creep_mm_s, "mm/s")?;
+    check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
+    check.within("limits.load_factor", limits.load_factor, 0.0, 100.0, "a multiple of the load")?;
+    Ok(limits)
+}
+
+/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
+pub fn defaults_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
+    let kind = plan.operation.kind;
+    let size_m = plan.object.size_m;
+    Scenario {
+        format: FORMAT,
+        name: plan.name.clone(),
+        robot: robot_figures(robot),
+        human: plan.human.map_or_else(|| typical_person(&HumanSection::default()), |posture| posture.person()),
+        tool: default_tool(kind),
+        object: Board {
+            size_m,
+            density_kg_m3: plan.object.mass_kg / size_m.iter().product::<f64>(),
+            material: "unknown".into(),
+        },
+        operation: plan.operation,
+        comfort: ComfortSettings::default(),
+        planner: PlannerSettings::default(),
+        grip: Grip::default(),
+        simulation: SimulationSettings::default(),
+        limits: typical_limits(&LimitsSection::default(), kind),
+        expect: Expectation::default(),
+    }
+}

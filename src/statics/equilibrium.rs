@@ -1,0 +1,167 @@
+//! The forces that compliant, position-controlled arms settle at.
+//!
+//! The arms' joints are springs about their commanded angles, the pads are rigid-plastic: of all pad wrenches that
+//! balance the object within the pads' limits, those are found that minimise the complementary energy
+//! `sum_i 1/2 u_i' K_q^-1 u_i`, `u_i = J_i' w_i`, `w_i` the hand's wrench on the object. The arms' own gravity is
+//! compensated by their controllers and is no part of `u`; the torque is `g + u`.
+//!
+//! # Signs
+//! The object pushes the hand with `-w_i`, so the hand gives way by `-C_i w_i`, `C_i = J_i K_q^-1 J_i'`. For a hand
+//! within its pads' limits the first-order condition is `C_i w_i + Ad_i y = 0`, `y` the multiplier of the balance
+//! `sum w_i + weight + lambda load = 0`: so `y` is the board's displacement `d`, in the direction of the load. A hand at
+//! its limits slips: the board moves on it by `Ad_i d + C_i w_i`. (METHOD section 6 writes the same with the wrench on
+//! the hand.)
+//!
+//! # Uniqueness
+//! The energy does not see the squeeze, nor how a hand's wrench is shared between its pads. Each pad is therefore given
+//! a compliance of its own, a thousandth or less of any real pad's, which singles out one distribution and one set of
+//! multipliers and changes the board's displacement by less than a ten-thousandth.
+
+use clarabel::solver::SolverStatus;
+use nalgebra::{DVector, Matrix6, SMatrix, Vector3};
+
+use super::{
+    compliance::Twist,
+    hold::{HandModel, Hold},
+    load_factor::{balance_twist, joint_torque},
+    program::{FORCE_UNIT_N, HAND_VARIABLES, HandBlock, RawSolution, pad_map, pad_wrenches},
+};
+use crate::model::wrench::Wrench;
+
+/// Displacements are solved for in this unit, m: those of interest are a few of it.
+const DISPLACEMENT_UNIT_M: f64 = 1e-3;
+
+/// Compliance of a pad against a force through its centre, m/N; against a moment, this over the square of the lever at
+/// which the pad takes it up (a half side, or the torsion radius). See the module's text.
+const PAD_COMPLIANCE_M_N: f64 = 1e-9;
+
+/// The forces and displacements at one load factor. Displacements are measured from where the commanded angles, with
+/// gravity of the arms compensated, would put board and hands; only changes of them are observed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// The multiple of the load.
+    pub load_factor: f64,
+    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes. How a hand's wrench is shared
+    /// between its pads is not determined by the arms.
+    pub pad_wrenches_p: Vec<[Wrench; 2]>,
+    /// Torques of each arm's joints, `g + u`, N m.
+    pub joint_torque_nm: Vec<DVector<f64>>,
+    /// Displacement of the board, stated for O's origin.
+    pub board: Twist,
+    /// Displacement of each hand, stated for its grasp point: `-C w`.
+    pub hands: Vec<Twist>,
+}
+
+impl Equilibrium {
+    /// Displacement of the board relative to a hand, stated for the grasp point: `Ad d + C w`.
+    fn slip(&self, hold: &Hold, hand: usize) -> Twist {
+        self.board.at(&hold.hands[hand].grasp_point_o) - self.hands[hand]
+    }
+
+    /// The largest joint torque over its limit: hand, joint, ratio.
+    pub fn largest_torque_ratio(&self, hold: &Hold) -> (usize, usize, f64) {
+        let mut largest = (0, 0, 0.0);
+        for (number, (hand, torque)) in hold.hands.iter().zip(&self.joint_torque_nm).enumerate() {
+            for joint in 0..hand.dof() {
+                let ratio = torque[joint].abs() / hand.effort_nm[joint];
+                if ratio > largest.2 {
+                    largest = (number, joint, ratio);
+                }
+            }
+        }
+        largest
+    }
+}
+
+/// What became of the search for an equilibrium.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EquilibriumOutcome {
+    /// The equilibrium.
+    Found(Equilibrium),
+    /// No forces within the pads' limits balance the object.
+    None,
+    /// The solver stopped early.
+    Unknown {
+        /// The solver's own word.
+        status: String,
+    },
+}
+
+/// What the load does: the equilibrium under load against that under the weight alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompliantResponse {
+    /// The equilibrium under weight and load.
+    pub equilibrium: Equilibrium,
+    /// Displacement of the tool point of the board, O axes, m.
+    pub deflection_m: Vector3<f64>,
+    /// Displacement of the board relative to each hand, stated for the grasp point, O axes.
+    pub slip: Vec<Twist>,
+}
+
+impl CompliantResponse {
+    pub(super) fn between(hold: &Hold, unloaded: &Equilibrium, loaded: Equilibrium) -> Self {
+        let deflection_m = (loaded.board - unloaded.board).at(&hold.p_ot).linear;
+        let slip = (0..hold.hands.len()).map(|hand| loaded.slip(hold, hand) - unloaded.slip(hold, hand)).collect();
+        Self { equilibrium: loaded, deflection_m, slip }
+    }
+
+    /// Length of the displacement of the tool point, mm.
+    pub fn deflection_mm(&self) -> f64 {
+        self.deflection_m.norm() * 1e3
+    }
+}
+
+/// What became of the search for a response.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ResponseOutcome {
+    /// The response.
+    Found(CompliantResponse),
+    /// No equilibrium exists at this load factor, 0 meaning under the weight alone.
+    NoEquilibrium {
+        /// The load factor.
+        load_factor: f64,
+    },
+    /// The solver stopped early.
+    Unknown {
+        /// The solver's own word.
+        status: String,
+    },
+}
+
+/// The energy's matrix over one hand's scaled variables, in units of 10 N x 1 mm.
+pub(super) fn energy_block(hand: &HandModel) -> HandBlock {
+    let mut map = SMatrix::<f64, 6, HAND_VARIABLES>::zeros();
+    for (number, pad) in hand.pads.iter().enumerate() {
+        let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
+        let of_pad: Matrix6<f64> = pad_map(pad, &lever_o);
+        map.fixed_view_mut::<6, 6>(0, 6 * number).copy_from(&of_pad);
+    }
+    let energy_unit_j = FORCE_UNIT_N * DISPLACEMENT_UNIT_M;
+    // The pads' variables are scaled by the levers that divide their compliance, so it is the same for all.
+    let pad = PAD_COMPLIANCE_M_N * FORCE_UNIT_N * FORCE_UNIT_N;
+    (map.transpose() * hand.compliance() * map + HandBlock::identity() * pad) / energy_unit_j
+}
+
+/// Reads clarabel's answer to an equilibrium program.
+pub(super) fn interpret(hold: &Hold, load_factor: f64, raw: &RawSolution<'_>) -> EquilibriumOutcome {
+    match raw.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => {}
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => return EquilibriumOutcome::None,
+        status => return EquilibriumOutcome::Unknown { status: format!("{status:?}") },
+    }
+    let pad_wrenches_p: Vec<_> =
+        hold.hands.iter().enumerate().map(|(number, hand)| pad_wrenches(hand, number, raw.x)).collect();
+    let mut joint_torque_nm = Vec::with_capacity(hold.hands.len());
+    let mut hands = Vec::with_capacity(hold.hands.len());
+    for (hand, pads) in hold.hands.iter().zip(&pad_wrenches_p) {
+        let torque = joint_torque(hand, pads);
+        let spring_nm = &torque - &hand.gravity_torque_nm;
+        let give_rad = spring_nm.component_div(&hand.stiffness_nm_rad);
+        let moved = &hand.jacobian_o * give_rad;
+        hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
+        joint_torque_nm.push(torque);
+    }
+    let energy_unit_j = FORCE_UNIT_N * DISPLACEMENT_UNIT_M;
+    let board = balance_twist(raw.z, energy_unit_j);
+    EquilibriumOutcome::Found(Equilibrium { load_factor, pad_wrenches_p, joint_torque_nm, board, hands })
+}

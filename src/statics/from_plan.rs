@@ -1,0 +1,158 @@
+//! A [`Hold`] from a plan: the one place of this module that knows what a robot is.
+
+use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
+
+use super::{
+    hold::{HandModel, Hold, HoldError, PadModel},
+    patch::clip_to_rectangle,
+};
+use crate::{
+    model::{
+        GRAVITY_W,
+        frames::Pose,
+        operation::Operation,
+        plan::{ArmHold, PlacedObject},
+        wrench::Wrench,
+    },
+    robot::{
+        chain::Chain,
+        tree::{Gripper, Robot},
+    },
+};
+
+/// How far the finger axis may lean from the board's normal, degrees: the pads lie flat on the faces, so a plan that asks
+/// for more describes another contact than ours.
+const MAX_FINGER_LEAN_DEG: f64 = 2.0;
+
+impl Hold {
+    /// The hold that a plan describes. Board, pads and arms are taken at the plan's poses and angles; pads lie flat on
+    /// the two faces, and only their part on the face counts (see [`clip_to_rectangle`]).
+    ///
+    /// # Errors
+    /// When an arm is unknown, its angles are too few or too many, its fingers do not straddle the faces, or a pad does
+    /// not touch the board.
+    pub fn from_plan(
+        robot: &Robot,
+        plan_arms: &[ArmHold],
+        object: &PlacedObject,
+        operation: &Operation,
+        friction: f64,
+    ) -> Result<Self, HoldError> {
+        let hands: Result<Vec<_>, _> = plan_arms
+            .iter()
+            .map(|plan_arm| {
+                let index =
+                    robot.arm_index(&plan_arm.name).ok_or_else(|| HoldError::UnknownArm(plan_arm.name.clone()))?;
+                let travel_m = robot.arms[index].gripper.travel_for_gap_m(0, object.size_m[2]);
+                HandModel::from_plan(robot, &Chain::new(robot, index, travel_m), plan_arm, object, friction)
+            })
+            .collect();
+        Ok(Self::from_hands(hands?, object, operation))
+    }
+
+    /// A hold by hands at hand, see [`HandModel::from_plan`].
+    pub fn from_hands(hands: Vec<HandModel>, object: &PlacedObject, operation: &Operation) -> Self {
+        let weight_o = object.x_wo.rotation.inverse() * (GRAVITY_W * object.mass_kg);
+        Self {
+            hands,
+            weight: Wrench::from_force(weight_o),
+            load: operation.wrench_about_object(),
+            p_ot: operation.x_ot.translation.vector,
+        }
+    }
+}
+
+impl HandModel {
+    /// One arm's part of a hold, for a planner that keeps its chains. The chain must be that of the arm named in the
+    /// plan, its fingers at the board's thickness.
+    ///
+    /// # Errors
+    /// See [`Hold::from_plan`].
+    pub fn from_plan(
+        robot: &Robot,
+        chain: &Chain,
+        plan_arm: &ArmHold,
+        object: &PlacedObject,
+        friction: f64,
+    ) -> Result<Self, HoldError> {
+        let name = &plan_arm.name;
+        let arm = robot.arms.iter().find(|arm| arm.name == *name).ok_or_else(|| HoldError::UnknownArm(name.clone()))?;
+        if plan_arm.q_rad.len() != chain.dof() {
+            let (found, expected) = (plan_arm.q_rad.len(), chain.dof());
+            return Err(HoldError::JointCount { hand: name.clone(), what: "q_rad", found, expected });
+        }
+        let pads = [0, 1].map(|finger| pad_model(&arm.gripper, finger, plan_arm, object, friction));
+        let [first, second] = pads;
+        let grasp_point_g = arm.gripper.grasp_point_g();
+        Ok(Self {
+            name: name.clone(),
+            joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
+            pads: [first?, second?],
+            grip_force_n: plan_arm.grip_force_n,
+            grasp_point_o: (plan_arm.x_og * nalgebra::Point3::from(grasp_point_g)).coords,
+            jacobian_o: jacobian_o(chain, plan_arm, object, &grasp_point_g),
+            gravity_torque_nm: chain.gravity_torque_nm(&plan_arm.q_rad),
+            effort_nm: chain.effort_nm().to_vec().into(),
+            stiffness_nm_rad: arm.stiffness_nm_rad.clone().into(),
+        })
+    }
+}
+
+/// The Jacobian of the grasp point in O axes, from that of G's origin in W axes.
+fn jacobian_o(chain: &Chain, plan_arm: &ArmHold, object: &PlacedObject, grasp_point_g: &Vector3<f64>) -> Matrix6xX<f64> {
+    let mut jacobian = chain.jacobian_w(&plan_arm.q_rad);
+    let r_ow = object.x_wo.rotation.inverse();
+    // The board's pose and the plan's X_OG say where the hand is; the arm's angles agree with them.
+    let lever_o = plan_arm.x_og.rotation * grasp_point_g;
+    for mut column in jacobian.column_iter_mut() {
+        let angular = r_ow * Vector3::new(column[3], column[4], column[5]);
+        let linear = r_ow * Vector3::new(column[0], column[1], column[2]) + angular.cross(&lever_o);
+        column.fixed_rows_mut::<3>(0).copy_from(&linear);
+        column.fixed_rows_mut::<3>(3).copy_from(&angular);
+    }
+    jacobian
+}
+
+/// A finger's pad where it lies on the board.
+fn pad_model(
+    gripper: &Gripper,
+    finger: usize,
+    plan_arm: &ArmHold,
+    object: &PlacedObject,
+    friction: f64,
+) -> Result<PadModel, HoldError> {
+    let name = gripper.pad_name(finger, &plan_arm.x_og);
+    let is_upper = name == "upper";
+    let finger_axis_o = plan_arm.x_og.rotation * Vector3::y();
+    let angle_deg = finger_axis_o.z.abs().min(1.0).acos().to_degrees();
+    if angle_deg > MAX_FINGER_LEAN_DEG {
+        let (hand, limit_deg) = (plan_arm.name.clone(), MAX_FINGER_LEAN_DEG);
+        return Err(HoldError::FingersNotAcross { hand, angle_deg, limit_deg });
+    }
+    let pad = &gripper.fingers[finger].pad;
+    let normal_o = if is_upper { -Vector3::z() } else { Vector3::z() };
+    let rotation = pad_rotation(&(plan_arm.x_og.rotation * Vector3::x()), &normal_o);
+    let centre_g = Vector3::new(pad.centre_m[0], 0.0, pad.centre_m[1]);
+    let centre_o = (plan_arm.x_og * nalgebra::Point3::from(centre_g)).coords;
+    let x_fp = face_pose(&centre_o, &rotation);
+    let [width, height, thickness] = object.size_m;
+    let half_sides = pad.size_m.map(|side| side / 2.0);
+    let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
+        .ok_or_else(|| HoldError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
+    let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
+    Ok(PadModel { name: name.into(), x_op: Pose::from_parts(place_o.into(), rotation), half_sides_m, friction })
+}
+
+/// R_OP: z_P the normal into the board, x_P along x_G as far as it lies in the face.
+fn pad_rotation(x_g_in_o: &Vector3<f64>, normal_o: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let x_p = (x_g_in_o - normal_o * normal_o.dot(x_g_in_o)).normalize();
+    let rotation = Rotation3::from_basis_unchecked(&[x_p, normal_o.cross(&x_p), *normal_o]);
+    UnitQuaternion::from_rotation_matrix(&rotation)
+}
+
+/// The pad's pose in the face seen from +z_O; the pad's rectangle is its own mirror image, so one side does for both.
+fn face_pose(centre_o: &Vector3<f64>, rotation: &UnitQuaternion<f64>) -> Isometry2<f64> {
+    let x_p: Isometry3<f64> = Isometry3::from_parts(Vector3::zeros().into(), *rotation);
+    let x_p = x_p * Vector3::x();
+    Isometry2::new(Vector2::new(centre_o.x, centre_o.y), x_p.y.atan2(x_p.x))
+}

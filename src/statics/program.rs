@@ -1,0 +1,372 @@
+//! The cone programs of a hold in clarabel's form, `min 1/2 x'Px + q'x  s.t.  A x + s = b, s in K`, scaled.
+//!
+//! Variables: for each hand, for each of its pads, `(ft1, ft2, fn, mt1, mt2, mn)` in pad axes about the pad's centre,
+//! then, in the load program, the load factor. Rows, in the order of the cones:
+//!
+//! | rows | cone | what |
+//! |---|---|---|
+//! | 6 | zero | balance of the object: sum of the pads' wrenches + lambda load = -weight |
+//! | 1 a hand | zero | `fn_1 + fn_2 = 2 F` |
+//! | 2 (load program) | nonnegative | `0 <= lambda <= 100` |
+//! | 4 a pad | nonnegative | centre of pressure: `|mt1| <= b fn`, `|mt2| <= a fn`; `fn >= 0` follows |
+//! | 2 n a hand (with torque limits) | nonnegative | `J' w <= tau_max - tau_g`, `-J' w <= tau_max + tau_g` |
+//! | 4 a pad | second order | friction: `(mu fn, ft1, ft2, mn / e)` |
+//!
+//! Scales: forces in units of 10 N, moments of 10 N x 0.2 m in the balance rows; a pad's own moments by its half sides
+//! and torsion radius, so that every pad's rows look alike; torque rows by the joint's limit; lambda by the load's size.
+//! With these clarabel needs no equilibration of its own, whose memory of earlier data would make results depend on
+//! the order of solves.
+
+use clarabel::{
+    algebra::CscMatrix,
+    solver::{
+        DefaultSettings, DefaultSolver, IPSolver, SolverStatus,
+        SupportedConeT::{self, NonnegativeConeT, SecondOrderConeT, ZeroConeT},
+    },
+};
+use nalgebra::{Matrix6, Matrix6xX, SMatrix, Vector6};
+
+use super::hold::{HandModel, Hold, PadModel};
+use crate::model::wrench::Wrench;
+
+/// The load factor is searched for up to this.
+pub const MAX_LOAD_FACTOR: f64 = 100.0;
+
+/// Unit of force, N.
+pub(super) const FORCE_UNIT_N: f64 = 10.0;
+
+/// Unit of length of the moments in the balance rows, m.
+pub(super) const LENGTH_UNIT_M: f64 = 0.2;
+
+/// Variables of one pad.
+pub(super) const PAD_VARIABLES: usize = 6;
+
+/// Variables of one hand.
+pub(super) const HAND_VARIABLES: usize = 2 * PAD_VARIABLES;
+
+/// What a program contains beside the balance, the grip and the pads' limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ProgramKind {
+    /// Maximise lambda within friction and torque limits.
+    Load,
+    /// Maximise lambda within friction limits alone: up to there a compliant equilibrium exists.
+    Friction,
+    /// Minimise the complementary energy at a given lambda.
+    Equilibrium,
+}
+
+/// Where which row is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Layout {
+    kind: ProgramKind,
+    /// Joints of each hand.
+    dofs: Vec<usize>,
+}
+
+impl Layout {
+    pub(super) fn new(hold: &Hold, kind: ProgramKind) -> Self {
+        Self { kind, dofs: hold.hands.iter().map(HandModel::dof).collect() }
+    }
+
+    fn hands(&self) -> usize {
+        self.dofs.len()
+    }
+
+    fn has_load_factor(&self) -> bool {
+        self.kind != ProgramKind::Equilibrium
+    }
+
+    pub(super) fn has_torque_rows(&self) -> bool {
+        self.kind == ProgramKind::Load
+    }
+
+    pub(super) fn variables(&self) -> usize {
+        HAND_VARIABLES * self.hands() + usize::from(self.has_load_factor())
+    }
+
+    /// First variable of a pad.
+    pub(super) fn pad_variables(hand: usize, pad: usize) -> usize {
+        HAND_VARIABLES * hand + PAD_VARIABLES * pad
+    }
+
+    pub(super) fn grip_row(&self, hand: usize) -> usize {
+        6 + hand
+    }
+
+    /// The row `-lambda <= 0`; the next one is `lambda <= 100`.
+    pub(super) fn load_rows(&self) -> usize {
+        6 + self.hands()
+    }
+
+    /// First of the four rows of a pad's centre of pressure: `+mt1, -mt1, +mt2, -mt2`.
+    pub(super) fn pressure_rows(&self, hand: usize, pad: usize) -> usize {
+        self.load_rows() + if self.has_load_factor() { 2 } else { 0 } + 4 * (2 * hand + pad)
+    }
+
+    /// First of the 2 n torque rows of a hand: n of `+J'w`, then n of `-J'w`.
+    pub(super) fn torque_rows(&self, hand: usize) -> usize {
+        let before: usize = if self.has_torque_rows() { self.dofs[..hand].iter().map(|n| 2 * n).sum() } else { 0 };
+        self.pressure_rows(self.hands(), 0) + before
+    }
+
+    /// First of the four rows of a pad's friction cone.
+    pub(super) fn friction_rows(&self, hand: usize, pad: usize) -> usize {
+        self.torque_rows(self.hands()) + 4 * (2 * hand + pad)
+    }
+
+    pub(super) fn rows(&self) -> usize {
+        self.friction_rows(self.hands(), 0)
+    }
+
+    fn cones(&self) -> Vec<SupportedConeT<f64>> {
+        let equalities = self.load_rows();
+        let inequalities = self.friction_rows(0, 0) - equalities;
+        let mut cones = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
+        cones.extend(std::iter::repeat_n(SecondOrderConeT(4), 2 * self.hands()));
+        cones
+    }
+}
+
+/// A sparse matrix in the making, column by column.
+#[derive(Clone, Debug, Default)]
+struct Columns {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Columns {
+    fn begin(&mut self) {
+        self.starts.push(self.rows.len());
+    }
+
+    fn push(&mut self, row: usize, value: f64) {
+        self.rows.push(row);
+        self.values.push(value);
+    }
+
+    fn into_matrix(mut self, rows: usize) -> CscMatrix<f64> {
+        let columns = self.starts.len();
+        self.starts.push(self.rows.len());
+        CscMatrix::new(rows, columns, self.starts, self.rows, self.values)
+    }
+}
+
+/// A program's data.
+#[derive(Clone, Debug)]
+pub(super) struct Program {
+    pub(super) layout: Layout,
+    pub(super) p: CscMatrix<f64>,
+    pub(super) q: Vec<f64>,
+    pub(super) a: CscMatrix<f64>,
+    pub(super) b: Vec<f64>,
+    /// lambda = load variable / this.
+    pub(super) load_scale: f64,
+}
+
+impl Program {
+    /// The program of socp form 1 to 5: maximise lambda, with torque limits for [`ProgramKind::Load`], without for
+    /// [`ProgramKind::Friction`].
+    pub(super) fn load(hold: &Hold, kind: ProgramKind) -> Self {
+        let layout = Layout::new(hold, kind);
+        let load = scaled(&hold.load);
+        let size = load.norm();
+        // Without a load any lambda will do.
+        let load_scale = if size > 0.0 { size } else { 1.0 };
+        let mut columns = pad_columns(hold, &layout);
+        columns.begin();
+        (0..6).for_each(|row| columns.push(row, load[row] / load_scale));
+        columns.push(layout.load_rows(), -1.0);
+        columns.push(layout.load_rows() + 1, 1.0 / (MAX_LOAD_FACTOR * load_scale));
+        let mut q = vec![0.0; layout.variables()];
+        q[layout.variables() - 1] = -1.0 / load_scale;
+        let mut b = limits(hold, &layout, 0.0);
+        b[layout.load_rows() + 1] = 1.0;
+        let a = columns.into_matrix(layout.rows());
+        Self { p: CscMatrix::zeros((q.len(), q.len())), q, a, b, layout, load_scale }
+    }
+
+    /// Minimise `1/2 x'Px` at the given lambda; `p` is the compliance of each hand's pads in the scaled variables.
+    pub(super) fn equilibrium(hold: &Hold, blocks: &[HandBlock], lambda: f64) -> Self {
+        let layout = Layout::new(hold, ProgramKind::Equilibrium);
+        let mut p = Columns::default();
+        for (hand, block) in blocks.iter().enumerate() {
+            for column in 0..HAND_VARIABLES {
+                p.begin();
+                (0..=column).for_each(|row| p.push(HAND_VARIABLES * hand + row, block[(row, column)]));
+            }
+        }
+        let a = pad_columns(hold, &layout).into_matrix(layout.rows());
+        let q = vec![0.0; layout.variables()];
+        let b = limits(hold, &layout, lambda);
+        Self { p: p.into_matrix(layout.variables()), q, a, b, layout, load_scale: 1.0 }
+    }
+}
+
+/// A 12 x 12 block over the variables of one hand.
+pub(super) type HandBlock = SMatrix<f64, HAND_VARIABLES, HAND_VARIABLES>;
+
+/// Units of a pad's variables: N for the forces, N m for the moments.
+pub(super) fn pad_units(pad: &PadModel) -> Vector6<f64> {
+    let [a, b] = pad.half_sides_m;
+    Vector6::new(1.0, 1.0, 1.0, b, a, pad.torsion_radius_m()) * FORCE_UNIT_N
+}
+
+/// A wrench in units of the balance rows.
+pub(super) fn scaled(wrench: &Wrench) -> Vector6<f64> {
+    Wrench::new(wrench.force_n, wrench.moment_nm / LENGTH_UNIT_M).to_vector() / FORCE_UNIT_N
+}
+
+/// `[R 0; [p]x R, R]` times the variables' units: the wrench about a point, p leading from it to the pad, N and N m.
+pub(super) fn pad_map(pad: &PadModel, lever_o: &nalgebra::Vector3<f64>) -> Matrix6<f64> {
+    let rotation = pad.rotation();
+    let mut map = Matrix6::zeros();
+    map.fixed_view_mut::<3, 3>(0, 0).copy_from(&rotation);
+    map.fixed_view_mut::<3, 3>(3, 0).copy_from(&(lever_o.cross_matrix() * rotation));
+    map.fixed_view_mut::<3, 3>(3, 3).copy_from(&rotation);
+    for (mut column, unit) in map.column_iter_mut().zip(pad_units(pad).iter()) {
+        column *= *unit;
+    }
+    map
+}
+
+/// The columns of the pads' variables.
+fn pad_columns(hold: &Hold, layout: &Layout) -> Columns {
+    let mut columns = Columns::default();
+    for (hand_number, hand) in hold.hands.iter().enumerate() {
+        for (pad_number, pad) in hand.pads.iter().enumerate() {
+            let torque = layout.has_torque_rows().then(|| torque_map(hand, pad));
+            let place = (hand_number, pad_number);
+            push_pad(&mut columns, layout, place, pad, torque.as_ref());
+        }
+    }
+    columns
+}
+
+/// n x 6, transposed to 6 x n: joint torque over limit for each of a pad's variables.
+fn torque_map(hand: &HandModel, pad: &PadModel) -> Matrix6xX<f64> {
+    let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
+    let mut map = pad_map(pad, &lever_o).transpose() * &hand.jacobian_o;
+    for (mut column, effort) in map.column_iter_mut().zip(hand.effort_nm.iter()) {
+        column /= *effort;
+    }
+    map
+}
+
+fn push_pad(
+    columns: &mut Columns,
+    layout: &Layout,
+    (hand, number): (usize, usize),
+    pad: &PadModel,
+    torque: Option<&Matrix6xX<f64>>,
+) {
+    let balance = pad_map(pad, &pad.x_op.translation.vector);
+    let (pressure, friction) = (layout.pressure_rows(hand, number), layout.friction_rows(hand, number));
+    for variable in 0..PAD_VARIABLES {
+        columns.begin();
+        // A moment has no force: those entries are zero by structure.
+        let first = if variable < 3 { 0 } else { 3 };
+        for row in first..6 {
+            let unit = if row < 3 { FORCE_UNIT_N } else { FORCE_UNIT_N * LENGTH_UNIT_M };
+            columns.push(row, balance[(row, variable)] / unit);
+        }
+        match variable {
+            2 => {
+                columns.push(layout.grip_row(hand), 1.0);
+                (0..4).for_each(|row| columns.push(pressure + row, -1.0));
+            }
+            3 | 4 => {
+                columns.push(pressure + 2 * (variable - 3), 1.0);
+                columns.push(pressure + 2 * (variable - 3) + 1, -1.0);
+            }
+            _ => {}
+        }
+        if let Some(torque) = torque {
+            let (row, joints) = (layout.torque_rows(hand), torque.ncols());
+            (0..joints).for_each(|joint| columns.push(row + joint, torque[(variable, joint)]));
+            (0..joints).for_each(|joint| columns.push(row + joints + joint, -torque[(variable, joint)]));
+        }
+        match variable {
+            0 | 1 => columns.push(friction + 1 + variable, -1.0),
+            2 => columns.push(friction, -pad.friction),
+            5 => columns.push(friction + 3, -1.0),
+            _ => {}
+        }
+    }
+}
+
+/// The right-hand side, with `lambda` times the load moved to it.
+fn limits(hold: &Hold, layout: &Layout, lambda: f64) -> Vec<f64> {
+    let mut b = vec![0.0; layout.rows()];
+    let outer = scaled(&(hold.weight + hold.load.scaled(lambda)));
+    (0..6).for_each(|row| b[row] = -outer[row]);
+    for (number, hand) in hold.hands.iter().enumerate() {
+        b[layout.grip_row(number)] = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
+        if layout.has_torque_rows() {
+            let row = layout.torque_rows(number);
+            for joint in 0..hand.dof() {
+                let ratio = hand.gravity_torque_nm[joint] / hand.effort_nm[joint];
+                b[row + joint] = 1.0 - ratio;
+                b[row + hand.dof() + joint] = 1.0 + ratio;
+            }
+        }
+    }
+    b
+}
+
+/// The pads' wrenches of one hand, each about its centre in pad axes, from the variables.
+pub(super) fn pad_wrenches(hand: &HandModel, hand_number: usize, x: &[f64]) -> [Wrench; 2] {
+    [0, 1].map(|pad| {
+        let first = Layout::pad_variables(hand_number, pad);
+        let values = Vector6::from_column_slice(&x[first..first + PAD_VARIABLES]);
+        let [fx, fy, fz, mx, my, mz] = values.component_mul(&pad_units(&hand.pads[pad])).into();
+        Wrench::from([fx, fy, fz, mx, my, mz])
+    })
+}
+
+/// A clarabel solver that is kept as long as programs have the same layout, so that memory, ordering and symbolic
+/// factorisation are reused.
+#[derive(Default)]
+pub(super) struct ReusedSolver {
+    solver: Option<(Layout, DefaultSolver<f64>)>,
+}
+
+/// What clarabel found, with the slacks' and duals' scales of the program.
+pub(super) struct RawSolution<'a> {
+    pub(super) status: SolverStatus,
+    pub(super) x: &'a [f64],
+    pub(super) z: &'a [f64],
+    pub(super) s: &'a [f64],
+}
+
+impl ReusedSolver {
+    /// Solves a program; none when clarabel refuses its data, which only figures that are not finite can cause.
+    pub(super) fn solve(&mut self, program: &Program) -> Option<RawSolution<'_>> {
+        let Program { layout, p, q, a, b, .. } = program;
+        let reusable = self.solver.as_mut().is_some_and(|(known, solver)| {
+            known == layout && solver.update_data(p, q, a, b).is_ok()
+        });
+        if !reusable {
+            let solver = DefaultSolver::new(p, q, a, b, &layout.cones(), settings()).ok()?;
+            self.solver = Some((layout.clone(), solver));
+        }
+        let (_, solver) = self.solver.as_mut()?;
+        solver.solve();
+        let solution = &solver.solution;
+        Some(RawSolution { status: solution.status, x: &solution.x, z: &solution.z, s: &solution.s })
+    }
+}
+
+/// Clarabel's settings for small, well-scaled programs whose data are replaced between solves.
+fn settings() -> DefaultSettings<f64> {
+    DefaultSettings {
+        verbose: false,
+        // 9 to 15 iterations are usual.
+        max_iter: 60,
+        max_threads: 1,
+        // Both would forbid, or colour, the reuse of a solver: see the module's text.
+        presolve_enable: false,
+        equilibrate_enable: false,
+        ..DefaultSettings::default()
+    }
+}
