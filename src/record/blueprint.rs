@@ -15,6 +15,7 @@ use rerun::{
             components::{BackgroundKind, ContainerKind, Corner2D, LoopMode, PanelState, PlayState, RootContainer},
             datatypes::{TextLogColumn, TextLogColumnKind},
         },
+        uuid::Uuid,
     },
     log::LogMsg,
 };
@@ -29,6 +30,7 @@ use crate::model::{scenario::Hand, verdict::CheckKind};
 
 /// A view or a container with its share of its parent's room.
 struct Placed {
+    id: Uuid,
     path: EntityPath,
     share: f32,
 }
@@ -50,10 +52,8 @@ pub(super) fn messages(messages: Messages, input: &RecordingInput) -> Result<Vec
     }
     let middle = layout.container(ContainerKind::Vertical, &middle, 0.28)?;
     let right = layout.view("TextDocument", "summary", &["+ /summary"], 0.24)?;
-    let root_id = layout.count;
     let root = layout.container(ContainerKind::Horizontal, &[left, middle, right], 1.0)?;
-    debug_assert_eq!(root.path, entity(&["container", &uuid(root_id).to_string()]));
-    layout.panels(root_id)?;
+    layout.panels(root.id)?;
     let activation = BlueprintActivationCommand::make_active(layout.messages.store_id().clone());
     let mut messages = layout.messages.into_messages();
     messages.push(LogMsg::BlueprintActivationCommand(activation));
@@ -65,10 +65,11 @@ impl Layout {
         self.messages.log_static(path, what)
     }
 
-    fn next_path(&mut self, kind: &str) -> EntityPath {
-        let path = entity(&[kind, &uuid(self.count).to_string()]);
+    /// A place for a view or a container, numbered by the count of those before it.
+    fn place(&mut self, kind: &str, share: f32) -> Placed {
+        let id = Uuid::from_u128(self.count);
         self.count += 1;
-        path
+        Placed { id, path: entity(&[kind, &id.to_string()]), share }
     }
 
     /// A view of what the queries match.
@@ -79,16 +80,16 @@ impl Layout {
         queries: &[Q],
         share: f32,
     ) -> Result<Placed, RecordError> {
-        let path = self.next_path("view");
+        let view = self.place("view", share);
         let contents = ViewContents::new(queries.iter().map(|query| query.as_ref()));
-        self.log(&child(&path, "ViewContents"), &contents)?;
-        let view = ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
-        self.log(&path, &view)?;
-        Ok(Placed { path, share })
+        self.log(&child(&view.path, "ViewContents"), &contents)?;
+        let style = ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
+        self.log(&view.path, &style)?;
+        Ok(view)
     }
 
     fn container(&mut self, kind: ContainerKind, contents: &[Placed], share: f32) -> Result<Placed, RecordError> {
-        let path = self.next_path("container");
+        let placed = self.place("container", share);
         let shares = contents.iter().map(|placed| placed.share);
         let container =
             ContainerBlueprint::new(kind).with_contents(contents.iter().map(|placed| placed.path.to_string()));
@@ -96,8 +97,8 @@ impl Layout {
             ContainerKind::Horizontal => container.with_col_shares(shares),
             _ => container.with_row_shares(shares),
         };
-        self.log(&path, &container)?;
-        Ok(Placed { path, share })
+        self.log(&placed.path, &container)?;
+        Ok(placed)
     }
 
     /// The scene, seen from the side of the person's idle arm: robot, board and person in profile, a little from
@@ -151,8 +152,8 @@ impl Layout {
         Ok(view)
     }
 
-    fn panels(&mut self, root_id: u128) -> Result<(), RecordError> {
-        let root = RootContainer(rerun::datatypes::Uuid::from(uuid(root_id)));
+    fn panels(&mut self, root_id: Uuid) -> Result<(), RecordError> {
+        let root = RootContainer(rerun::datatypes::Uuid::from(root_id));
         let viewport =
             ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
         self.log(&entity(&["viewport"]), &viewport)?;
@@ -166,10 +167,6 @@ impl Layout {
             .with_loop_mode(LoopMode::All);
         self.log(&entity(&["time_panel"]), &time)
     }
-}
-
-fn uuid(number: u128) -> rerun::external::uuid::Uuid {
-    rerun::external::uuid::Uuid::from_u128(number)
 }
 
 fn child(path: &EntityPath, name: &str) -> EntityPath {

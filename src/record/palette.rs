@@ -22,9 +22,9 @@ pub(super) fn load() -> Color {
     Color::from_rgb(204, 121, 167)
 }
 
-/// The person.
+/// The person, seen through: they must not hide what they work on.
 pub(super) fn person() -> Color {
-    Color::from_rgb(0, 158, 115)
+    Color::from_unmultiplied_rgba(0, 158, 115, 110)
 }
 
 /// The robot but its hands.

@@ -8,7 +8,11 @@ use rerun::{
     log::{Chunk, LogMsg},
 };
 
-use super::{APPLICATION, RecordError, TIMELINE, entity, plots::LIMIT, rrd};
+use super::{
+    APPLICATION, RecordError, TIMELINE, entity,
+    plots::{LIMIT, without_time},
+    rrd,
+};
 use crate::model::verdict::Verdict;
 
 /// The first bytes of every rerun recording that this version reads.
@@ -71,7 +75,9 @@ fn summary(bytes: &[u8]) -> Result<RecordedSummary, String> {
     Ok(RecordedSummary {
         verdict,
         peaks: peaks(&chunks, release_s),
-        events: texts(&chunks, "events", &rerun::TextLog::descriptor_text()).collect(),
+        events: texts(&chunks, "events", &rerun::TextLog::descriptor_text())
+            .map(|(time_s, text)| (time_s, without_time(&text)))
+            .collect(),
         end_s: chunks.iter().flat_map(times_s).fold(0.0, f64::max),
         phases,
     })
