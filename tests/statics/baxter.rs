@@ -103,6 +103,8 @@ fn broken_plans_are_errors() {
         error(&|arms| arms[1].q_rad.truncate(6)),
         "right hand: found 6 entries of q_rad, expected one for each of 7 joints"
     );
+    let swapped = error(&|arms| arms[0].joints.swap(0, 1));
+    assert!(swapped.starts_with("left hand: found the joints [\"left_s1\", \"left_s0\","), "{swapped}");
     let leaning = error(&|arms| {
         let turn = nalgebra::UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 0.2);
         arms[0].x_og.rotation *= turn;

@@ -13,7 +13,7 @@ use crate::fixtures::{HALF_SIDES_M, solved, strong_hand, two_strong_hands};
 
 const TOLERANCE: f64 = 1e-5;
 
-/// One hand of socp's torsion and tilt examples: N = 30 N a pad, mu = 0.6, pads facing +-y.
+/// One hand of the torsion and tilt examples: N = 30 N a pad, mu = 0.6, pads facing +-y.
 fn one_hand(load: Wrench) -> Hold {
     let hand = strong_hand("left", Vector3::zeros(), Vector3::y(), Vector3::x(), 30.0, 0.6, 0.03);
     Hold { hands: vec![hand], weight: Wrench::default(), load, p_ot: Vector3::zeros() }

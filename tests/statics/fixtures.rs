@@ -18,7 +18,7 @@ use nalgebra::{DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Half sides of the pad of socp's checked examples, m.
+/// Half sides of the pad of the checked examples, m.
 pub const HALF_SIDES_M: [f64; 2] = [0.0202, 0.0180];
 
 /// A pose with this z axis and an x axis as near to `x` as that allows.
@@ -68,7 +68,7 @@ pub fn two_strong_hands(weight: Wrench, load: Wrench) -> Hold {
 }
 
 /// A hold by `hands` seven-joint arms at random places of a board's rim, with random screws for joints, under a random
-/// load and about 1 kg. Torque limits and gravity torques are of the size that they matter.
+/// load and 0.21 kg. Torque limits and gravity torques are of the size that they matter.
 pub fn random_hold(seed: u64, hands: usize) -> Hold {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut vector = |size: f64| Vector3::from_fn(|_, _| rng.random_range(-size..size));
@@ -179,7 +179,7 @@ pub fn baxter_holds(count: usize, seed: u64) -> (Robot, Vec<(Vec<ArmHold>, Place
         let operation = if holds.len() % 2 == 0 {
             Operation::drill([rng.random_range(-0.1..0.1), rng.random_range(-0.1..0.1)], 15.0, size_m[2])
         } else {
-            let angle: f64 = rng.random_range(0.0..6.28);
+            let angle: f64 = rng.random_range(0.0..std::f64::consts::TAU);
             let point = [0.12 * angle.cos(), 0.12 * angle.sin()];
             Operation::cut(point, Vector3::new(-angle.sin(), angle.cos(), 0.0), 30.0, size_m[2])
         };

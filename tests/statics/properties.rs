@@ -71,8 +71,9 @@ proptest! {
     }
 
     #[test]
-    fn every_answer_carries_its_proof(seed in 0u64..1_000_000, hands in 1usize..=4) {
-        let hold = random_hold(seed, hands);
+    fn every_answer_carries_its_proof(seed in 0u64..1_000_000, hands in 1usize..=4, heavier in 1.0..60.0) {
+        let mut hold = random_hold(seed, hands);
+        hold.weight = hold.weight.scaled(heavier);
         match StabilityWorkspace::new().load_factor(&hold).unwrap() {
             LoadFactorOutcome::Solved(solved) => {
                 // Weak duality: above, but for the solver's tolerance; strong duality: tight.
