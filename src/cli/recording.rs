@@ -40,7 +40,8 @@ pub fn write(run: &Run, scenario: &Scenario, robot: &Robot, folder: &Path) -> Re
 
 /// The person without the tool, which the recorder draws from the palm to the board.
 fn person_shape(capsules: &[crate::human::Capsule]) -> PersonShape {
-    let (tool, body): (Vec<_>, Vec<_>) = capsules.iter().partition(|capsule| capsule.name == BodyPart::Tool);
+    let (tool, body): (Vec<&crate::human::Capsule>, Vec<_>) =
+        capsules.iter().partition(|capsule| capsule.name == BodyPart::Tool);
     PersonShape {
         palm_w: tool.first().map_or_else(nalgebra::Point3::origin, |tool| tool.p0_w),
         capsules: body

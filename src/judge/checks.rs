@@ -1,5 +1,7 @@
 //! The checks: each finds its worst value and the first moment at which its limit was crossed.
 
+use std::cmp::Ordering;
+
 use nalgebra::Vector3;
 
 use crate::model::{
@@ -182,7 +184,7 @@ fn slope(samples: &[Sample], value: impl Fn(&Sample) -> Vector3<f64>) -> Vector3
 
 /// A value at its limit keeps it; one that cannot be compared does not.
 fn is_crossed(value: f64, limit: f64) -> bool {
-    !(value <= limit)
+    value.partial_cmp(&limit).is_none_or(Ordering::is_gt)
 }
 
 fn check(kind: CheckKind, value: f64, limit: f64) -> Check {

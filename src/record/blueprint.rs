@@ -1,4 +1,4 @@
-//! The layout on which the viewer opens: scene, phases and events on the left, summary and plots on the right.
+//! The layout on which the viewer opens: the scene and the events, the phases above the plots, the summary.
 //!
 //! Written out by hand and not by rerun's blueprint builder, whose ids are random.
 
@@ -9,11 +9,13 @@ use rerun::{
         re_log_types::BlueprintActivationCommand,
         re_sdk_types::blueprint::{
             archetypes::{
-                ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, ScalarAxis,
+                Background, ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TextLogColumns,
                 TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
             },
-            components::{ContainerKind, Corner2D, LoopMode, PanelState, PlayState, RootContainer},
+            components::{BackgroundKind, ContainerKind, Corner2D, LoopMode, PanelState, PlayState, RootContainer},
+            datatypes::{TextLogColumn, TextLogColumnKind},
         },
+        uuid::Uuid,
     },
     log::LogMsg,
 };
@@ -21,13 +23,14 @@ use rerun::{
 use super::{
     RecordError, RecordingInput, TIMELINE,
     chunks::Messages,
-    entity,
+    entity, palette,
     plots::{JOINTS_SHOWN, LIMIT, PLOTS, hardest_first},
 };
 use crate::model::{scenario::Hand, verdict::CheckKind};
 
 /// A view or a container with its share of its parent's room.
 struct Placed {
+    id: Uuid,
     path: EntityPath,
     share: f32,
 }
@@ -41,21 +44,16 @@ struct Layout {
 /// The layout's messages; the last one activates it.
 pub(super) fn messages(messages: Messages, input: &RecordingInput) -> Result<Vec<LogMsg>, RecordError> {
     let mut layout = Layout { messages, count: 0 };
-    let left = [
-        layout.scene(input)?,
-        layout.view("StateTimeline", "phases", &["+ /phases"], 0.14)?,
-        layout.view("TextLog", "events", &["+ /events"], 0.2)?,
-    ];
-    let left = layout.container(ContainerKind::Vertical, &left, 0.58)?;
-    let mut right = vec![layout.view("TextDocument", "summary", &["+ /summary"], 0.38)?];
+    let left = [layout.scene(input)?, layout.events()?];
+    let left = layout.container(ContainerKind::Vertical, &left, 0.48)?;
+    let mut middle = vec![layout.view("StateTimeline", "phases", &["+ /phases"], 0.12)?];
     for (plot, kind) in PLOTS {
-        right.push(layout.plot(input, plot, kind)?);
+        middle.push(layout.plot(input, plot, kind)?);
     }
-    let right = layout.container(ContainerKind::Vertical, &right, 0.42)?;
-    let root_id = layout.count;
-    let root = layout.container(ContainerKind::Horizontal, &[left, right], 1.0)?;
-    debug_assert_eq!(root.path, entity(&["container", &uuid(root_id).to_string()]));
-    layout.panels(root_id)?;
+    let middle = layout.container(ContainerKind::Vertical, &middle, 0.28)?;
+    let right = layout.view("TextDocument", "summary", &["+ /summary"], 0.24)?;
+    let root = layout.container(ContainerKind::Horizontal, &[left, middle, right], 1.0)?;
+    layout.panels(root.id)?;
     let activation = BlueprintActivationCommand::make_active(layout.messages.store_id().clone());
     let mut messages = layout.messages.into_messages();
     messages.push(LogMsg::BlueprintActivationCommand(activation));
@@ -67,10 +65,11 @@ impl Layout {
         self.messages.log_static(path, what)
     }
 
-    fn next_path(&mut self, kind: &str) -> EntityPath {
-        let path = entity(&[kind, &uuid(self.count).to_string()]);
+    /// A place for a view or a container, numbered by the count of those before it.
+    fn place(&mut self, kind: &str, share: f32) -> Placed {
+        let id = Uuid::from_u128(self.count);
         self.count += 1;
-        path
+        Placed { id, path: entity(&[kind, &id.to_string()]), share }
     }
 
     /// A view of what the queries match.
@@ -81,16 +80,16 @@ impl Layout {
         queries: &[Q],
         share: f32,
     ) -> Result<Placed, RecordError> {
-        let path = self.next_path("view");
+        let view = self.place("view", share);
         let contents = ViewContents::new(queries.iter().map(|query| query.as_ref()));
-        self.log(&child(&path, "ViewContents"), &contents)?;
-        let view = ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
-        self.log(&path, &view)?;
-        Ok(Placed { path, share })
+        self.log(&child(&view.path, "ViewContents"), &contents)?;
+        let style = ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
+        self.log(&view.path, &style)?;
+        Ok(view)
     }
 
     fn container(&mut self, kind: ContainerKind, contents: &[Placed], share: f32) -> Result<Placed, RecordError> {
-        let path = self.next_path("container");
+        let placed = self.place("container", share);
         let shares = contents.iter().map(|placed| placed.share);
         let container =
             ContainerBlueprint::new(kind).with_contents(contents.iter().map(|placed| placed.path.to_string()));
@@ -98,21 +97,21 @@ impl Layout {
             ContainerKind::Horizontal => container.with_col_shares(shares),
             _ => container.with_row_shares(shares),
         };
-        self.log(&path, &container)?;
-        Ok(Placed { path, share })
+        self.log(&placed.path, &container)?;
+        Ok(placed)
     }
 
     /// The scene, seen from the side of the person's idle arm: robot, board and person in profile, a little from
     /// behind the person, so that the worked face shows.
     fn scene(&mut self, input: &RecordingInput) -> Result<Placed, RecordError> {
-        let view = self.view("3D", "scene", &["+ /scene/**"], 0.66)?;
+        let view = self.view("3D", "scene", &["+ /scene/**"], 0.76)?;
         let board = input.plan.object.x_wo.translation.vector;
         let idle_side = match input.plan.human.map(|human| human.hand) {
             // The person faces the robot: their left is the robot's right, -y.
             Some(Hand::Right) | None => -1.0,
             Some(Hand::Left) => 1.0,
         };
-        let eye = board + Vector3::new(0.75, 1.75 * idle_side, 0.55);
+        let eye = board + Vector3::new(0.65, 1.25 * idle_side, 0.65);
         let controls = EyeControls3D::new()
             .with_position(point(&eye))
             .with_look_target(point(&board))
@@ -120,6 +119,17 @@ impl Layout {
         self.log(&child(&view.path, "EyeControls3D"), &controls)?;
         let floor = rerun::components::Plane3D::new([0.0, 0.0, 1.0], input.robot.floor_z_m as f32);
         self.log(&child(&view.path, "LineGrid3D"), &LineGrid3D::new().with_plane(floor))?;
+        let background = Background::new(BackgroundKind::SolidColor).with_color(palette::background());
+        self.log(&child(&view.path, "Background"), &background)?;
+        Ok(view)
+    }
+
+    /// Time, level and text; all events have the same entity.
+    fn events(&mut self) -> Result<Placed, RecordError> {
+        let view = self.view("TextLog", "events", &["+ /events"], 0.24)?;
+        let column = |kind| TextLogColumn { kind, visible: true.into() };
+        let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body].map(column);
+        self.log(&child(&view.path, "TextLogColumns"), &TextLogColumns::new().with_text_log_columns(columns))?;
         Ok(view)
     }
 
@@ -137,14 +147,13 @@ impl Layout {
             CheckKind::Slip => (format!("slip of the hands on the board, {unit}"), vec![query(plot, "**")]),
             _ => (format!("{plot} of the tool point, {unit}"), vec![query(plot, "**")]),
         };
-        let view = self.view("TimeSeries", &name, &queries, 0.155)?;
+        let view = self.view("TimeSeries", &name, &queries, 0.22)?;
         self.log(&child(&view.path, "PlotLegend"), &PlotLegend::new().with_corner(Corner2D::LeftTop))?;
-        self.log(&child(&view.path, "ScalarAxis"), &ScalarAxis::new())?;
         Ok(view)
     }
 
-    fn panels(&mut self, root_id: u128) -> Result<(), RecordError> {
-        let root = RootContainer(rerun::datatypes::Uuid::from(uuid(root_id)));
+    fn panels(&mut self, root_id: Uuid) -> Result<(), RecordError> {
+        let root = RootContainer(rerun::datatypes::Uuid::from(root_id));
         let viewport =
             ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
         self.log(&entity(&["viewport"]), &viewport)?;
@@ -158,10 +167,6 @@ impl Layout {
             .with_loop_mode(LoopMode::All);
         self.log(&entity(&["time_panel"]), &time)
     }
-}
-
-fn uuid(number: u128) -> rerun::external::uuid::Uuid {
-    rerun::external::uuid::Uuid::from_u128(number)
 }
 
 fn child(path: &EntityPath, name: &str) -> EntityPath {

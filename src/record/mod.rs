@@ -17,6 +17,7 @@ mod chunks;
 mod palette;
 mod plots;
 mod read;
+mod rrd;
 mod scene;
 mod summary;
 #[cfg(test)]
@@ -26,11 +27,7 @@ use std::path::PathBuf;
 
 use nalgebra::Point3;
 pub use read::{Peaks, RecordedPhase, RecordedSummary, read_summary};
-use rerun::{
-    EntityPath, StoreId, StoreKind,
-    external::re_log_encoding::{CrateVersion, Encoder, EncodingOptions},
-    log::LogMsg,
-};
+use rerun::{EntityPath, StoreId, StoreKind};
 
 use self::chunks::Messages;
 use crate::{
@@ -126,8 +123,6 @@ impl RecordError {
 
 /// The bytes of a recording (`.rrd`) with the blueprint by which the viewer lays it out. Equal inputs give equal bytes.
 ///
-/// The activation of the blueprint comes last: a file that ends without it was cut short.
-///
 /// # Errors
 /// When the trace has an arm that the robot does not have.
 pub fn encode(input: &RecordingInput) -> Result<Vec<u8>, RecordError> {
@@ -139,25 +134,13 @@ pub fn encode(input: &RecordingInput) -> Result<Vec<u8>, RecordError> {
     summary::log(&mut recording, input)?;
     let layout = Messages::new(StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-blueprint")));
     let layout = blueprint::messages(layout, input)?;
-    rrd(recording.into_messages().into_iter().chain(layout))
+    rrd::bytes(recording.into_messages().into_iter().chain(layout))
 }
 
 /// Fixed by the verdict: recordings of equal runs are the same recording to the viewer.
 fn recording_id(verdict: &Verdict) -> String {
     let fingerprint = verdict.fingerprint.get(..16).unwrap_or(&verdict.fingerprint);
     format!("{}-{fingerprint}", verdict.name)
-}
-
-fn rrd(messages: impl Iterator<Item = LogMsg>) -> Result<Vec<u8>, RecordError> {
-    let options = EncodingOptions::PROTOBUF_COMPRESSED;
-    let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, options, Vec::new()).map_err(RecordError::encode)?;
-    // The footer is an index for servers. It lists the stores in the order of a hash map, which differs from run to run.
-    encoder.do_not_emit_footer();
-    for message in messages {
-        encoder.append(&message).map_err(RecordError::encode)?;
-    }
-    encoder.finish().map_err(RecordError::encode)?;
-    encoder.into_inner().map_err(RecordError::encode)
 }
 
 /// An entity's path from its parts, whatever characters they contain.

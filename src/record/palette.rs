@@ -2,6 +2,11 @@
 
 use rerun::Color;
 
+/// Behind the scene.
+pub(super) fn background() -> Color {
+    Color::from_rgb(28, 30, 34)
+}
+
 /// Any limit.
 pub(super) fn limit() -> Color {
     Color::from_rgb(213, 94, 0)
@@ -17,9 +22,9 @@ pub(super) fn load() -> Color {
     Color::from_rgb(204, 121, 167)
 }
 
-/// The person.
+/// The person, seen through: they must not hide what they work on.
 pub(super) fn person() -> Color {
-    Color::from_rgb(0, 158, 115)
+    Color::from_unmultiplied_rgba(0, 158, 115, 110)
 }
 
 /// The robot but its hands.

@@ -10,7 +10,7 @@ use crate::model::{
 };
 
 /// How many joints the torque plot shows: those that worked hardest. The others are in the file all the same.
-pub(super) const JOINTS_SHOWN: usize = 5;
+pub(super) const JOINTS_SHOWN: usize = 4;
 
 /// Name of the series that is a limit.
 pub(super) const LIMIT: &str = "limit";
@@ -110,7 +110,20 @@ fn log_events(messages: &mut Messages, input: &RecordingInput) -> Result<(), Rec
         EventKind::BrokeDown => TextLogLevel::ERROR,
     };
     let log = TextLog::update_fields()
-        .with_many_text(input.events.iter().map(|event| event.text.as_str()))
+        .with_many_text(input.events.iter().map(|event| event_text(event.time_s, &event.text)))
         .with_many_level(input.events.iter().map(|event| level(event.kind)));
     messages.log_columns(&entity(&["events"]), &times_s, log.columns_of_unit_batches().map_err(RecordError::encode)?)
+}
+
+/// What parts the time from the text of an event.
+const TIME_END: &str = " s  ";
+
+/// The text with its time before it: the viewer's own column of times is too narrow to be read.
+fn event_text(time_s: f64, text: &str) -> String {
+    format!("{time_s:.3}{TIME_END}{text}")
+}
+
+/// The text of an event without the time before it.
+pub(super) fn without_time(text: &str) -> String {
+    text.split_once(TIME_END).map_or(text, |(_, text)| text).to_owned()
 }

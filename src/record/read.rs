@@ -8,7 +8,11 @@ use rerun::{
     log::{Chunk, LogMsg},
 };
 
-use super::{APPLICATION, RecordError, TIMELINE, entity, plots::LIMIT};
+use super::{
+    APPLICATION, RecordError, TIMELINE, entity,
+    plots::{LIMIT, without_time},
+    rrd,
+};
 use crate::model::verdict::Verdict;
 
 /// The first bytes of every rerun recording that this version reads.
@@ -71,7 +75,9 @@ fn summary(bytes: &[u8]) -> Result<RecordedSummary, String> {
     Ok(RecordedSummary {
         verdict,
         peaks: peaks(&chunks, release_s),
-        events: texts(&chunks, "events", &rerun::TextLog::descriptor_text()).collect(),
+        events: texts(&chunks, "events", &rerun::TextLog::descriptor_text())
+            .map(|(time_s, text)| (time_s, without_time(&text)))
+            .collect(),
         end_s: chunks.iter().flat_map(times_s).fold(0.0, f64::max),
         phases,
     })
@@ -82,22 +88,20 @@ fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
     if !bytes.starts_with(MAGIC) {
         return Err("found no rerun recording, expected a file that starts with \"RRF2\"".to_owned());
     }
-    let (mut chunks, mut ours, mut complete) = (Vec::new(), false, false);
+    if !rrd::is_complete(bytes) {
+        return Err("the recording was cut short".to_owned());
+    }
+    let (mut chunks, mut ours) = (Vec::new(), false);
     for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
         match message.map_err(|error| format!("found a damaged recording: {error}"))? {
             LogMsg::SetStoreInfo(info) => ours |= info.info.application_id().as_str() == APPLICATION,
             LogMsg::ArrowMsg(store, arrow) if store.is_recording() => {
                 chunks.push(Chunk::from_arrow_msg(&arrow).map_err(|error| format!("found damaged data: {error}"))?);
             }
-            LogMsg::ArrowMsg(..) => {}
-            LogMsg::BlueprintActivationCommand(_) => complete = true,
+            LogMsg::ArrowMsg(..) | LogMsg::BlueprintActivationCommand(_) => {}
         }
     }
-    match (ours, complete) {
-        (false, _) => Err("found no recording of benchdog, expected one".to_owned()),
-        (true, false) => Err("the recording was cut short".to_owned()),
-        (true, true) => Ok(chunks),
-    }
+    if ours { Ok(chunks) } else { Err("found no recording of benchdog, expected one".to_owned()) }
 }
 
 fn of<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'a Chunk> {
@@ -160,5 +164,5 @@ fn peak(chunk: &Chunk, end_s: f64) -> Option<f64> {
 /// The times of a chunk's rows, s.
 fn times_s(chunk: &Chunk) -> Vec<f64> {
     let column = chunk.timelines().get(&TIMELINE.into());
-    column.map_or(Vec::new(), |column| column.times_raw().iter().map(|&nanos| nanos as f64 * 1e-9).collect())
+    column.map_or(Vec::new(), |column| column.times_raw().iter().map(|&nanos| nanos as f64 / 1e9).collect())
 }

@@ -189,6 +189,7 @@ fn capsules(capsules: &[Capsule]) -> Capsules3D {
     )
     .with_translations(capsules.iter().map(|capsule| vec3(&capsule.ends_w[0].coords)))
     .with_quaternions(capsules.iter().map(|capsule| quaternion(&from_z(along(capsule)))))
+    .with_fill_mode(FillMode::Solid)
 }
 
 /// The pads of one hand as plates, and the forces with which they push on the board.
@@ -216,7 +217,7 @@ fn log_pads(
 
         let forces = samples().map(|sample| (sample.p_wp_m, sample.wrench_w.force_n));
         let path = entity(&["scene", "forces", &names.name, name]);
-        let style = Arrows3D::update_fields().with_colors([palette::hand(arm)]).with_radii([0.004]);
+        let style = Arrows3D::update_fields().with_colors([palette::hand(arm)]).with_radii([0.006]);
         log_forces(messages, &path, &frames.times_s, forces, &style)?;
     }
     Ok(())
@@ -226,7 +227,7 @@ fn log_pads(
 fn log_load(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
     let tool_point_w = |sample: &Sample| (sample.x_wo * Point3::from(input.trace.p_ot_m)).coords;
     let forces = frames.samples.iter().map(|sample| (tool_point_w(sample), sample.tool_wrench_w.force_n));
-    let style = Arrows3D::update_fields().with_colors([palette::load()]).with_radii([0.006]);
+    let style = Arrows3D::update_fields().with_colors([palette::load()]).with_radii([0.009]);
     log_forces(messages, &entity(&["scene", "forces", "tool"]), &frames.times_s, forces, &style)
 }
 

@@ -37,19 +37,28 @@ pub(super) fn markdown(plan: &Plan, verdict: &Verdict) -> String {
     }
     checks(&mut text, verdict);
     figures(&mut text, plan);
-    let scale = ARROW_M_PER_N * 1e3;
-    push(
-        &mut text,
-        format_args!(
-            "\n**Colours**: blue {}, orange {}, yellow board, violet tool and load, green person, \
-         red limits. Arrows: forces on the board, {scale:.0} mm/N.",
-            arm(plan, 0),
-            arm(plan, 1)
-        ),
-    );
-    let versions: Vec<_> = verdict.versions.iter().map(|(name, version)| format!("{name} {version}")).collect();
-    push(&mut text, format_args!("\n{}; seed {}; trace `{}`", versions.join(", "), verdict.seed, verdict.fingerprint));
+    colours(&mut text, plan);
+    push(&mut text, format_args!("\n**Made by**: {}", versions(verdict)));
     text
+}
+
+fn colours(text: &mut String, plan: &Plan) {
+    let hand = |index: usize| plan.arms.get(index).map_or("no", |arm| arm.name.as_str());
+    let scale_mm = ARROW_M_PER_N * 1e3;
+    push(text, format_args!("\n**Colours**"));
+    push(text, format_args!("- blue: {} hand", hand(0)));
+    push(text, format_args!("- orange: {} hand", hand(1)));
+    push(text, format_args!("- yellow: board"));
+    push(text, format_args!("- violet: tool and load"));
+    push(text, format_args!("- green: person"));
+    push(text, format_args!("- red: limits"));
+    push(text, format_args!("\nArrows are forces on the board, {scale_mm:.0} mm/N."));
+}
+
+fn versions(verdict: &Verdict) -> String {
+    let versions: Vec<_> = verdict.versions.iter().map(|(name, version)| format!("{name} {version}")).collect();
+    let trace = verdict.fingerprint.get(..16).unwrap_or("none");
+    format!("{}; seed {}; trace `{trace}`", versions.join(", "), verdict.seed)
 }
 
 fn checks(text: &mut String, verdict: &Verdict) {
@@ -88,10 +97,6 @@ fn figures(text: &mut String, plan: &Plan) {
         let (muscular, peripersonal_m) = (comfort.muscular_regularised, comfort.peripersonal_m);
         push(text, format_args!("Comfort: muscular {muscular:.1}, peripersonal {peripersonal_m:.3} m"));
     }
-}
-
-fn arm(plan: &Plan, index: usize) -> String {
-    plan.arms.get(index).map_or("no hand".to_owned(), |arm| format!("{} hand", arm.name))
 }
 
 fn push(text: &mut String, paragraph: std::fmt::Arguments) {

@@ -1,1 +1,311 @@
+//! A recording is written, read back, cut short and compared, byte by byte.
 
+use std::{collections::BTreeMap, fs, path::Path};
+
+use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
+
+use super::*;
+use crate::{
+    model::{
+        frames::Pose,
+        grasp::{Edge, EdgeGrasp},
+        measures::{EventKind, HandMeasures, JointMeasures},
+        operation::Operation,
+        plan::{ArmHold, PlacedObject},
+        trace::{ArmSample, ArmTrace, PadSample, Phase, Sample},
+        verdict::{Check, CheckKind, Failure, VerdictKind},
+        wrench::Wrench,
+    },
+    robot::{Chain, InverseKinematics},
+};
+
+const STEP_S: f64 = 0.002;
+const SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
+
+/// All that a recording is made of.
+struct Example {
+    robot: Robot,
+    plan: Plan,
+    trace: Trace,
+    measures: Measures,
+    events: Vec<Event>,
+    verdict: Verdict,
+    person: PersonShape,
+}
+
+impl Example {
+    fn input(&self) -> RecordingInput<'_> {
+        RecordingInput {
+            robot: &self.robot,
+            plan: &self.plan,
+            trace: &self.trace,
+            measures: &self.measures,
+            events: &self.events,
+            verdict: &self.verdict,
+            person: Some(&self.person),
+        }
+    }
+}
+
+/// A hold of an upright board by both hands of a Baxter: the left hand turns under a cut until it pivots.
+fn example() -> Example {
+    let robot = Robot::load("baxter", Path::new("")).unwrap();
+    let plan = plan(&robot);
+    let trace = trace(&robot, &plan);
+    let measures = measures(&trace);
+    let verdict = verdict(&trace, &measures);
+    let event = |time_s, kind, text: &str| Event { time_s, kind, text: text.into() };
+    let events = vec![
+        event(0.0, EventKind::Phase, "settle: the board's weight alone"),
+        event(0.1, EventKind::Phase, "ramp: the load grows"),
+        event(0.27, EventKind::LimitCrossed, "left hand turns past 2 deg at load factor 0.86"),
+    ];
+    let capsule = |a: [f64; 3], b: [f64; 3], radius_m| Capsule { ends_w: [a.into(), b.into()], radius_m };
+    let person = PersonShape {
+        capsules: vec![
+            capsule([1.25, 0.0, 0.0], [1.25, 0.0, 0.4], 0.14),
+            capsule([1.25, 0.0, 0.68], [1.25, 0.0, 0.68], 0.11),
+            capsule([1.25, 0.2, 0.45], [1.1, 0.25, 0.2], 0.05),
+            capsule([1.1, 0.25, 0.2], [0.85, 0.17, 0.25], 0.035),
+            capsule([1.25, -0.2, 0.45], [1.25, -0.25, -0.1], 0.05),
+            capsule([1.25, 0.1, 0.0], [1.25, 0.1, -0.85], 0.07),
+            capsule([1.25, -0.1, 0.0], [1.25, -0.1, -0.85], 0.07),
+        ],
+        palm_w: Point3::new(0.78, 0.15, 0.27),
+    };
+    Example { robot, plan, trace, measures, events, verdict, person }
+}
+
+fn plan(robot: &Robot) -> Plan {
+    // z_O, the worked face's normal, points at the person: along +x_W.
+    let upright = Rotation3::from_basis_unchecked(&[Vector3::y(), Vector3::z(), Vector3::x()]);
+    let x_wo = Pose::from_parts(Vector3::new(0.6, 0.0, 0.25).into(), UnitQuaternion::from_rotation_matrix(&upright));
+    let hold = |arm: usize, edge| {
+        let grasp = EdgeGrasp { edge, along_m: 0.0, depth_m: 0.035, angle_rad: 0.0, flipped: false };
+        let x_og = grasp.x_og(SIZE_M);
+        let chain = Chain::new(robot, arm, 0.0);
+        let middle: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(a, b)| (a + b) / 2.0).collect();
+        let ik = InverseKinematics::for_chain(&chain);
+        ArmHold {
+            name: robot.arms[arm].name.clone(),
+            joints: robot.arms[arm].joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
+            q_rad: ik.nearest(&(x_wo * x_og), &middle).found().unwrap(),
+            x_og,
+            grip_force_n: 30.0,
+        }
+    };
+    Plan {
+        format: 1,
+        name: "cut-05".into(),
+        robot: "baxter".into(),
+        operation: Operation::cut([0.0, 0.12], -Vector3::x(), 30.0, SIZE_M[2]),
+        object: PlacedObject { size_m: SIZE_M, mass_kg: 0.21, x_wo },
+        arms: vec![hold(0, Edge::PlusX), hold(1, Edge::MinusX)],
+        human: None,
+        comfort: None,
+        stability: None,
+        planner: None,
+        scenario: None,
+        benchdog: None,
+    }
+}
+
+fn trace(robot: &Robot, plan: &Plan) -> Trace {
+    let arm = |hold: &ArmHold| ArmTrace {
+        name: hold.name.clone(),
+        joints: hold.joints.clone(),
+        effort_nm: vec![50.0, 100.0, 50.0, 50.0, 15.0, 15.0, 15.0],
+        pads: vec!["upper".into(), "lower".into()],
+        grip_force_n: hold.grip_force_n,
+    };
+    Trace {
+        arms: plan.arms.iter().map(arm).collect(),
+        p_ot_m: plan.operation.x_ot.translation.vector,
+        samples: (0..=250).map(|step| sample(robot, plan, step)).collect(),
+        broke_down: None,
+    }
+}
+
+fn sample(robot: &Robot, plan: &Plan, step: usize) -> Sample {
+    let time_s = step as f64 * STEP_S;
+    let (phase, load_factor) = match step {
+        0..=50 => (Phase::Settle, 0.0),
+        51..=150 => (Phase::Ramp, (step - 50) as f64 / 100.0),
+        151..=200 => (Phase::Hold, 1.0),
+        _ => (Phase::Release, 0.0),
+    };
+    let x_wo = plan.object.x_wo * Isometry3::translation(-0.006 * load_factor, 0.0, 0.0);
+    let hand = |index: usize, hold: &ArmHold| {
+        let gripper = &robot.arms[index].gripper;
+        let p_oc = hold.x_og * Point3::from(gripper.grasp_point_g());
+        let turn_rad = if index == 0 { 0.04 * load_factor } else { 0.002 * load_factor };
+        let pad = |side: f64| PadSample {
+            normal_force_n: 30.0,
+            wrench_w: Wrench::from_force(x_wo.rotation * Vector3::new(15.0 * load_factor, 0.0, -30.0 * side)),
+            p_wp_m: (x_wo * (p_oc + Vector3::z() * (side * SIZE_M[2] / 2.0))).coords,
+        };
+        ArmSample {
+            q_rad: hold.q_rad.clone(),
+            finger_m: vec![gripper.travel_for_gap_m(0, SIZE_M[2]); 2],
+            torque_demanded_nm: (0..7).map(|joint| 2.0 + joint as f64 * load_factor).collect(),
+            torque_applied_nm: (0..7).map(|joint| 2.0 + joint as f64 * load_factor).collect(),
+            x_oc: Pose::from_parts(
+                p_oc.into(),
+                UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * hold.x_og.rotation,
+            ),
+            pads: vec![pad(1.0), pad(-1.0)],
+        }
+    };
+    Sample {
+        time_s,
+        phase,
+        load_factor,
+        tool_wrench_w: Wrench::from_force(x_wo.rotation * plan.operation.wrench_o.force_n * load_factor),
+        x_wo,
+        arms: plan.arms.iter().enumerate().map(|(index, hold)| hand(index, hold)).collect(),
+    }
+}
+
+/// The series as they follow from how [`sample`] moves, in closed form.
+fn measures(trace: &Trace) -> Measures {
+    let samples = &trace.samples[50..];
+    let of = |figure: &dyn Fn(&Sample) -> f64| samples.iter().map(figure).collect::<Vec<f64>>();
+    let joint = |(index, name): (usize, &String), arm: usize| JointMeasures {
+        name: name.clone(),
+        torque_ratio: of(&|s| s.arms[arm].torque_demanded_nm[index] / trace.arms[arm].effort_nm[index]),
+    };
+    Measures {
+        time_s: of(&|s| s.time_s),
+        hands: ["left", "right"]
+            .into_iter()
+            .zip([0.04_f64, 0.002])
+            .map(|(name, turn_rad)| HandMeasures {
+                name: name.into(),
+                slip_mm: of(&|s| 0.3 * s.load_factor),
+                slip_deg: of(&|s| turn_rad.to_degrees() * s.load_factor),
+            })
+            .collect(),
+        deflection_mm: of(&|s| 6.0 * s.load_factor),
+        joints: (0..2)
+            .flat_map(|arm| trace.arms[arm].joints.iter().enumerate().map(move |name| joint(name, arm)))
+            .collect(),
+    }
+}
+
+fn verdict(trace: &Trace, measures: &Measures) -> Verdict {
+    let check = |name: CheckKind, value: f64, limit: f64| Check {
+        name,
+        value,
+        limit,
+        margin: limit - value,
+        unit: name.unit().into(),
+        passed: value <= limit,
+    };
+    let peak = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    Verdict {
+        format: 1,
+        name: "cut-05".into(),
+        verdict: VerdictKind::Pivots,
+        expected: VerdictKind::Holds,
+        met: false,
+        checks: vec![
+            check(CheckKind::Slip, 0.3, 1.0),
+            check(CheckKind::SlipRotation, peak(&measures.hands[0].slip_deg), 2.0),
+            check(CheckKind::Deflection, 6.0, 15.0),
+            check(CheckKind::TorqueRatio, 8.0 / 15.0, 1.0),
+        ],
+        first_failure: Some(Failure { check: CheckKind::SlipRotation, time_s: 0.274, load_factor: 0.88 }),
+        peak_torque_ratio: measures.joints.iter().map(|j| (j.name.clone(), peak(&j.torque_ratio))).collect(),
+        reason: None,
+        versions: BTreeMap::from([("benchdog".into(), "0.1.0".into()), ("rapier3d-f64".into(), "0.36.1".into())]),
+        seed: 1,
+        fingerprint: format!("{:064x}", trace.samples.len()),
+    }
+}
+
+/// What [`read_summary`] says of a file of these bytes.
+fn read(bytes: &[u8]) -> Result<RecordedSummary, RecordError> {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.rrd");
+    fs::write(&path, bytes).unwrap();
+    read_summary(&path)
+}
+
+#[test]
+fn what_is_recorded_is_read_back() {
+    let example = example();
+    let summary = read(&encode(&example.input()).unwrap()).unwrap();
+    assert_eq!(summary.verdict, example.verdict);
+    assert_eq!(summary.end_s, 0.5);
+    let phases: Vec<_> = summary.phases.iter().map(|phase| (phase.name.as_str(), phase.start_s)).collect();
+    assert_eq!(phases, [("settle", 0.0), ("ramp", 0.102), ("hold", 0.302), ("release", 0.402)]);
+    let events: Vec<_> = example.events.iter().map(|event| (event.time_s, event.text.clone())).collect();
+    assert_eq!(summary.events, events);
+    // Series are stored as they are, in double precision: equality, and no tolerance.
+    assert_eq!(summary.peaks.deflection_mm, 6.0);
+    assert_eq!(summary.peaks.slip_mm, BTreeMap::from([("left".into(), 0.3), ("right".into(), 0.3)]));
+    assert_eq!(summary.peaks.rotation_deg["left"], 0.04_f64.to_degrees());
+    assert_eq!(summary.peaks.torque_ratio, example.verdict.peak_torque_ratio);
+}
+
+#[test]
+fn what_happens_after_the_load_is_no_peak() {
+    let mut example = example();
+    *example.measures.deflection_mm.last_mut().unwrap() = 99.0;
+    assert_eq!(read(&encode(&example.input()).unwrap()).unwrap().peaks.deflection_mm, 6.0);
+}
+
+#[test]
+fn equal_inputs_give_equal_bytes_and_small_files() {
+    let bytes = encode(&example().input()).unwrap();
+    assert!(bytes == encode(&example().input()).unwrap(), "two recordings of one run differ");
+    // A fifth of a run's usual length, so a fifth of the 5 MB that a recording may take.
+    assert!(bytes.len() < 1_000_000, "found {} bytes", bytes.len());
+}
+
+#[test]
+fn a_recording_cut_short_is_told_from_a_whole_one() {
+    let bytes = encode(&example().input()).unwrap();
+    for kept in [bytes.len() / 3, bytes.len() * 9 / 10, bytes.len() - 1] {
+        let message = read(&bytes[..kept]).unwrap_err().to_string();
+        assert!(message.ends_with("the recording was cut short"), "{message}");
+    }
+}
+
+#[test]
+fn other_files_are_refused_with_what_was_found() {
+    let message = |bytes: &[u8]| read(bytes).unwrap_err().to_string();
+    assert!(message(b"").ends_with("found no rerun recording, expected a file that starts with \"RRF2\""));
+    assert!(message(b"PNG, say").ends_with("found no rerun recording, expected a file that starts with \"RRF2\""));
+    let other = Messages::new(StoreId::new(StoreKind::Recording, "other", "run"));
+    assert!(
+        message(&rrd::bytes(other.into_messages()).unwrap()).ends_with("found no recording of benchdog, expected one")
+    );
+    let missing = read_summary(Path::new("no/such.rrd")).unwrap_err().to_string();
+    assert!(missing.starts_with("failed to read no/such.rrd: "), "{missing}");
+}
+
+#[test]
+fn an_arm_that_the_robot_does_not_have_is_an_error() {
+    let mut example = example();
+    example.trace.arms[1].name = "third".into();
+    assert_eq!(
+        encode(&example.input()).unwrap_err().to_string(),
+        "found arm \"third\" in the trace, expected one of \"left\", \"right\""
+    );
+}
+
+#[test]
+fn runs_without_person_verdict_or_samples_are_recorded_too() {
+    let mut example = example();
+    example.verdict = Verdict {
+        verdict: VerdictKind::NoVerdict,
+        checks: Vec::new(),
+        peak_torque_ratio: BTreeMap::new(),
+        reason: Some("the trace is empty".into()),
+        ..example.verdict
+    };
+    (example.trace.samples, example.measures, example.events) = (Vec::new(), Measures::default(), Vec::new());
+    let bytes = encode(&RecordingInput { person: None, ..example.input() }).unwrap();
+    assert_eq!(read(&bytes).unwrap().verdict, example.verdict);
+}

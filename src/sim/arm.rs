@@ -1,6 +1,6 @@
 //! One arm of the scene: a servo in every joint, a gripper at the end.
 
-use rapier3d_f64::prelude::{MultibodyJointHandle, PhysicsWorld};
+use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld};
 
 use super::{
     SimError,
@@ -55,29 +55,20 @@ impl SimArm {
         let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
         let contact = PadContact::new(world, friction, hold.grip_force_n, object.mass_kg);
         let gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
-
-        let PhysicsWorld { bodies, colliders, multibody_joints, .. } = world;
-        let handle = fingers[0].joint;
-        let (multibody, _) = multibody_joints.get_mut(handle).ok_or(SimError::Engine)?;
         let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
-        gripper.close(multibody, hold.grip_force_n, finger_m, object.mass_kg);
+
         let mut positions = vec![0.0; chain.links.len()];
-        for (joint, q_rad) in arm_joints.iter().zip(&hold.q_rad) {
-            positions[joint.dof] = *q_rad;
-        }
-        for (finger, position_m) in fingers.iter().zip(finger_m) {
-            positions[finger.dof] = position_m;
-        }
-        multibody.apply_displacements(&positions);
-        multibody.forward_kinematics(bodies, false);
-        multibody.update_rigid_bodies(bodies, true);
-        bodies.propagate_modified_body_positions_to_colliders(colliders);
+        let placed = arm_joints.iter().chain(&fingers).zip(hold.q_rad.iter().chain(&finger_m));
+        placed.for_each(|(link, position)| positions[link.dof] = *position);
+        let multibody = fingers[0].joint;
+        let engine = take_posture(world, multibody, &positions)?;
+        gripper.close(engine, hold.grip_force_n, finger_m, object.mass_kg);
         let weight_nm = weight_torque_nm(robot, arm_index, &hold.q_rad, object.size_m[2]);
         let joints = driven_joints(arm, hold, &arm_joints, &weight_nm);
         for DrivenJoint { place, servo, .. } in &joints {
-            multibody.damping_mut()[place.dof] = servo.damping_nm_s_rad;
+            engine.damping_mut()[place.dof] = servo.damping_nm_s_rad;
         }
-        Ok(Self { multibody: handle, joints, gripper })
+        Ok(Self { multibody, joints, gripper })
     }
 
     /// Lets every servo react to the state before a step.
@@ -90,10 +81,10 @@ impl SimArm {
         }
     }
 
-    /// The largest joint speed, rad/s.
-    pub fn fastest_joint_rad_s(&self, world: &PhysicsWorld) -> f64 {
-        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return 0.0 };
-        self.joints.iter().map(|joint| joint.place.velocity(multibody).abs()).fold(0.0, f64::max)
+    /// True when no joint is faster than `limit_rad_s`; a speed that is not a number is.
+    pub fn is_slower_than(&self, world: &PhysicsWorld, limit_rad_s: f64) -> bool {
+        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return false };
+        self.joints.iter().all(|joint| joint.place.velocity(multibody).abs() <= limit_rad_s)
     }
 
     /// Writes the joints' part of the state after a step.
@@ -109,6 +100,21 @@ impl SimArm {
             *travel_m = found_m;
         }
     }
+}
+
+/// Moves a chain from position zero to these joint positions, its bodies and pads with it.
+fn take_posture<'a>(
+    world: &'a mut PhysicsWorld,
+    handle: MultibodyJointHandle,
+    positions: &[f64],
+) -> Result<&'a mut Multibody, SimError> {
+    let PhysicsWorld { bodies, colliders, multibody_joints, .. } = world;
+    let (multibody, _) = multibody_joints.get_mut(handle).ok_or(SimError::Engine)?;
+    multibody.apply_displacements(positions);
+    multibody.forward_kinematics(bodies, false);
+    multibody.update_rigid_bodies(bodies, true);
+    bodies.propagate_modified_body_positions_to_colliders(colliders);
+    Ok(multibody)
 }
 
 /// The servos that hold an arm at its planned angles.

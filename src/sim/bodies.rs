@@ -80,8 +80,8 @@ pub(super) struct ArmBodies {
 }
 
 impl ArmBodies {
-    /// Merges the robot's links into the bodies that this arm moves. Joints that are no part of the arm stay at zero, or
-    /// at the limit next to it.
+    /// Merges the robot's links into the bodies that this arm moves. Joints that are no part of the arm stay at zero,
+    /// or at the limit next to it.
     pub fn new(robot: &Robot, arm: &Arm) -> Self {
         let moving: Vec<usize> =
             arm.joints.iter().copied().chain(arm.gripper.fingers.iter().map(|finger| finger.joint)).collect();

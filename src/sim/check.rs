@@ -11,7 +11,8 @@ use crate::{
     robot::Robot,
 };
 
-/// How far a hand may be from where the plan says, m: a thousandth of an arm, a tenth of what a slip is judged by.
+/// How far a hand may be from where the plan says, m: what a plan written with three decimals may be off, and little
+/// against the pad.
 const HAND_TOLERANCE_M: f64 = 1e-3;
 
 /// How far a hand may be turned from what the plan says, rad: 0.1 degrees.

@@ -88,8 +88,8 @@ pub enum SimError {
     },
     /// Fingers that do not close on the board's faces.
     #[error(
-        "arm \"{arm}\": found its fingers {off_mm:.3} mm and {off_deg:.3} degrees off the board's middle plane, expected \
-         at most 1 mm and 0.1 degrees"
+        "arm \"{arm}\": found its fingers {off_mm:.3} mm and {off_deg:.3} degrees off the board's middle plane, \
+         expected at most 1 mm and 0.1 degrees"
     )]
     Astride {
         /// The arm.

@@ -14,8 +14,7 @@ use crate::{
     robot::{Arm, Finger, Gripper, Robot},
 };
 
-/// Damping of each finger, N s/m (METHOD gives none): a finger of 30 g with its share of the board comes to rest within
-/// a few milliseconds, far faster than an arm.
+/// Damping of each finger, N s/m (assumed): a finger comes to rest within milliseconds, far faster than an arm.
 const FINGER_DAMPING_N_S_M: f64 = 50.0;
 
 /// Stiffness, N/m, of the spring that stands for the constant force on a finger: so soft that over a whole travel of
@@ -65,10 +64,10 @@ impl SimGripper {
             let pad = SimPad::new(world, &finger.pad, k, place.body, &x_gf, contact);
             (SimFinger { place, finger, limits_m: [joint.lower, joint.upper] }, pad)
         });
-        let [(first, upper), (second, lower)] = parts;
+        let [(first, first_pad), (second, second_pad)] = parts;
         Self {
             fingers: [first, second],
-            pads: [upper, lower],
+            pads: [first_pad, second_pad],
             hand: chain.body(seat.body),
             x_bc: seat.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
             x_bg: seat.x_bl,
@@ -80,8 +79,8 @@ impl SimGripper {
         [0, 1].map(|k| gripper.fingers[k].joint_position_m(gripper.travel_for_gap_m(k, gap_m)))
     }
 
-    /// Couples the fingers, so that both open by the same travel, and pushes each with `force_n` towards the other, which is
-    /// exact at `positions_m`.
+    /// Couples the fingers, so that both open by the same travel, and pushes each with `force_n` towards the other, a
+    /// force that is exact at `positions_m`.
     ///
     /// A geared drive adds its own inertia to each finger; no figure is known, and no state of rest depends on it.
     /// The solver, which goes from contact to contact, converges when the masses on both sides of them are alike:

@@ -23,8 +23,8 @@ impl LoadProfile {
     /// The profile of these settings, each phase rounded to whole steps.
     ///
     /// # Errors
-    /// [`SimError::Settings`] when the time step is not positive or longer than 4 ms, a phase negative or not finite, or
-    /// the whole longer than 100 000 steps.
+    /// [`SimError::Settings`] when the time step is not positive or longer than 4 ms, a phase negative or not finite,
+    /// or the whole longer than 100 000 steps.
     pub fn new(settings: &SimulationSettings) -> Result<Self, SimError> {
         let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
         if !(timestep_s > 0.0 && timestep_s <= MAX_TIMESTEP_S) {

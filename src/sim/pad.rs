@@ -31,13 +31,13 @@ pub(super) struct TouchedBoard {
 pub(super) struct PadContact {
     /// Coulomb coefficient.
     pub friction: f64,
-    /// How far the whole face lies behind the square that carries the load, m.
+    /// How far the whole face lies behind the core that carries the load, m.
     recess_m: f64,
 }
 
 impl PadContact {
-    /// The contact of pads that grip a board of this mass with this force. The recess is twice what the square sinks
-    /// in: an evenly pressed pad rests on the square alone, and a pad that tilts meets the edge of its whole face
+    /// The contact of pads that grip a board of this mass with this force. The recess is twice what the core sinks
+    /// in: an evenly pressed pad rests on the core alone, and a pad that tilts meets the edge of its whole face
     /// after a fraction of a milliradian.
     pub fn new(world: &PhysicsWorld, friction: f64, grip_force_n: f64, board_mass_kg: f64) -> Self {
         Self { friction, recess_m: 2.0 * penetration_m(world, grip_force_n, board_mass_kg) }
@@ -54,11 +54,12 @@ fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
 /// A pad as boxes: half sides along x_P and y_P, and how far the box lies behind the face, m.
 ///
 /// The engine holds two flat boxes together in four corners. Corners of the whole face would turn too hard; those of a
-/// square at the face's mean radius turn exactly as hard as an evenly pressed face. The whole face, a little recessed,
-/// comes to bear where the pad tilts.
+/// face shrunk until they lie at its mean radius turn exactly as hard as an evenly pressed face. The whole face, a
+/// little recessed, comes to bear where the pad tilts.
 fn boxes(half_m: [f64; 2], recess_m: f64) -> [([f64; 2], f64); 2] {
-    let square_m = mean_radius_m(half_m) * std::f64::consts::FRAC_1_SQRT_2;
-    [([square_m; 2], 0.0), (half_m, recess_m)]
+    let [a, b] = half_m;
+    let shrink = mean_radius_m(half_m) / a.hypot(b);
+    [(half_m.map(|half| half * shrink), 0.0), (half_m, recess_m)]
 }
 
 /// A pad of the scene.
@@ -66,7 +67,7 @@ pub(super) struct SimPad {
     finger: RigidBodyHandle,
     /// P in the finger's body: x_P along x_G, z_P into the board, at the centre of the face.
     x_fp: Pose,
-    /// The square, then the whole face.
+    /// The core, then the whole face.
     colliders: [ColliderHandle; 2],
 }
 

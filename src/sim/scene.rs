@@ -116,9 +116,8 @@ impl Scene {
         if !self.world.quarantine().is_empty() {
             return Some("the state is no longer finite");
         }
-        let joint_rad_s = self.arms.iter().map(|arm| arm.fastest_joint_rad_s(&self.world)).fold(0.0, f64::max);
-        // Written so that a speed that is not a number counts as lost.
-        if joint_rad_s <= LOST_RAD_S { None } else { Some("the joint speeds have blown up") }
+        let calm = self.arms.iter().all(|arm| arm.is_slower_than(&self.world, LOST_RAD_S));
+        if calm { None } else { Some("the joint speeds have blown up") }
     }
 }
 

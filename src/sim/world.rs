@@ -10,9 +10,14 @@ use crate::model::GRAVITY_W;
 /// Substeps of the engine's solver in a step.
 const SUBSTEPS: usize = 4;
 
-/// Sweeps over all contacts that end a substep. With one of them a change of load slides light boards a little and
-/// some boards ring between their hands; with four no board of 0.03 to 2 kg does, at time steps of 1, 2 and 4 ms.
-const STABILISATION_SWEEPS: usize = 4;
+/// Sweeps over all contacts that end a substep. With one of them a change of load slides light boards a little, and at
+/// this stiffness they ring between their hands; with six no board of 0.03 to 2 kg does, at time steps of 1, 2 and
+/// 4 ms.
+const STABILISATION_SWEEPS: usize = 6;
+
+/// Stiffness of the contacts: oscillations in a substep. Measured with one, light boards sit twice as soft in their
+/// hands; with three, some boards ring.
+const CONTACT_OSCILLATIONS: f64 = 1.5;
 
 /// Damping of the contacts, as a multiple of the critical one.
 const CONTACT_DAMPING_RATIO: f64 = 10.0;
@@ -47,14 +52,13 @@ pub(super) fn substep_s(world: &PhysicsWorld) -> f64 {
     world.integration_parameters.dt / world.integration_parameters.num_solver_iterations as f64
 }
 
-/// Stiffness of the contacts as a frequency, Hz: one oscillation a substep. Twice as soft bends light boards in their
-/// hands; half as long an oscillation makes them ring.
+/// Stiffness of the contacts as a frequency, Hz.
 fn contact_frequency_hz(substep_s: f64) -> f64 {
-    1.0 / substep_s
+    CONTACT_OSCILLATIONS / substep_s
 }
 
 /// How deep contacts sink that press a free body of this mass with this force, m: `F / (m omega^2)`, with
-/// `omega = 2 pi` a substep.
+/// `omega` the contacts' angular frequency.
 pub(super) fn penetration_m(world: &PhysicsWorld, force_n: f64, mass_kg: f64) -> f64 {
     let omega_rad_s = std::f64::consts::TAU * contact_frequency_hz(substep_s(world));
     force_n / (mass_kg * omega_rad_s * omega_rad_s)

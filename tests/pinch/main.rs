@@ -86,7 +86,7 @@ fn a_block_does_not_creep_below_its_slip_load() {
         bench.motion_under(factor);
         let before = bench.sample.arms[0].x_oc;
         let moved = before.inverse() * bench.run(1.0, factor, factor).arms[0].x_oc;
-        // 1e-12 mm in a second was measured; the verdict's limit is 0.1 mm/s.
+        // 2e-10 mm in a second was measured; the verdict's limit is 0.1 mm/s.
         assert!(moved.translation.vector.norm() < 1e-9, "crept {} m", moved.translation.vector.norm());
     }
 }
@@ -153,8 +153,8 @@ fn drill(force_n: f64) -> Operation {
     Operation::drill([0.0, 0.0], force_n, THICKNESS_M)
 }
 
-/// Displacement of the gripper under a force at G, m: `J (K + dg/dq)^-1 J' f`. The torque that holds the arm's weight is
-/// fed forward for the planned angles, so the change of the weight's torque adds to the servos' stiffness.
+/// Displacement of the gripper under a force at G, m: `J (K + dg/dq)^-1 J' f`. The torque that holds the arm's weight
+/// is fed forward for the planned angles, so the change of the weight's torque adds to the servos' stiffness.
 fn free_arm_displacement_m(robot: &Robot, q_rad: &[f64], force_w: &Vector3<f64>) -> Vector3<f64> {
     let chain = Chain::new(robot, 0, 0.0);
     let mut stiffness = DMatrix::from_diagonal(&DVector::from_column_slice(&robot.arms[0].stiffness_nm_rad));
@@ -211,8 +211,8 @@ fn two_arms_give_way_as_if_welded_under_a_small_load() {
         Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M),
     ];
     // The engine's contacts are as stiff as the lightest body is heavy, so a lighter board sits softer in its hands:
-    // 2.2 % were measured with 1 kg, 10 % (0.01 mm) with the foam board.
-    for (mass_kg, tolerance) in [(1.0, 0.05), (BOARD_KG, 0.11)] {
+    // 1.3 % were measured with 1 kg, 4 to 6 % (0.006 mm) with the foam board.
+    for (mass_kg, tolerance) in [(1.0, 0.02), (BOARD_KG, 0.07)] {
         for operation in operations {
             let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
             let trace = simulate(&robot, &plan, 0.6, &QUICK).unwrap();
@@ -253,8 +253,8 @@ fn no_board_rings_between_the_hands() {
         let normal_n = |step: usize| trace.samples[step].arms[0].pads[0].normal_force_n;
         let steps = trace.samples.len();
         let jump_n = (steps - 50..steps).map(|step| (normal_n(step) - normal_n(step - 1)).abs()).fold(0.0, f64::max);
-        // 1e-3 N a step is the end of the arms' swing; boards that ring do so by 0.1 N and more.
-        assert!(jump_n < 0.01, "{mass_kg} kg: the pads' force jumps by {jump_n} N from step to step");
+        // 0.01 N a step is the end of the arms' swing; boards that ring do so by 0.1 N and more.
+        assert!(jump_n < 0.03, "{mass_kg} kg: the pads' force jumps by {jump_n} N from step to step");
     }
 }
 
@@ -277,6 +277,25 @@ fn after_the_release_the_board_returns() {
     let left_m = displacement_m(&trace, last(&trace, Phase::Release)).norm();
     // The swing has died out by then; a sudden release lets the hands slide by micrometres, 5 % of the bend.
     assert!(left_m < 0.1 * bent_m, "bent {bent_m} m, left {left_m} m");
+}
+
+#[test]
+fn a_board_that_is_torn_out_is_gone_and_the_arms_stay() {
+    let robot = baxter::robot();
+    let operation = Operation::cut([0.0, 0.1], -Vector3::y(), 200.0, THICKNESS_M);
+    let trace = simulate(&robot, &baxter::plan(&robot, operation, BOARD_KG, 30.0), 0.6, &QUICK).unwrap();
+    // A lost board is an outcome, not a breakdown.
+    assert_eq!(trace.broke_down, None);
+    let (before, after) = (last(&trace, Phase::Settle), last(&trace, Phase::Release));
+    assert!((after.x_wo.translation.vector - before.x_wo.translation.vector).norm() > 1.0);
+    for (arm, settled) in after.arms.iter().zip(&before.arms) {
+        assert!(arm.pads.iter().all(|pad| pad.normal_force_n == 0.0));
+        // Without a board the fingers close until they stop; their limits are solved to micrometres.
+        assert!(arm.finger_m.iter().all(|travel_m| travel_m.abs() < 1e-4), "{:?}", arm.finger_m);
+        // The arms swing back to the plan; they no longer carry the board.
+        let off_rad = arm.q_rad.iter().zip(&settled.q_rad).map(|(q, q_settled)| (q - q_settled).abs());
+        assert!(off_rad.fold(0.0, f64::max) < 0.02, "{:?}", arm.q_rad);
+    }
 }
 
 /// Every bit of a trace: the shortest decimals that read back as the same numbers.

@@ -1,0 +1,167 @@
+//! Bad input: exit code 2, one message with file, line, key, what was found and what was expected, and no file written.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+const SCENARIO: &str = "format = 1
+name = \"bad\"
+
+[object]
+size_m = [0.50, 0.40, 0.030]
+
+[operation]
+kind = \"drill\"
+point_m = [0.0, 0.0]
+force_n = 15.0
+
+[grip]
+force_n = 30.0
+friction = 0.6
+";
+
+/// Runs benchdog in a folder that holds one input file.
+fn benchdog_on(file: &str, text: &str, arguments: &[&str]) -> (Output, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(file), text).unwrap();
+    let output = benchdog_in(folder.path(), arguments);
+    let mut left: Vec<_> =
+        fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    left.sort();
+    (output, left)
+}
+
+fn benchdog_in(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_benchdog")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// A scenario with one replacement is refused with exactly this message.
+#[track_caller]
+fn assert_scenario_refused(replace: &str, with: &str, message: &str) {
+    assert!(SCENARIO.contains(replace));
+    let (output, left) =
+        benchdog_on("bad.toml", &SCENARIO.replacen(replace, with, 1), &["run", "bad.toml", "--junit", "junit.xml"]);
+    assert_refused(&output, message);
+    assert_eq!(left, ["bad.toml"], "files were written");
+}
+
+#[track_caller]
+fn assert_refused(output: &Output, message: &str) {
+    assert_eq!(String::from_utf8_lossy(&output.stderr), format!("error: {message}\n"));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn the_scenario_that_the_cases_spoil_is_good() {
+    let (output, _) = benchdog_on("good.toml", SCENARIO, &["run", "good.toml", "--record", "never"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_missing_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = benchdog_in(folder.path(), &["run", "nowhere.toml"]);
+    assert_refused(&output, "nowhere.toml: failed to read the file: No such file or directory (os error 2)");
+}
+
+#[test]
+fn broken_toml() {
+    assert_scenario_refused(
+        "force_n = 15.0",
+        "force_n = ",
+        "bad.toml:10: string values must be quoted, expected literal string",
+    );
+}
+
+#[test]
+fn an_unknown_key() {
+    assert_scenario_refused(
+        "friction",
+        "frictoin",
+        "bad.toml:14: grip.frictoin: unknown field `frictoin`, expected `force_n` or `friction`",
+    );
+}
+
+#[test]
+fn a_value_of_the_wrong_type() {
+    assert_scenario_refused(
+        "friction = 0.6",
+        "friction = \"high\"",
+        "bad.toml:14: grip.friction: invalid type: string \"high\", expected f64",
+    );
+}
+
+#[test]
+fn a_negative_number() {
+    assert_scenario_refused(
+        "force_n = 30.0",
+        "force_n = -30.0",
+        "bad.toml:13: grip.force_n: found -30, expected a positive number (N)",
+    );
+}
+
+#[test]
+fn a_number_that_is_none() {
+    assert_scenario_refused(
+        "force_n = 15.0",
+        "force_n = nan",
+        "bad.toml:10: operation.force_n: found NaN, expected a positive number (N)",
+    );
+}
+
+#[test]
+fn a_board_thicker_than_the_gripper_opens() {
+    assert_scenario_refused(
+        "0.030]",
+        "0.050]",
+        "bad.toml:5: object.size_m[2]: found 0.05, expected a thickness that the left gripper closes on: 0 to 0.038 m",
+    );
+}
+
+#[test]
+fn an_operation_point_off_the_board() {
+    assert_scenario_refused(
+        "point_m = [0.0, 0.0]",
+        "point_m = [0.3, 0.0]",
+        "bad.toml:9: operation.point_m: found [0.3, 0], expected a point on the board: |x| <= 0.25 m, |y| <= 0.2 m",
+    );
+}
+
+#[test]
+fn an_operation_without_its_force() {
+    assert_scenario_refused(
+        "force_n = 15.0\n",
+        "",
+        "bad.toml:7: operation.force_n: found nothing, expected a force in N",
+    );
+}
+
+#[test]
+fn an_unknown_robot() {
+    assert_scenario_refused(
+        "[grip]",
+        "[robot]\ndescription = \"backster\"\n\n[grip]",
+        "bad.toml:13: robot.description: found robot \"backster\", expected a built-in robot (baxter) or the path of a description file",
+    );
+}
+
+#[test]
+fn an_unknown_material() {
+    assert_scenario_refused(
+        "[operation]",
+        "material = \"cheese\"\n\n[operation]",
+        "bad.toml:7: object.material: found \"cheese\", expected one of acrylic, balsa, foam, mdf, plywood, softwood",
+    );
+}
+
+#[test]
+fn a_format_from_the_future() {
+    assert_scenario_refused(
+        "format = 1",
+        "format = 2",
+        "bad.toml:1: format: found 2, expected 1, the only format that benchdog 0.1.0 reads",
+    );
+}

@@ -1,0 +1,72 @@
+//! Same inputs and seed, same bytes: between two runs, and for one thread or two.
+
+use std::{fs, path::Path, process::Command};
+
+use serde_json::Value;
+
+const SCENARIOS: [&str; 2] = ["scenarios/quickstart.toml", "scenarios/cut-rim.toml"];
+
+fn run(out: &Path, jobs: &str) {
+    let status = Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(["run", "--record", "never", "--jobs", jobs, "--out"])
+        .arg(out)
+        .args(SCENARIOS)
+        .output()
+        .unwrap()
+        .status;
+    assert!(status.success());
+}
+
+/// A plan without the one figure that two runs do not share.
+fn plan_without_clock(path: &Path) -> Value {
+    let mut plan: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
+    let clock = plan["planner"].as_object_mut().unwrap().remove("wall_ms");
+    assert!(clock.is_some(), "the plan says how long it took");
+    plan
+}
+
+#[test]
+fn one_thread_and_two_give_the_same_bytes() {
+    let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    run(folders[0].path(), "1");
+    run(folders[1].path(), "2");
+    for name in ["quickstart", "cut-rim"] {
+        let [one, two] = folders.each_ref().map(|folder| folder.path().join(name));
+        assert_eq!(plan_without_clock(&one.join("plan.json")), plan_without_clock(&two.join("plan.json")));
+        // The verdict holds the fingerprint of the trace.
+        let [one, two] = [one, two].map(|folder| fs::read_to_string(folder.join("verdict.json")).unwrap());
+        assert!(one.contains("\"fingerprint\""));
+        assert_eq!(one, two);
+    }
+}
+
+#[test]
+fn a_plan_that_went_through_a_file_gives_the_same_simulation() {
+    let out = tempfile::tempdir().unwrap();
+    run(out.path(), "2");
+    let folder = out.path().join("quickstart");
+    let output = Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .args(["simulate", "--record", "never", "--format", "json", "--out"])
+        .arg(out.path().join("again"))
+        .arg(folder.join("plan.json"))
+        .output()
+        .unwrap();
+    let again: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let first: Value = serde_json::from_slice(&fs::read(folder.join("verdict.json")).unwrap()).unwrap();
+    assert_eq!(again["fingerprint"], first["fingerprint"]);
+}
+
+#[test]
+fn another_seed_gives_another_plan() {
+    let plans = ["1", "2"].map(|seed| {
+        let output = Command::new(env!("CARGO_BIN_EXE_benchdog"))
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .args(["plan", "scenarios/quickstart.toml", "--seed", seed])
+            .output()
+            .unwrap();
+        let plan: Value = serde_json::from_slice(&output.stdout).unwrap();
+        plan["arms"].clone()
+    });
+    assert_ne!(plans[0], plans[1]);
+}
