@@ -2,7 +2,11 @@
 
 use std::path::Path;
 
-use super::{InputError, InputErrorKind, check::Checker, error::read_text};
+use super::{
+    InputError, InputErrorKind,
+    check::{Checker, FormatProbe},
+    error::read_text,
+};
 use crate::{
     model::plan::{ArmHold, Plan},
     robot::{Arm, Chain, Robot},
@@ -20,9 +24,11 @@ const HAND_TOLERANCE: (f64, f64) = (1e-3, 0.1 * std::f64::consts::PI / 180.0);
 /// When the file cannot be read, is not a plan of this format, or asks for what the robot is not or cannot do.
 pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), InputError> {
     let text = read_text(path)?;
-    let plan = parse(path, &text)?;
     let check = Checker::json(path, &text);
-    check.format(plan.format)?;
+    if let Ok(probe) = serde_json::from_str::<FormatProbe>(&text) {
+        check.format(probe.format)?;
+    }
+    let plan = parse(path, &text)?;
     let robot = match robot {
         Some(robot) if robot.description == plan.robot => robot.clone(),
         _ => {
