@@ -6,6 +6,7 @@ use super::{
     InputError, InputErrorKind,
     check::{Checker, FormatProbe},
     error::read_text,
+    load_robot,
 };
 use crate::{
     model::plan::{ArmHold, Plan},
@@ -28,14 +29,15 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
     if let Ok(probe) = serde_json::from_str::<FormatProbe>(&text) {
         check.format(probe.format)?;
     }
-    let plan = parse(path, &text)?;
+    let mut plan = parse(path, &text)?;
     let robot = match robot {
         Some(robot) if robot.description == plan.robot => robot.clone(),
         _ => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            Robot::load(&plan.robot, folder).map_err(|e| check.robot("robot", e))?
+            load_robot(&plan.robot, folder).map_err(|e| check.robot("robot", e))?
         }
     };
+    plan.robot.clone_from(&robot.description);
     check_object(&check, &plan)?;
     check_arms(&check, &plan, &robot)?;
     Ok((plan, robot))

@@ -8,7 +8,7 @@ use super::{
     InputError,
     check::Checker,
     file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
-    material, robot_figures,
+    load_robot, material, robot_figures,
 };
 use crate::{
     human::tools::default_tool,
@@ -37,7 +37,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     let check = Checker::toml(path, text);
     name(&check, &file.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let robot = Robot::load(&file.robot.description, folder).map_err(|e| check.robot("robot.description", e))?;
+    let robot = load_robot(&file.robot.description, folder).map_err(|e| check.robot("robot.description", e))?;
     let object = board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
     grip(&check, &file.grip, &robot)?;
