@@ -1,0 +1,135 @@
+//! The commands as a CI job meets them: exit codes, files, JUnit.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use serde_json::Value;
+
+fn benchdog(arguments: &[&str], out: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap()
+}
+
+/// The weak-grip scenario with another name and expectation, beside the plan that it names.
+fn slipping_scenario(folder: &Path, name: &str, expected: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let plans = folder.join("plans");
+    fs::create_dir_all(&plans).unwrap();
+    fs::copy(root.join("plans/cut-rim-weak-grip.json"), plans.join("cut-rim-weak-grip.json")).unwrap();
+    let text = fs::read_to_string(root.join("fails-weak-grip.toml")).unwrap();
+    let text = text.replace("fails-weak-grip", name).replace("\"slips\"", &format!("\"{expected}\""));
+    let path = folder.join(format!("{name}.toml"));
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn an_expectation_that_is_not_met_is_exit_code_1_and_a_junit_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let met = slipping_scenario(folder.path(), "as-expected", "slips");
+    let not_met = slipping_scenario(folder.path(), "not-as-expected", "holds");
+    let junit = folder.path().join("junit.xml");
+    let output = benchdog(
+        &["run", &met, &not_met, "--record", "never", "--junit", junit.to_str().unwrap()],
+        &folder.path().join("out"),
+    );
+    assert_eq!(output.status.code(), Some(1));
+    let junit = fs::read_to_string(junit).unwrap();
+    assert!(junit.contains("tests=\"2\"") && junit.contains("failures=\"1\"") && junit.contains("errors=\"0\""));
+    assert!(junit.contains("expected holds, found slips: slip"), "{junit}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.contains("2 scenarios: 1 ok, 1 failed"), "{table}");
+}
+
+#[test]
+fn no_plan_where_one_was_expected_is_exit_code_3_and_outweighs_1() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let text = fs::read_to_string(root.join("fails-out-of-reach.toml")).unwrap();
+    let infeasible = folder.path().join("infeasible.toml");
+    fs::write(&infeasible, text.replace("\"infeasible\"", "\"holds\"")).unwrap();
+    let not_met = slipping_scenario(folder.path(), "not-as-expected", "holds");
+    let out = folder.path().join("out");
+    let output = benchdog(&["run", infeasible.to_str().unwrap(), &not_met, "--record", "never"], &out);
+    assert_eq!(output.status.code(), Some(3));
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.contains("robot reach"), "the reason names what stood in the way: {table}");
+    assert!(!out.join("fails-out-of-reach/plan.json").exists());
+}
+
+#[test]
+fn two_scenarios_of_one_name_are_refused_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = slipping_scenario(folder.path(), "same", "slips");
+    let out = folder.path().join("out");
+    let output = benchdog(&["run", &one, &one], &out);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("found \"same\", which is the name of"));
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_one_clear_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = slipping_scenario(folder.path(), "unwritable", "slips");
+    let file = folder.path().join("a-file");
+    fs::write(&file, "").unwrap();
+    let output = benchdog(&["run", &scenario], &file);
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.starts_with("error: failed to write") && message.lines().count() == 1, "{message}");
+}
+
+#[test]
+fn a_closed_reader_is_no_error() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .args(["schema", "plan"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Closed long before the process has started up and made its schema.
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[cfg(feature = "recording")]
+#[test]
+fn a_recording_says_what_the_verdict_file_says() {
+    use benchdog::model::verdict::{CheckKind, Verdict};
+
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = slipping_scenario(folder.path(), "recorded", "slips");
+    let output = benchdog(&["run", &scenario], folder.path());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let folder = folder.path().join("recorded");
+    let written: Verdict = serde_json::from_slice(&fs::read(folder.join("verdict.json")).unwrap()).unwrap();
+    let recorded = benchdog::record::read_summary(&folder.join("recording.rrd")).unwrap();
+    assert_eq!(recorded.verdict, written);
+    let judged = |kind| written.check(kind).unwrap().value;
+    let worst = |peaks: &std::collections::BTreeMap<String, f64>| peaks.values().copied().fold(0.0, f64::max);
+    // The plots are stored as 64-bit numbers; their peaks are the values that were judged.
+    assert_eq!(worst(&recorded.peaks.slip_mm), judged(CheckKind::Slip));
+    assert_eq!(worst(&recorded.peaks.rotation_deg), judged(CheckKind::SlipRotation));
+    assert_eq!(recorded.peaks.deflection_mm, judged(CheckKind::Deflection));
+}
+
+#[test]
+fn only_failed_runs_are_recorded_on_request() {
+    let folder = tempfile::tempdir().unwrap();
+    let met = slipping_scenario(folder.path(), "as-expected", "slips");
+    let output = benchdog(&["run", &met, "--record", "failed", "--format", "json"], folder.path());
+    let verdicts: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(verdicts[0]["verdict"], "slips");
+    assert!(!folder.path().join("as-expected/recording.rrd").exists());
+}
