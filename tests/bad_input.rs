@@ -280,7 +280,71 @@ fn a_plan_for_another_operation_than_the_scenarios() {
     let output = benchdog_in(folder.path(), &["run", "bad.toml"]);
     assert_refused(
         &output,
-        "bad.toml:17: planner.plan: found a plan for Cut with [0.0, 30.0, 0.0, 0.0, 0.0, 0.0] at [0.12, 0.0, 0.015], expected \
-         Drill with [0.0, 0.0, -15.0, 0.0, 0.0, 0.0] at [0.0, 0.0, 0.015]",
+        "bad.toml:17: planner.plan: found a plan for cut with [0.0, 30.0, 0.0, 0.0, 0.0, 0.0] at [0.12, 0.0, 0.015], turned by \
+         [0.7071067811865475, 0.7071067811865476, 0.0, -0.0], expected drill with [0.0, 0.0, -15.0, 0.0, 0.0, 0.0] at [0.0, \
+         0.0, 0.015], turned by [1.0, 0.0, 0.0, 0.0]",
     );
+}
+
+#[test]
+fn a_plan_whose_name_is_a_path() {
+    assert_plan_refused(
+        "\"name\": \"cut-rim\"",
+        "\"name\": \"../cut-rim\"",
+        "bad.json:3: name: found \"../cut-rim\", expected letters, digits, `-`, `_` and `.`, since files are named after it",
+    );
+}
+
+#[test]
+fn a_plan_for_nobody() {
+    assert_plan_refused(
+        "\"height_m\": 1.75",
+        "\"height_m\": 0.2",
+        "bad.json:123: human.height_m: found 0.2, expected a number from 1.2 to 2.3 (m)",
+    );
+}
+
+#[test]
+fn a_time_step_that_the_simulation_cannot_take() {
+    assert_scenario_refused(
+        "[grip]",
+        "[simulation]\ntimestep_s = 0.0045\n\n[grip]",
+        "bad.toml:13: simulation.timestep_s: found 0.0045, expected a number from 0.00001 to 0.004 (s)",
+    );
+}
+
+#[test]
+fn a_hold_too_short_to_see_creep() {
+    assert_scenario_refused(
+        "[grip]",
+        "[simulation]\nhold_s = 0.01\n\n[grip]",
+        "bad.toml:13: simulation.hold_s: found 0.01, expected at least 10 time steps, for creep to be seen",
+    );
+}
+
+#[test]
+fn a_tool_that_is_turned_by_no_rotation() {
+    assert_scenario_refused(
+        "[grip]",
+        "[tool]\nmass_kg = 1.0\ntip_h_m = [0.0, 0.0, -0.2]\nrotation_xyzw = [1.0, 1.0, 0.0, 0.0]\n\n[grip]",
+        "bad.toml:15: tool.rotation_xyzw: found a quaternion of length 1.4142135623730951, expected unit length",
+    );
+}
+
+#[test]
+fn a_scenario_inside_a_plan_that_makes_no_sense() {
+    let out = tempfile::tempdir().unwrap();
+    let planned = benchdog_in(
+        Path::new(env!("CARGO_MANIFEST_DIR")),
+        &["plan", "scenarios/quickstart.toml", "-o", out.path().join("plan.json").to_str().unwrap()],
+    );
+    assert_eq!(planned.status.code(), Some(0));
+    let plan = fs::read_to_string(out.path().join("plan.json")).unwrap();
+    let spoilt = plan.replace("\"friction\": 0.6", "\"friction\": -0.6");
+    let (output, _) = benchdog_on("bad.json", &spoilt, &["simulate", "bad.json"]);
+    let line = 1 + spoilt.lines().position(|line| line.contains("\"friction\": -0.6")).unwrap();
+    let message = format!(
+        "bad.json:{line}: scenario.grip.friction: found -0.6, expected a positive number (a Coulomb coefficient)"
+    );
+    assert_refused(&output, &message);
 }

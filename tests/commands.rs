@@ -85,7 +85,7 @@ fn a_folder_that_cannot_be_written_is_one_clear_error() {
     let output = benchdog(&["run", &scenario], &file);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr);
-    assert!(message.starts_with("error: failed to write") && message.lines().count() == 1, "{message}");
+    assert!(message.starts_with("error: unwritable: failed to write") && message.lines().count() == 1, "{message}");
 }
 
 #[test]
@@ -101,6 +101,46 @@ fn a_closed_reader_is_no_error() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The plan that the scenarios use, changed; its verdict in a simulation of its own.
+fn verdict_on_changed_plan(change: impl FnOnce(&mut Value)) -> (Value, Option<i32>) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut plan: Value = serde_json::from_str(include_str!("../scenarios/plans/cut-rim.json")).unwrap();
+    change(&mut plan);
+    let path = folder.path().join("plan.json");
+    fs::write(&path, plan.to_string()).unwrap();
+    let output = benchdog(&["simulate", path.to_str().unwrap(), "--format", "json"], folder.path());
+    let verdicts: Vec<Value> = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&output.stderr)));
+    (verdicts[0].clone(), output.status.code())
+}
+
+#[test]
+fn a_plan_with_a_person_in_the_robot_touches() {
+    let (verdict, exit) =
+        verdict_on_changed_plan(|plan| plan["human"]["x_wb"]["translation_m"] = serde_json::json!([0.0, 0.0, -0.9242]));
+    assert_eq!((verdict["verdict"].as_str(), exit), (Some("touches"), Some(1)));
+    assert!(verdict["reason"].as_str().unwrap().contains("expected more than"), "{verdict:#}");
+}
+
+#[test]
+fn a_board_too_heavy_for_its_grip_drops_before_the_load() {
+    // Four pads of 30 N with a friction of 0.6 hold 72 N: 7.3 kg.
+    let (verdict, exit) = verdict_on_changed_plan(|plan| plan["object"]["mass_kg"] = 40.0.into());
+    assert_eq!((verdict["verdict"].as_str(), exit), (Some("drops"), Some(1)), "{verdict:#}");
+    assert_eq!(verdict["first_failure"]["load_factor"], 0.0);
+}
+
+#[test]
+fn files_of_an_earlier_run_do_not_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = slipping_scenario(folder.path(), "again", "slips");
+    let recording = folder.path().join("again/recording.rrd");
+    benchdog(&["run", &scenario], folder.path());
+    assert_eq!(recording.exists(), cfg!(feature = "recording"));
+    benchdog(&["run", &scenario, "--record", "never"], folder.path());
+    assert!(!recording.exists() && folder.path().join("again/verdict.json").exists());
 }
 
 #[cfg(feature = "recording")]

@@ -18,7 +18,7 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0   all expectations met
   1   some expectation not met, or no verdict was possible
-  2   bad input or usage
+  2   bad input or usage, or output that cannot be written
   3   no feasible plan where one was expected
   70  a bug in benchdog
 

@@ -13,7 +13,7 @@ pub enum Exit {
     NotMet,
     /// No feasible plan where one was expected.
     Infeasible,
-    /// Bad input or usage, or a file that cannot be written.
+    /// Bad input or usage, or output that cannot be written.
     Input,
     /// A bug in Benchdog.
     Bug,
@@ -55,13 +55,8 @@ pub enum CliError {
     #[error(transparent)]
     Input(#[from] InputError),
     /// A plan that the simulation cannot be built from.
-    #[error("{name}: failed to simulate the plan: {source}")]
-    Simulation {
-        /// The plan's name.
-        name: String,
-        /// The cause.
-        source: crate::sim::SimError,
-    },
+    #[error("failed to simulate the plan: {0}")]
+    Simulation(crate::sim::SimError),
     /// The person or the tool is none.
     #[error(transparent)]
     Human(#[from] crate::human::HumanError),
@@ -84,9 +79,19 @@ pub enum CliError {
 }
 
 impl CliError {
-    /// The exit code of this error.
+    /// The exit code of this error: what no input should bring about is a bug.
     pub fn exit(&self) -> Exit {
-        Exit::Input
+        match self {
+            Self::JUnit(_) => Exit::Bug,
+            #[cfg(feature = "recording")]
+            Self::Record(_) => Exit::Bug,
+            Self::Input(_)
+            | Self::Simulation(_)
+            | Self::Human(_)
+            | Self::Write(_)
+            | Self::Usage(_)
+            | Self::Stdout(_) => Exit::Input,
+        }
     }
 }
 

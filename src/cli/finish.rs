@@ -1,5 +1,7 @@
 //! What happens to a run when it is over: its files are written, and all runs together are reported.
 
+use std::path::Path;
+
 use super::{
     args::{Format, RecordChoice, ReportArgs},
     exit::{CliError, Exit},
@@ -45,16 +47,18 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
 /// When a file cannot be written.
 pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -> Result<Ended, CliError> {
     let folder = args.out.join(&run.verdict.name);
-    if let Some(plan) = &run.plan {
-        report::file::write_whole(&folder.join("plan.json"), report::json::plan(plan).as_bytes())?;
-    }
     let wanted = match args.record {
         RecordChoice::Never => false,
         RecordChoice::Failed => !run.verdict.met,
         RecordChoice::Always => true,
     };
-    let recording = if wanted { recording::write(&run, scenario, robot, &folder)? } else { None };
-    report::file::write_whole(&folder.join("verdict.json"), report::json::verdict(&run.verdict).as_bytes())?;
+    let recording = if wanted { recording::encode(&run, scenario, robot)? } else { None };
+    let plan = run.plan.as_ref().map(|plan| report::json::plan(plan).into_bytes());
+    let recorded = recording.is_some();
+    write_or_remove(&folder.join("plan.json"), plan)?;
+    write_or_remove(&folder.join("recording.rrd"), recording)?;
+    write_or_remove(&folder.join("verdict.json"), Some(report::json::verdict(&run.verdict).into_bytes()))?;
+    let recording = recorded.then(|| folder.join("recording.rrd"));
     Ok(Ended {
         exit: Exit::of(&run.verdict),
         outcome: Outcome::Judged {
@@ -63,6 +67,20 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
             recording,
         },
     })
+}
+
+/// Writes what a run brought forth; what an earlier run left in its place is removed, lest it be taken for this one's.
+fn write_or_remove(path: &Path, bytes: Option<Vec<u8>>) -> Result<(), CliError> {
+    match bytes {
+        Some(bytes) => report::file::write_whole(path, &bytes)?,
+        None => match std::fs::remove_file(path) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+                return Err(report::file::WriteError { path: path.to_owned(), source }.into());
+            }
+            _ => {}
+        },
+    }
+    Ok(())
 }
 
 /// The table; a single run is shown with its checks.
@@ -82,17 +100,30 @@ fn for_people(outcomes: &[Outcome]) -> String {
 pub fn report(ended: Vec<Ended>, args: &ReportArgs) -> Result<Exit, CliError> {
     let exit = ended.iter().map(|ended| ended.exit).max().unwrap_or(Exit::Met);
     let outcomes: Vec<_> = ended.into_iter().map(|ended| ended.outcome).collect();
-    if let Some(path) = &args.junit {
-        report::file::write_whole(path, report::junit::document(&outcomes)?.as_bytes())?;
-    }
     match args.format {
         Format::Human => output::print(&for_people(&outcomes))?,
         Format::Json => output::print(&report::json::verdicts(&outcomes))?,
     }
     for outcome in &outcomes {
-        if let Outcome::Crashed { message, .. } = outcome {
-            output::complain(&format!("error: {message}"));
+        if let Outcome::Crashed { name, message } = outcome {
+            output::complain(&format!("error: {name}: {message}"));
         }
     }
+    if let Some(path) = &args.junit {
+        report::file::write_whole(path, report::junit::document(&outcomes)?.as_bytes())?;
+    }
     Ok(exit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_in_one_run_is_a_bug_with_its_message() {
+        let ended = Ended::catch("bad-luck", || panic!("{}", "out of cheese"));
+        assert_eq!(ended.exit, Exit::Bug);
+        let Outcome::Crashed { name, message } = ended.outcome else { panic!("a panic is a crash") };
+        assert_eq!((name.as_str(), message.as_str()), ("bad-luck", "this is a bug in benchdog: out of cheese"));
+    }
 }

@@ -41,22 +41,28 @@ pub fn run_scenario(loaded: &LoadedScenario) -> Result<Run, CliError> {
         None => match timed_plan(scenario, &loaded.robot)? {
             PlanOutcome::Found(plan) => *plan,
             PlanOutcome::Infeasible(why) => {
-                return Ok(Run { verdict: infeasible(scenario, why.to_string()), plan: None, simulated: None });
+                let verdict = without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
+                return Ok(Run { verdict, plan: None, simulated: None });
             }
         },
     };
     run_plan(scenario, &loaded.robot, plan)
 }
 
-/// Simulates and judges a plan under a scenario's friction, phases, limits and expectation.
+/// Simulates and judges a plan, if nothing in it touches what it must not, under a scenario's friction, phases, limits and expectation.
 ///
 /// # Errors
 /// When the simulation cannot be built from the plan.
 pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
-    let trace = sim::simulate(robot, &plan, scenario.grip.friction, &scenario.simulation)
-        .map_err(|source| CliError::Simulation { name: plan.name.clone(), source })?;
+    if let Some(touch) = planner::first_touch(&plan, &scenario.tool, robot)? {
+        let verdict = without_simulation(scenario, VerdictKind::Touches, touch);
+        return Ok(Run { verdict, plan: Some(plan), simulated: None });
+    }
+    let trace =
+        sim::simulate(robot, &plan, scenario.grip.friction, &scenario.simulation).map_err(CliError::Simulation)?;
     let judgement = judge(&trace, &scenario.limits);
-    let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, scenario.planner.seed, versions());
+    let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
+    let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
     Ok(Run { verdict, plan: Some(plan), simulated: Some((trace, judgement)) })
 }
 
@@ -75,14 +81,14 @@ pub fn timed_plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, Cli
     Ok(outcome)
 }
 
-/// The verdict on a scenario that has no plan.
-fn infeasible(scenario: &Scenario, reason: String) -> Verdict {
+/// The verdict on a scenario that has nothing to simulate.
+fn without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
     Verdict {
         format: FORMAT,
         name: scenario.name.clone(),
-        verdict: VerdictKind::Infeasible,
+        verdict,
         expected: scenario.expect.verdict,
-        met: scenario.expect.verdict == VerdictKind::Infeasible,
+        met: verdict == scenario.expect.verdict,
         checks: Vec::new(),
         first_failure: None,
         peak_torque_ratio: BTreeMap::new(),

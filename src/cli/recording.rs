@@ -1,21 +1,18 @@
 //! The recording of a run: what the recorder needs of the person is computed here, since it knows no bodies.
 
-use std::path::{Path, PathBuf};
-
 use super::{exit::CliError, pipeline::Run};
 use crate::{
     human::{BodyPart, Human},
     model::scenario::Scenario,
     record::{self, Capsule, PersonShape, RecordingInput},
-    report::file::write_whole,
     robot::Robot,
 };
 
-/// Writes the recording of a run into its folder; nothing when nothing was simulated.
+/// The bytes of a run's recording; none when nothing was simulated.
 ///
 /// # Errors
-/// When the recording cannot be made or written.
-pub fn write(run: &Run, scenario: &Scenario, robot: &Robot, folder: &Path) -> Result<Option<PathBuf>, CliError> {
+/// When the recording cannot be made.
+pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, CliError> {
     let (Some(plan), Some((trace, judgement))) = (&run.plan, &run.simulated) else { return Ok(None) };
     let person = match &plan.human {
         Some(posture) => {
@@ -33,9 +30,7 @@ pub fn write(run: &Run, scenario: &Scenario, robot: &Robot, folder: &Path) -> Re
         verdict: &run.verdict,
         person: person.as_ref(),
     };
-    let path = folder.join("recording.rrd");
-    write_whole(&path, &record::encode(&input)?)?;
-    Ok(Some(path))
+    Ok(Some(record::encode(&input)?))
 }
 
 /// The person without the tool, which the recorder draws from the palm to the board.

@@ -12,7 +12,7 @@ use crate::scenario;
 pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
     let (plan, robot) = scenario::read_plan(&args.plan, None)?;
     let mut scenario = match (&args.scenario, &plan.scenario) {
-        (Some(path), _) => scenario::load(path)?.scenario,
+        (Some(path), _) => scenario::load_for(path, &plan)?,
         (None, Some(scenario)) => scenario.clone(),
         (None, None) => scenario::for_plan(&plan, &robot),
     };

@@ -107,9 +107,12 @@ fn reference(trace: &Trace) -> usize {
     trace.samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0)
 }
 
-/// The samples from the reference to the end of the load.
+/// The samples from the reference to the end of the load. A board that is lost while settling never meets the load: then
+/// it is the reference alone, in which no pad touches.
 fn judged(trace: &Trace, reference: usize) -> &[Sample] {
-    let end = trace.samples.iter().rposition(|sample| sample.phase.is_loaded()).map_or(reference, |last| last + 1);
+    let end = trace.samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
+    let lost = trace.samples[reference].arms.iter().flat_map(|arm| &arm.pads).all(|pad| pad.normal_force_n == 0.0);
+    let end = end.unwrap_or(if lost { reference + 1 } else { reference });
     &trace.samples[reference..end.max(reference)]
 }
 

@@ -28,6 +28,16 @@ impl OperationKind {
     }
 }
 
+impl std::fmt::Display for OperationKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Drill => "drill",
+            Self::Cut => "cut",
+            Self::Wrench => "wrench",
+        })
+    }
+}
+
 /// A forceful operation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

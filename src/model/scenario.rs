@@ -112,7 +112,7 @@ pub struct Person {
     pub sex: Sex,
     /// The hand that holds the tool.
     pub hand: Hand,
-    /// Strength percentile, 0 to 100 exclusive.
+    /// Strength percentile, 0.1 to 99.9.
     pub percentile: f64,
 }
 
@@ -286,6 +286,15 @@ pub struct SimulationSettings {
     pub release_s: f64,
     /// Time step, s.
     pub timestep_s: f64,
+}
+
+impl SimulationSettings {
+    /// The longest time step, s: beyond it contacts sink in so far that a light board's hold loses its meaning.
+    pub const MAX_TIMESTEP_S: f64 = 0.004;
+    /// The largest number of steps: 200 s at 2 ms, a trace of about 100 MB.
+    pub const MAX_STEPS: usize = 100_000;
+    /// The fewest steps of a hold: creep is a slope over its second half.
+    pub const MIN_HOLD_STEPS: usize = 10;
 }
 
 impl Default for SimulationSettings {

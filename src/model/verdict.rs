@@ -25,6 +25,8 @@ pub enum VerdictKind {
     Deflects,
     /// A hand kept sliding under the steady load.
     Creeps,
+    /// Bodies of the plan touch, or come closer to the person than they may, before anything moves.
+    Touches,
     /// There is no plan.
     Infeasible,
     /// The simulation broke down, so nothing can be said.
@@ -43,6 +45,7 @@ impl VerdictKind {
             Self::Saturates => "saturates",
             Self::Deflects => "deflects",
             Self::Creeps => "creeps",
+            Self::Touches => "touches",
             Self::Infeasible => "infeasible",
             Self::NoVerdict => "no_verdict",
         }

@@ -32,7 +32,7 @@ use crate::{
 use assess::{Rejection, Tally};
 use candidate::Candidate;
 use draw::Feasible;
-pub use verify::{Flaw, verify};
+pub use verify::{Flaw, first_touch, verify};
 
 /// What the search came to.
 #[derive(Clone, Debug)]
@@ -133,7 +133,7 @@ pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanErro
             tally.remove(Rejection::Stability);
             continue;
         };
-        // The search and the check share no code above the metrics, so what both accept can be trusted.
+        // The check takes nothing from the search but the plan, so what both accept can be trusted.
         if verify(&plan, scenario, robot)?.is_empty() {
             return Ok(PlanOutcome::Found(Box::new(plan)));
         }

@@ -23,21 +23,29 @@ pub struct Checker<'a> {
     path: &'a Path,
     text: &'a str,
     line_of: fn(&str, &str) -> Option<usize>,
+    /// What stands before every key.
+    prefix: &'static str,
 }
 
 impl<'a> Checker<'a> {
     /// Checks of a TOML file.
     pub fn toml(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text, line_of: locate::toml_line }
+        Self { path, text, line_of: locate::toml_line, prefix: "" }
     }
 
     /// Checks of a JSON file.
     pub fn json(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text, line_of: locate::json_line }
+        Self { path, text, line_of: locate::json_line, prefix: "" }
+    }
+
+    /// The same checks on what stands under a key of the file, `prefix` ending in a dot.
+    pub fn under(&self, prefix: &'static str) -> Self {
+        Self { prefix, ..*self }
     }
 
     fn error(&self, key: &str, kind: InputErrorKind) -> InputError {
-        InputError { file: self.path.to_owned(), line: (self.line_of)(self.text, key), key: Some(key.to_owned()), kind }
+        let key = format!("{}{key}", self.prefix);
+        InputError { file: self.path.to_owned(), line: (self.line_of)(self.text, &key), key: Some(key), kind }
     }
 
     /// An error that says what was found and what was expected.
@@ -58,6 +66,15 @@ impl<'a> Checker<'a> {
     /// `ok`, or an error about this key.
     pub fn that(&self, ok: bool, key: &str, found: impl Into<String>, expected: &str) -> Result<(), InputError> {
         if ok { Ok(()) } else { Err(self.value(key, found, expected)) }
+    }
+
+    /// A name that files and folders can have.
+    pub fn name(&self, name: &str) -> Result<(), InputError> {
+        let fits = !name.is_empty()
+            && !name.starts_with('.')
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
+        let expected = "letters, digits, `-`, `_` and `.`, since files are named after it";
+        self.that(fits, "name", format!("\"{name}\""), expected)
     }
 
     /// The format number that this build reads.

@@ -82,7 +82,7 @@ pub struct HumanSection {
     pub sex: Sex,
     /// The hand that works.
     pub hand: Hand,
-    /// Strength percentile, 0 to 100 exclusive.
+    /// Strength percentile, 0.1 to 99.9.
     pub percentile: f64,
 }
 

@@ -101,6 +101,16 @@ pub fn robot_figures(robot: &Robot) -> RobotFigures {
     RobotFigures { description: robot.description.clone(), arms }
 }
 
+/// The scenario of a file for a plan that is given, which must be one for its robot, board and operation.
+///
+/// # Errors
+/// As [`load`], and when the plan answers another scenario.
+pub fn load_for(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
+    let scenario = load(path)?.scenario;
+    resolve::plan_answers(path, &error::read_text(path)?, &scenario, plan)?;
+    Ok(scenario)
+}
+
 /// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
 pub fn for_plan(plan: &Plan, robot: &Robot) -> Scenario {
     resolve::defaults_for_plan(plan, robot)

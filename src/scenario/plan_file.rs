@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use nalgebra::Vector3;
+
 use super::{
     InputError, InputErrorKind,
     check::{Checker, FormatProbe},
     error::read_text,
-    load_robot,
+    load_robot, resolve,
 };
 use crate::{
+    human::{Human, default_tool},
     model::plan::{ArmHold, Plan},
     robot::{Arm, Chain, Robot},
 };
@@ -38,8 +41,15 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
         }
     };
     plan.robot.clone_from(&robot.description);
+    check.name(&plan.name)?;
     check_object(&check, &plan)?;
     check_arms(&check, &plan, &robot)?;
+    check_human(&check, &plan)?;
+    if let Some(scenario) = &plan.scenario {
+        let check = check.under("scenario.");
+        check.format(scenario.format)?;
+        resolve::check_figures(&check, scenario, &robot)?;
+    }
     Ok((plan, robot))
 }
 
@@ -68,6 +78,21 @@ fn check_object(check: &Checker<'_>, plan: &Plan) -> Result<(), InputError> {
     check.on_board("operation.x_ot", &plan.operation.x_ot, plan.object.size_m)
 }
 
+/// The person must be one, in a posture that they can take.
+fn check_human(check: &Checker<'_>, plan: &Plan) -> Result<(), InputError> {
+    let Some(posture) = &plan.human else { return Ok(()) };
+    let person = posture.person();
+    resolve::check_person(check, &person)?;
+    let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.operation.kind), |scenario| scenario.tool);
+    let human = Human::new(&person, &tool).map_err(|error| check.syntax("human", error.to_string()))?;
+    for (i, (&q, [lower, upper])) in posture.q_rad.iter().zip(human.arm().limits_rad).enumerate() {
+        let inside = q >= lower - LIMIT_TOLERANCE_RAD && q <= upper + LIMIT_TOLERANCE_RAD;
+        let expected = format!("{lower} to {upper} rad, the limits of the person's joint q{}", i + 1);
+        check.that(inside, &format!("human.q_rad[{i}]"), q.to_string(), &expected)?;
+    }
+    Ok(())
+}
+
 fn check_arms(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), InputError> {
     check.that(!plan.arms.is_empty(), "arms", "no arm", "at least one")?;
     for (index, hold) in plan.arms.iter().enumerate() {
@@ -86,6 +111,7 @@ fn check_arms(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), Inp
         check_joints(check, index, hold, arm, robot)?;
         check.grip_force(&key("grip_force_n"), hold.grip_force_n, std::iter::once(arm))?;
         check.board_size("object.size_m", plan.object.size_m, std::iter::once(arm))?;
+        check_straddle(check, &key("x_og"), hold)?;
         check_hand(check, &key("x_og"), hold, plan, &Chain::new(robot, arm_index, 0.0))?;
     }
     Ok(())
@@ -106,6 +132,16 @@ fn check_joints(check: &Checker<'_>, index: usize, hold: &ArmHold, arm: &Arm, ro
         check.that(inside, &format!("arms[{index}].q_rad[{i}]"), q.to_string(), &expected)?;
     }
     Ok(())
+}
+
+/// The fingers must close on the two faces of the board, which must lie between them.
+fn check_straddle(check: &Checker<'_>, key: &str, hold: &ArmHold) -> Result<(), InputError> {
+    let off_m = hold.x_og.translation.vector.z.abs();
+    let off_rad = (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos();
+    let found =
+        format!("fingers {:.2} mm off the board's middle and {:.2} degrees askew", off_m * 1e3, off_rad.to_degrees());
+    let astride = off_m <= HAND_TOLERANCE.0 && off_rad <= HAND_TOLERANCE.1;
+    check.that(astride, key, found, "fingers that close across the thickness, within 1 mm and 0.1 degrees")
 }
 
 /// The joint angles must put the hand where `x_og` says that it holds the board.

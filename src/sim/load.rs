@@ -3,12 +3,6 @@
 use super::SimError;
 use crate::model::{scenario::SimulationSettings, trace::Phase};
 
-/// The longest time step, s: beyond it contacts sink in so far that a light board's hold loses its meaning.
-const MAX_TIMESTEP_S: f64 = 0.004;
-
-/// The largest number of steps: 200 s at 2 ms, a trace of about 100 MB.
-const MAX_STEPS: usize = 100_000;
-
 /// The load over the steps of a simulation: none while settling, growing evenly in the ramp, whole in the hold, none
 /// after the release.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +21,7 @@ impl LoadProfile {
     /// or the whole longer than 100 000 steps.
     pub fn new(settings: &SimulationSettings) -> Result<Self, SimError> {
         let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
-        if !(timestep_s > 0.0 && timestep_s <= MAX_TIMESTEP_S) {
+        if !(timestep_s > 0.0 && timestep_s <= SimulationSettings::MAX_TIMESTEP_S) {
             let expected = "a positive time of at most 0.004 s";
             return Err(SimError::Settings { key: "timestep_s", found: timestep_s, expected });
         }
@@ -45,7 +39,7 @@ impl LoadProfile {
             hold: steps("hold_s", hold_s)?,
             release: steps("release_s", release_s)?,
         };
-        if profile.steps() > MAX_STEPS {
+        if profile.steps() > SimulationSettings::MAX_STEPS {
             let found = settle_s + ramp_s + hold_s + release_s;
             return Err(SimError::Settings { key: "duration in s", found, expected: "at most 100000 time steps" });
         }

@@ -286,15 +286,20 @@ fn a_board_that_is_torn_out_is_gone_and_the_arms_stay() {
     let trace = simulate(&robot, &baxter::plan(&robot, operation, BOARD_KG, 30.0), 0.6, &QUICK).unwrap();
     // A lost board is an outcome, not a breakdown.
     assert_eq!(trace.broke_down, None);
-    let (before, after) = (last(&trace, Phase::Settle), last(&trace, Phase::Release));
+    let (before, after) = (last(&trace, Phase::Settle), trace.samples.last().unwrap());
     assert!((after.x_wo.translation.vector - before.x_wo.translation.vector).norm() > 1.0);
+    // The trace ends a tenth of a second after the last touch, long before the load would.
+    let touched = |sample: &&Sample| sample.arms.iter().flat_map(|arm| &arm.pads).any(|pad| pad.normal_force_n > 0.0);
+    let last_touch_s = trace.samples.iter().rev().find(touched).unwrap().time_s;
+    // One step on either side: the count of untouched steps is rounded.
+    assert!((after.time_s - last_touch_s - 0.1).abs() < 2.1 * QUICK.timestep_s, "{} {last_touch_s}", after.time_s);
+    assert!(after.phase.is_loaded());
     for (arm, settled) in after.arms.iter().zip(&before.arms) {
-        assert!(arm.pads.iter().all(|pad| pad.normal_force_n == 0.0));
         // Without a board the fingers close until they stop; their limits are solved to micrometres.
         assert!(arm.finger_m.iter().all(|travel_m| travel_m.abs() < 1e-4), "{:?}", arm.finger_m);
-        // The arms swing back to the plan; they no longer carry the board.
+        // The arms are on their way back to the plan; they no longer carry the board.
         let off_rad = arm.q_rad.iter().zip(&settled.q_rad).map(|(q, q_settled)| (q - q_settled).abs());
-        assert!(off_rad.fold(0.0, f64::max) < 0.02, "{:?}", arm.q_rad);
+        assert!(off_rad.fold(0.0, f64::max) < 0.1, "{:?}", arm.q_rad);
     }
 }
 
