@@ -123,7 +123,7 @@ impl General {
     /// The posture of this number in a sequence that fills the joint ranges evenly, the middle first: the additive
     /// recurrence on powers of `1 / phi`, `phi^(n + 1) = phi + 1` (M. Roberts, "The unreasonable effectiveness of
     /// quasirandom sequences", 2018).
-    fn start(&self, number: usize) -> Vec<f64> {
+    pub(super) fn start(&self, number: usize) -> Vec<f64> {
         let dof = self.chain.dof();
         let mut phi = 2.0_f64;
         for _ in 0..64 {

@@ -32,7 +32,8 @@ pub(super) struct Slice<'a> {
     /// The wrist frame's axes.
     pub x: Vector3<f64>,
     pub y: Vector3<f64>,
-    z: Vector3<f64>,
+    pub z: Vector3<f64>,
+    wrist: Vector3<f64>,
     c0: Vector3<f64>,
     k: f64,
     /// `L1^2 + B^2`, m^2.
@@ -50,7 +51,6 @@ pub(super) struct Zero {
 
 /// What is known of the elbow when S0 and W2 are.
 pub(super) struct Elbow {
-    pub u: Vector3<f64>,
     pub a1: Vector3<f64>,
     pub w2: f64,
     /// From where S1 meets E0 to where E1 meets W0, m.
@@ -119,10 +119,16 @@ impl<'a> Slice<'a> {
             x: column(0),
             y: column(1),
             z: column(2),
+            wrist: x_fm.translation.vector,
             c0: x_fm.translation.vector - column(2) * (c * sin + l2 * cos),
             k: c * cos - l2 * sin,
             length_squared: l1 * l1 + b * b,
         }
+    }
+
+    /// r_M, m.
+    pub fn wrist(&self) -> Vector3<f64> {
+        self.wrist
     }
 
     /// `2 k b . q = |q|^2 + k^2 - L1^2 - B^2` in the terms of W2.
@@ -144,7 +150,7 @@ impl<'a> Slice<'a> {
         let b = self.x * cos2 - self.y * sin2;
         let (sin1, cos1) = self.w1.sin_cos();
         let q = self.c0 - u * self.arm.shoulder_m;
-        Elbow { u, a1, w2: sin2.atan2(cos2), r: q - b * self.k, d: self.z * cos1 - b * sin1 }
+        Elbow { a1, w2: sin2.atan2(cos2), r: q - b * self.k, d: self.z * cos1 - b * sin1 }
     }
 
     /// The part of the forearm's direction that is normal to r, times |r|: what the elbow's axis is normal to, m.
@@ -165,9 +171,8 @@ impl<'a> Slice<'a> {
         l1 * along_r * m - elbow_sign * b * (self.length_squared * along_d - r_d * along_r)
     }
 
-    /// The zeros of the residual within the limits of S0; some of them twice.
-    pub fn zeros(&self) -> Vec<Zero> {
-        let range = self.arm.s0_range();
+    /// The zeros of the residual in a range of S0, rad; some of them twice.
+    pub fn zeros(&self, range: [f64; 2]) -> Vec<Zero> {
         let mut zeros = Vec::new();
         for window in self.windows(range) {
             let share = (window.to - window.from) / (range[1] - range[0]);
