@@ -100,11 +100,6 @@ struct LinkShapes {
 }
 
 impl LinkShapes {
-    /// True when a primitive of this link overlaps one of another.
-    fn hits(&self, x_wl: &Pose, other: &Self, x_wm: &Pose) -> bool {
-        place_all(&self.pieces, x_wl).any(|a| place_all(&other.pieces, x_wm).any(|b| a.closer_than(&b, 0.0)))
-    }
-
     /// The lesser of `bound_m` and what is measured to another link, m.
     fn distance_within(&self, x_wl: &Pose, other: &Self, x_wm: &Pose, bound_m: f64, measure: Measure) -> f64 {
         let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
@@ -119,13 +114,33 @@ impl LinkShapes {
     fn distance_to_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64, measure: Measure) -> f64 {
         place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.distance_within(other, bound_m, measure))
     }
+}
 
-    /// Distance to a foreign body when it is closer than `required_m`; the link is within a sphere about `centre_w`.
-    fn too_close(&self, x_wl: &Pose, centre_w: DVec3, other: &Placed<'_>, required_m: f64) -> Option<f64> {
-        if self.pieces.is_empty() || !other.meets_sphere(centre_w, self.radius_m + required_m) {
+/// A link where it is.
+struct PlacedLink<'a> {
+    pieces: &'a [Placed<'a>],
+    /// A sphere about all pieces.
+    centre_w: DVec3,
+    radius_m: f64,
+}
+
+impl PlacedLink<'_> {
+    /// True when a primitive of this link overlaps one of another.
+    fn hits(&self, other: &Self) -> bool {
+        let reach_m = self.radius_m + other.radius_m;
+        if (self.centre_w - other.centre_w).length_squared() > reach_m * reach_m {
+            return false;
+        }
+        let mut near = self.pieces.iter().filter(|piece| piece.meets_sphere(other.centre_w, other.radius_m));
+        near.any(|piece| other.pieces.iter().any(|other| piece.closer_than(other, 0.0)))
+    }
+
+    /// Distance to a foreign body when it is closer than `required_m`.
+    fn too_close(&self, other: &Placed<'_>, required_m: f64) -> Option<f64> {
+        if self.pieces.is_empty() || !other.meets_sphere(self.centre_w, self.radius_m + required_m) {
             return None;
         }
-        let close = place_all(&self.pieces, x_wl).filter(|piece| piece.closer_than(other, required_m));
+        let close = self.pieces.iter().filter(|piece| piece.closer_than(other, required_m));
         close.map(|piece| piece.distance_m(other)).min_by(f64::total_cmp)
     }
 }
@@ -158,13 +173,15 @@ impl CollisionModel {
         if let Some(body) = self.undefined_body(scene) {
             return Some(Violation { bodies: [body; 2], required_m: 0.0, distance_m: f64::NAN });
         }
-        let links = self.links.iter().zip(scene.link_poses);
-        let centres_w: Vec<DVec3> = links.map(|(link, x_wl)| point_w(x_wl, &link.centre_l)).collect();
+        // Every primitive is placed once: a link is near to several others.
+        let placed = self.links.iter().zip(scene.link_poses).flat_map(|(link, x_wl)| place_all(&link.pieces, x_wl));
+        let placed: Vec<Placed<'_>> = placed.collect();
+        let links = self.placed_links(scene.link_poses, &placed);
         let board = Piece::cuboid(scene.board_size_m);
         let board = board.placed(&scene.x_wo);
-        self.robot_self(scene.link_poses, &centres_w)
-            .or_else(|| self.robot_board(scene, &centres_w, &board))
-            .or_else(|| scene.person.iter().find_map(|part| self.person(scene, &centres_w, &board, part)))
+        self.robot_self(&links)
+            .or_else(|| self.robot_board(scene, &links, &board))
+            .or_else(|| scene.person.iter().find_map(|part| person(&links, &board, part)))
     }
 
     /// The least that any two bodies are farther apart than they must be, m: at most 0 when a rule is broken, infinite
@@ -233,51 +250,45 @@ impl CollisionModel {
         scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link))
     }
 
-    fn robot_self(&self, poses: &[Pose], centres_w: &[DVec3]) -> Option<Violation> {
-        let hit = |&&[a, b]: &&[usize; 2]| {
-            let reach_m = self.links[a].radius_m + self.links[b].radius_m;
-            (centres_w[a] - centres_w[b]).length_squared() <= reach_m * reach_m
-                && self.links[a].hits(&poses[a], &self.links[b], &poses[b])
+    /// All links, with their primitives out of the list of all.
+    fn placed_links<'a>(&self, poses: &[Pose], mut placed: &'a [Placed<'a>]) -> Vec<PlacedLink<'a>> {
+        let place = |(link, x_wl): (&LinkShapes, &Pose)| {
+            let (pieces, rest) = placed.split_at(link.pieces.len());
+            placed = rest;
+            PlacedLink { pieces, centre_w: point_w(x_wl, &link.centre_l), radius_m: link.radius_m }
         };
-        let [a, b] = *self.self_pairs.iter().find(hit)?;
+        self.links.iter().zip(poses).map(place).collect()
+    }
+
+    fn robot_self(&self, links: &[PlacedLink<'_>]) -> Option<Violation> {
+        let [a, b] = *self.self_pairs.iter().find(|&&[a, b]| links[a].hits(&links[b]))?;
         Some(Violation { bodies: [Body::Link(a), Body::Link(b)], required_m: 0.0, distance_m: 0.0 })
     }
 
-    fn robot_board(&self, scene: &Scene<'_>, centres_w: &[DVec3], board: &Placed<'_>) -> Option<Violation> {
-        (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
-            let distance_m = self.links[link].too_close(&scene.link_poses[link], centres_w[link], board, 0.0)?;
+    fn robot_board(&self, scene: &Scene<'_>, links: &[PlacedLink<'_>], board: &Placed<'_>) -> Option<Violation> {
+        (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
+            let distance_m = links[link].too_close(board, 0.0)?;
             Some(Violation { bodies: [Body::Link(link), Body::Board], required_m: 0.0, distance_m })
         })
     }
+}
 
-    /// What one part of the person comes too close to.
-    fn person(
-        &self,
-        scene: &Scene<'_>,
-        centres_w: &[DVec3],
-        board: &Placed<'_>,
-        part: &PersonPart,
-    ) -> Option<Violation> {
-        let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
-        let capsule = capsule.placed(&Pose::identity());
-        let violation = |other, required_m, distance_m| Violation {
-            bodies: [Body::Person(part.name), other],
-            required_m,
-            distance_m,
-        };
-        if let Some(required_m) = part.board_clearance_m
-            && capsule.closer_than(board, required_m)
-        {
-            return Some(violation(Body::Board, required_m, capsule.distance_m(board)));
-        }
-        let required_m = part.robot_clearance_m;
-        let links = self.links.iter().zip(scene.link_poses).zip(centres_w).enumerate();
-        let mut close = links.filter_map(|(index, ((link, x_wl), &centre_w))| {
-            let distance_m = link.too_close(x_wl, centre_w, &capsule, required_m)?;
-            Some(violation(Body::Link(index), required_m, distance_m))
-        });
-        close.next()
+/// What one part of the person comes too close to.
+fn person(links: &[PlacedLink<'_>], board: &Placed<'_>, part: &PersonPart) -> Option<Violation> {
+    let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
+    let capsule = capsule.placed(&Pose::identity());
+    let violation =
+        |other, required_m, distance_m| Violation { bodies: [Body::Person(part.name), other], required_m, distance_m };
+    if let Some(required_m) = part.board_clearance_m
+        && capsule.closer_than(board, required_m)
+    {
+        return Some(violation(Body::Board, required_m, capsule.distance_m(board)));
     }
+    let required_m = part.robot_clearance_m;
+    links.iter().enumerate().find_map(|(index, link)| {
+        let distance_m = link.too_close(&capsule, required_m)?;
+        Some(violation(Body::Link(index), required_m, distance_m))
+    })
 }
 
 /// For every link, the first link of the rigid group that it belongs to: links joined by fixed joints never move against

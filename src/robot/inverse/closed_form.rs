@@ -186,7 +186,7 @@ impl ClosedForm {
         let m = at.r.cross(&at.d).norm();
         // At m = 0 the arm is stretched and the elbow's axis undefined: the neighbouring slices stand for this one.
         let y = at.r.cross(&at.d) * (zero.elbow_sign / (m > 0.0).then_some(m)?);
-        Some(self.angles_at(slice, zero.s0, [slice.w1, at.w2], [&at.r, &at.d, &y]))
+        Some(self.angles_at(slice, zero.s0, [slice.w1, at.w2()], [&at.r, &at.d, &y]))
     }
 
     /// The joint angles when S0, the wrist (W1 and W2), r, d and the elbow's axis y are known.
