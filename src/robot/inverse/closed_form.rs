@@ -150,7 +150,8 @@ impl ClosedForm {
         (0..slices).flat_map(|number| self.slice(target, angle(number))).collect()
     }
 
-    /// All solutions within limits that have the joint W1 at `w1_rad`, but for pairs that nearly coincide. Empty when
+    /// All solutions within limits that have the joint W1 at `w1_rad`, but for pairs that nearly coincide, which
+    /// [`ClosedForm::branches`] finds. Empty when
     /// there are none, when the target is not finite, and at the one angle (k = 0) at which W2 does not move the elbow.
     pub fn slice(&self, target: &Pose, w1_rad: f64) -> Vec<Vec<f64>> {
         if !is_finite(target) || !w1_rad.is_finite() {

@@ -16,8 +16,8 @@ use crate::model::frames::Pose;
 const SEED_SLICES: usize = 20;
 
 /// Stretched postures for each way of shoulder and wrist, and postures from all over the joint ranges, from which curves
-/// are looked for that lie between two slices. With these three numbers none of 8,000 random postures was missed; with
-/// half as many stretched ones 6 were, without the search from afar 112.
+/// are looked for that lie between two slices. With these numbers 1 of 20,000 random postures was on no branch; with
+/// slices alone 28 of 1,000 were.
 const STRETCHED_TURNS: usize = 4;
 const SEED_STARTS: usize = 32;
 

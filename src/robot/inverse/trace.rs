@@ -45,7 +45,7 @@ const HOPELESS: f64 = 1e-2;
 /// The residual at which a projection is good enough to be settled (m, rad).
 const PROJECTED: f64 = 1e-6;
 
-/// Points on one curve; those of the file of reference poses have a few hundred.
+/// Points on one curve; of a thousand random poses none had more than 500.
 const MAX_POINTS: usize = 5000;
 
 /// A place on a curve.
