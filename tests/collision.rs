@@ -218,6 +218,49 @@ fn point() -> impl Strategy<Value = [f64; 3]> {
     [0.2..1.6, -0.8..0.8, -0.6..0.8]
 }
 
+#[test]
+fn the_depth_of_an_overlap_is_a_negative_distance() {
+    let robot = baxter();
+    let model = CollisionModel::new(robot);
+    let spread = [0.7, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let poses = link_poses(robot, &spread, &spread.map(|q| -q));
+    for depth_m in [0.002, 0.01] {
+        // Into the front bulge of the torso, which ends at x = 0.1995; the distance to keep counts on top.
+        let x_m = 0.1995 + 0.1 - depth_m;
+        let person = [part([x_m, 0.0, 0.0], [x_m, 0.0, 0.15], 0.1)];
+        let scene = scene(&poses, &[], far_away(), &person);
+        // A plane's depth: parry's iteration ends well below a micrometre.
+        let margin_m = model.min_signed_margin_m(&scene);
+        assert!((margin_m + depth_m + 0.05).abs() < 1e-6, "{margin_m}");
+        assert!((model.min_margin_m(&scene) + 0.05).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_scene_that_is_not_finite_is_not_free() {
+    let robot = baxter();
+    let model = CollisionModel::new(robot);
+    let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
+    let nowhere = Isometry3::translation(f64::NAN, 0.0, 0.0);
+    let mut broken = poses.clone();
+    broken[7] = nowhere;
+    let person = [part([f64::INFINITY, 0.0, 0.0], [2.0, 0.0, 0.0], 0.1)];
+    let endless = Scene { board_size_m: [f64::NAN, 0.4, 0.03], ..scene(&poses, &[], far_away(), &[]) };
+    let cases = [
+        (scene(&broken, &[], far_away(), &[]), Body::Link(7)),
+        (scene(&poses[..5], &[], far_away(), &[]), Body::Link(5)),
+        (scene(&poses, &[], nowhere, &[]), Body::Board),
+        (endless, Body::Board),
+        (scene(&poses, &[], far_away(), &person), Body::Person(BodyPart::Trunk(Side::Working))),
+    ];
+    for (scene, body) in cases {
+        let violation = model.first_violation(&scene).unwrap();
+        assert_eq!(violation.bodies, [body; 2]);
+        assert!(violation.distance_m.is_nan() && violation.describe(robot).contains("not finite"));
+        assert!(model.min_margin_m(&scene).is_nan() && model.min_signed_margin_m(&scene).is_nan());
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -241,6 +284,12 @@ proptest! {
         // Poses are put together in another order, and parry's iteration on round shapes ends up to some 10 um early.
         let found_m = model.min_margin_m(&scene);
         prop_assert!((found_m - expected_m).abs() < 1e-4, "{found_m} {expected_m}");
+        let signed_m = model.min_signed_margin_m(&scene);
+        prop_assert!(signed_m <= found_m + 1e-9, "{signed_m} {found_m}");
+        if found_m > 0.0 {
+            // Clearances aside, what does not overlap has the same distance either way.
+            prop_assert!(signed_m <= 0.0 || (signed_m - found_m).abs() < 1e-9, "{signed_m} {found_m}");
+        }
         if expected_m.abs() > 1e-4 || expected_m == 0.0 {
             prop_assert_eq!(model.first_violation(&scene).is_some(), expected_m <= 0.0);
         }

@@ -146,6 +146,7 @@ fn the_general_search_solves_every_target_too() {
             let solutions = general.solutions(target, 60);
             assert!(!solutions.is_empty(), "target {number}");
             solutions.iter().for_each(|q_rad| assert_solves(chain, target, q_rad));
+            assert_eq!(general.solve(target, 60).found().as_ref(), solutions.first(), "target {number}");
         }
     }
 }
@@ -183,6 +184,7 @@ fn targets_without_solutions_are_outcomes() {
     let far = Isometry3::translation(5.0, 0.0, 0.0);
     assert!(matches!(inverse.nearest(&far, &seed), Solution::OutOfReach { .. }));
     assert!(inverse.samples(&far, 8).is_empty());
+    assert!(matches!(General::new(chain).solve(&far, 60), Solution::OutOfReach { .. }));
     let inside_the_torso = Isometry3::translation(chain.shoulder_w().x, chain.shoulder_w().y, chain.shoulder_w().z);
     assert!(matches!(inverse.nearest(&inside_the_torso, &seed), Solution::NotFound { .. }));
     let mut broken = far;

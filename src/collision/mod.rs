@@ -8,9 +8,10 @@ mod person;
 mod shapes;
 
 use nalgebra::Point3;
+use parry3d_f64::glamx::DVec3;
 
 use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
-use shapes::{Piece, Placed, place_all, sphere_about};
+use shapes::{Measure, Piece, Placed, place_all, point_w, sphere_about};
 
 /// A scene to be checked, in W.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +63,7 @@ pub struct Violation {
     pub bodies: [Body; 2],
     /// The distance that they must keep, m; zero when they must only not touch.
     pub required_m: f64,
-    /// Their distance, m; zero when they overlap.
+    /// Their distance, m; zero when they overlap, not a number when the body (then given twice) is nowhere.
     pub distance_m: f64,
 }
 
@@ -74,6 +75,9 @@ impl Violation {
             Body::Board => "the board".to_owned(),
             Body::Person(part) => format!("the person's {part:?}"),
         });
+        if self.distance_m.is_nan() {
+            return format!("{one} has a pose or a size that is not finite, expected finite numbers");
+        }
         let [distance_mm, required_mm] = [self.distance_m, self.required_m].map(|m| m * 1e3);
         format!("{one} is {distance_mm:.0} mm from {other}, expected more than {required_mm:.0} mm")
     }
@@ -96,34 +100,47 @@ struct LinkShapes {
 }
 
 impl LinkShapes {
-    /// The pair of primitives, one of each link, that is closer than allowed.
-    fn hits(&self, x_wl: &Pose, other: &Self, x_wm: &Pose) -> bool {
-        let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
-        centres_m <= self.radius_m + other.radius_m
-            && place_all(&self.pieces, x_wl).any(|a| place_all(&other.pieces, x_wm).any(|b| a.closer_than(&b, 0.0)))
-    }
-
-    /// The lesser of `bound_m` and the distance to another link, m.
-    fn distance_within(&self, x_wl: &Pose, other: &Self, x_wm: &Pose, bound_m: f64) -> f64 {
+    /// The lesser of `bound_m` and what is measured to another link, m.
+    fn distance_within(&self, x_wl: &Pose, other: &Self, x_wm: &Pose, bound_m: f64, measure: Measure) -> f64 {
         let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
         if centres_m >= self.radius_m + other.radius_m + bound_m {
             return bound_m;
         }
-        let others: Vec<Placed<'_>> = place_all(&other.pieces, x_wm).collect();
-        others.iter().fold(bound_m, |bound_m, other| self.distance_to_within(x_wl, other, bound_m))
+        let others = place_all(&other.pieces, x_wm);
+        others.fold(bound_m, |bound_m, other| self.distance_to_within(x_wl, &other, bound_m, measure))
     }
 
-    /// The lesser of `bound_m` and the distance to a foreign body, m.
-    fn distance_to_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64) -> f64 {
-        place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.distance_within(other, bound_m))
+    /// The lesser of `bound_m` and what is measured to a foreign body, m.
+    fn distance_to_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64, measure: Measure) -> f64 {
+        place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.distance_within(other, bound_m, measure))
+    }
+}
+
+/// A link where it is.
+struct PlacedLink<'a> {
+    pieces: &'a [Placed<'a>],
+    /// A sphere about all pieces.
+    centre_w: DVec3,
+    radius_m: f64,
+}
+
+impl PlacedLink<'_> {
+    /// True when a primitive of this link overlaps one of another.
+    fn hits(&self, other: &Self) -> bool {
+        let reach_m = self.radius_m + other.radius_m;
+        if (self.centre_w - other.centre_w).length_squared() > reach_m * reach_m {
+            return false;
+        }
+        let mut near = self.pieces.iter().filter(|piece| piece.meets_sphere(other.centre_w, other.radius_m));
+        near.any(|piece| other.pieces.iter().any(|other| piece.closer_than(other, 0.0)))
     }
 
     /// Distance to a foreign body when it is closer than `required_m`.
-    fn too_close(&self, x_wl: &Pose, other: &Placed<'_>, required_m: f64) -> Option<f64> {
-        if self.pieces.is_empty() || !other.meets_sphere(&(x_wl * self.centre_l), self.radius_m + required_m) {
+    fn too_close(&self, other: &Placed<'_>, required_m: f64) -> Option<f64> {
+        if self.pieces.is_empty() || !other.meets_sphere(self.centre_w, self.radius_m + required_m) {
             return None;
         }
-        let close = place_all(&self.pieces, x_wl).filter(|piece| piece.closer_than(other, required_m));
+        let close = self.pieces.iter().filter(|piece| piece.closer_than(other, required_m));
         close.map(|piece| piece.distance_m(other)).min_by(f64::total_cmp)
     }
 }
@@ -149,39 +166,83 @@ impl CollisionModel {
         Self { links, self_pairs, fingers: robot.arms.iter().map(|arm| fingers(robot, &arm.gripper)).collect() }
     }
 
-    /// The first rule that a scene breaks: the robot with itself, then with the board, then the person.
+    /// The first rule that a scene breaks: the robot with itself, then with the board, then the person. A scene with a
+    /// body whose place or size is not finite is no free scene: the violation then names that body twice, and its
+    /// distance is not a number.
     pub fn first_violation(&self, scene: &Scene<'_>) -> Option<Violation> {
-        self.robot_self(scene.link_poses)
-            .or_else(|| self.robot_board(scene))
-            .or_else(|| scene.person.iter().find_map(|part| self.person(scene, part)))
+        if let Some(body) = self.undefined_body(scene) {
+            return Some(Violation { bodies: [body; 2], required_m: 0.0, distance_m: f64::NAN });
+        }
+        // Every primitive is placed once: a link is near to several others.
+        let placed = self.links.iter().zip(scene.link_poses).flat_map(|(link, x_wl)| place_all(&link.pieces, x_wl));
+        let placed: Vec<Placed<'_>> = placed.collect();
+        let links = self.placed_links(scene.link_poses, &placed);
+        let board = Piece::cuboid(scene.board_size_m);
+        let board = board.placed(&scene.x_wo);
+        self.robot_self(&links)
+            .or_else(|| self.robot_board(scene, &links, &board))
+            .or_else(|| scene.person.iter().find_map(|part| person(&links, &board, part)))
     }
 
     /// The least that any two bodies are farther apart than they must be, m: at most 0 when a rule is broken, infinite
-    /// when there is nothing to compare.
+    /// when there is nothing to compare, not a number for a scene that is not finite.
     pub fn min_margin_m(&self, scene: &Scene<'_>) -> f64 {
+        self.margin_m(scene, Measure::Distance)
+    }
+
+    /// As [`CollisionModel::min_margin_m`], but bodies that overlap count with the depth of the overlap, the length of
+    /// the shortest way apart of two primitives, as a negative distance.
+    pub fn min_signed_margin_m(&self, scene: &Scene<'_>) -> f64 {
+        self.margin_m(scene, Measure::SignedDistance)
+    }
+
+    fn margin_m(&self, scene: &Scene<'_>, measure: Measure) -> f64 {
+        if self.undefined_body(scene).is_some() {
+            return f64::NAN;
+        }
         let poses = scene.link_poses;
         let board = Piece::cuboid(scene.board_size_m);
         let board = board.placed(&scene.x_wo);
         let mut margin_m = f64::INFINITY;
         for &[a, b] in &self.self_pairs {
-            margin_m = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], margin_m);
+            margin_m = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], margin_m, measure);
         }
         for link in (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
-            margin_m = self.links[link].distance_to_within(&poses[link], &board, margin_m);
+            margin_m = self.links[link].distance_to_within(&poses[link], &board, margin_m, measure);
         }
         for part in scene.person {
             let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
             let capsule = capsule.placed(&Pose::identity());
             if let Some(clearance_m) = part.board_clearance_m {
-                margin_m = capsule.distance_within(&board, margin_m + clearance_m) - clearance_m;
+                margin_m = capsule.distance_within(&board, margin_m + clearance_m, measure) - clearance_m;
             }
             let clearance_m = part.robot_clearance_m;
-            let bound_m = margin_m + clearance_m;
             let links = self.links.iter().zip(poses);
-            let nearest = links.fold(bound_m, |bound_m, (link, x_wl)| link.distance_to_within(x_wl, &capsule, bound_m));
+            let nearest = links.fold(margin_m + clearance_m, |bound_m, (link, x_wl)| {
+                link.distance_to_within(x_wl, &capsule, bound_m, measure)
+            });
             margin_m = nearest - clearance_m;
         }
         margin_m
+    }
+
+    /// The first body whose place or size is not finite; a link without a pose is one.
+    fn undefined_body(&self, scene: &Scene<'_>) -> Option<Body> {
+        let finite =
+            |pose: &Pose| pose.translation.vector.iter().chain(pose.rotation.coords.iter()).all(|v| v.is_finite());
+        let link = (0..self.links.len()).find(|&link| !scene.link_poses.get(link).is_some_and(finite));
+        if let Some(link) = link {
+            return Some(Body::Link(link));
+        }
+        if !finite(&scene.x_wo) || !scene.board_size_m.iter().all(|m| m.is_finite()) {
+            return Some(Body::Board);
+        }
+        let part_is_finite = |part: &&PersonPart| {
+            let ends = part.p0_w.coords.iter().chain(part.p1_w.coords.iter());
+            let clearances = [part.radius_m, part.robot_clearance_m, part.board_clearance_m.unwrap_or(0.0)];
+            ends.chain(&clearances).all(|v| v.is_finite())
+        };
+        scene.person.iter().find(|part| !part_is_finite(part)).map(|part| Body::Person(part.name))
     }
 
     /// True for the fingers of a gripper that holds the board.
@@ -189,43 +250,45 @@ impl CollisionModel {
         scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link))
     }
 
-    fn robot_self(&self, poses: &[Pose]) -> Option<Violation> {
-        let hit = |&&[a, b]: &&[usize; 2]| self.links[a].hits(&poses[a], &self.links[b], &poses[b]);
-        let [a, b] = *self.self_pairs.iter().find(hit)?;
+    /// All links, with their primitives out of the list of all.
+    fn placed_links<'a>(&self, poses: &[Pose], mut placed: &'a [Placed<'a>]) -> Vec<PlacedLink<'a>> {
+        let place = |(link, x_wl): (&LinkShapes, &Pose)| {
+            let (pieces, rest) = placed.split_at(link.pieces.len());
+            placed = rest;
+            PlacedLink { pieces, centre_w: point_w(x_wl, &link.centre_l), radius_m: link.radius_m }
+        };
+        self.links.iter().zip(poses).map(place).collect()
+    }
+
+    fn robot_self(&self, links: &[PlacedLink<'_>]) -> Option<Violation> {
+        let [a, b] = *self.self_pairs.iter().find(|&&[a, b]| links[a].hits(&links[b]))?;
         Some(Violation { bodies: [Body::Link(a), Body::Link(b)], required_m: 0.0, distance_m: 0.0 })
     }
 
-    fn robot_board(&self, scene: &Scene<'_>) -> Option<Violation> {
-        let board = Piece::cuboid(scene.board_size_m);
-        let board = board.placed(&scene.x_wo);
-        (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
-            let distance_m = self.links[link].too_close(&scene.link_poses[link], &board, 0.0)?;
+    fn robot_board(&self, scene: &Scene<'_>, links: &[PlacedLink<'_>], board: &Placed<'_>) -> Option<Violation> {
+        (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
+            let distance_m = links[link].too_close(board, 0.0)?;
             Some(Violation { bodies: [Body::Link(link), Body::Board], required_m: 0.0, distance_m })
         })
     }
+}
 
-    /// What one part of the person comes too close to.
-    fn person(&self, scene: &Scene<'_>, part: &PersonPart) -> Option<Violation> {
-        let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
-        let capsule = capsule.placed(&Pose::identity());
-        let violation = |other, required_m, distance_m| Violation {
-            bodies: [Body::Person(part.name), other],
-            required_m,
-            distance_m,
-        };
-        if let Some(required_m) = part.board_clearance_m {
-            let board = Piece::cuboid(scene.board_size_m);
-            let board = board.placed(&scene.x_wo);
-            if capsule.closer_than(&board, required_m) {
-                return Some(violation(Body::Board, required_m, capsule.distance_m(&board)));
-            }
-        }
-        let required_m = part.robot_clearance_m;
-        self.links.iter().zip(scene.link_poses).enumerate().find_map(|(index, (link, x_wl))| {
-            let distance_m = link.too_close(x_wl, &capsule, required_m)?;
-            Some(violation(Body::Link(index), required_m, distance_m))
-        })
+/// What one part of the person comes too close to.
+fn person(links: &[PlacedLink<'_>], board: &Placed<'_>, part: &PersonPart) -> Option<Violation> {
+    let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
+    let capsule = capsule.placed(&Pose::identity());
+    let violation =
+        |other, required_m, distance_m| Violation { bodies: [Body::Person(part.name), other], required_m, distance_m };
+    if let Some(required_m) = part.board_clearance_m
+        && capsule.closer_than(board, required_m)
+    {
+        return Some(violation(Body::Board, required_m, capsule.distance_m(board)));
     }
+    let required_m = part.robot_clearance_m;
+    links.iter().enumerate().find_map(|(index, link)| {
+        let distance_m = link.too_close(&capsule, required_m)?;
+        Some(violation(Body::Link(index), required_m, distance_m))
+    })
 }
 
 /// For every link, the first link of the rigid group that it belongs to: links joined by fixed joints never move against

@@ -21,6 +21,15 @@ pub struct Piece {
     radius_m: f64,
 }
 
+/// What is measured between two primitives.
+#[derive(Clone, Copy)]
+pub enum Measure {
+    /// The distance: zero when they overlap.
+    Distance,
+    /// The distance, or the depth of the overlap as a negative number.
+    SignedDistance,
+}
+
 /// A primitive in the world.
 pub struct Placed<'a> {
     pose: ParryPose,
@@ -85,6 +94,12 @@ pub fn place_all<'a>(pieces: &'a [Piece], x_wl: &Pose) -> impl Iterator<Item = P
     pieces.iter().map(move |piece| piece.placed_by(&x_wl))
 }
 
+/// Where a point of a link is in the world.
+pub fn point_w(x_wl: &Pose, p_l: &Point3<f64>) -> DVec3 {
+    let p_w = x_wl * p_l;
+    DVec3::new(p_w.x, p_w.y, p_w.z)
+}
+
 /// A sphere about several primitives, in the frame of what they belong to: centre and radius, m.
 pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
     let count = pieces.len().max(1) as f64;
@@ -97,21 +112,48 @@ pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
 impl Placed<'_> {
     /// True when two primitives overlap or are closer than `required_m`.
     pub fn closer_than(&self, other: &Placed<'_>, required_m: f64) -> bool {
-        let centres_m = (self.pose.translation - other.pose.translation).length();
-        centres_m <= self.radius_m + other.radius_m + required_m && self.distance_m(other) <= required_m
+        if !self.meets_sphere(other.pose.translation, other.radius_m + required_m)
+            || !other.meets_sphere(self.pose.translation, self.radius_m + required_m)
+        {
+            return false;
+        }
+        if required_m > 0.0 { self.distance_m(other) <= required_m } else { self.overlaps(other) }
     }
 
-    /// The lesser of `bound_m` and the distance to another primitive, m.
-    pub fn distance_within(&self, other: &Placed<'_>, bound_m: f64) -> f64 {
+    /// True when two primitives overlap: a separating axis ends this sooner than a distance.
+    fn overlaps(&self, other: &Placed<'_>) -> bool {
+        query::intersection_test(&self.pose, &**self.shape, &other.pose, &**other.shape)
+            .is_ok_and(|found| found.intersecting)
+    }
+
+    /// The lesser of `bound_m` and what `measure` says of two primitives, m.
+    pub fn distance_within(&self, other: &Placed<'_>, bound_m: f64, measure: Measure) -> f64 {
         let centres_m = (self.pose.translation - other.pose.translation).length();
         let within = centres_m < self.radius_m + other.radius_m + bound_m;
-        if within { bound_m.min(self.distance_m(other)) } else { bound_m }
+        if !within {
+            return bound_m;
+        }
+        bound_m.min(match measure {
+            Measure::Distance => self.distance_m(other),
+            Measure::SignedDistance => self.signed_distance_m(other),
+        })
     }
 
-    /// False when the primitive is certainly outside this sphere.
-    pub fn meets_sphere(&self, centre_w: &Point3<f64>, radius_m: f64) -> bool {
-        let centre = DVec3::new(centre_w.x, centre_w.y, centre_w.z);
-        (self.pose.translation - centre).length() <= self.radius_m + radius_m
+    /// False when the primitive is outside this sphere of the world.
+    pub fn meets_sphere(&self, centre_w: DVec3, radius_m: f64) -> bool {
+        let reach_m = self.radius_m + radius_m;
+        (self.pose.translation - centre_w).length_squared() <= reach_m * reach_m
+            && self.shape.distance_to_point(&self.pose, centre_w, true) <= radius_m
+    }
+
+    /// Distance between two primitives, or how far they must be moved to come apart, as a negative number, m.
+    pub fn signed_distance_m(&self, other: &Placed<'_>) -> f64 {
+        let distance_m = self.distance_m(other);
+        if distance_m > 0.0 {
+            return distance_m;
+        }
+        let contact = query::contact(&self.pose, &**self.shape, &other.pose, &**other.shape, 0.0);
+        contact.ok().flatten().map_or(0.0, |contact| contact.dist.min(0.0))
     }
 
     /// Distance between two primitives, m; zero when they overlap.

@@ -5,9 +5,11 @@
 //! persons or plans.
 
 mod assemble;
+pub mod bimanual;
 pub mod chain;
 mod description;
 pub mod inverse;
+mod posture;
 pub mod tree;
 mod urdf;
 

@@ -20,11 +20,14 @@
 //! the elbow's axis is one of `+-(r x d) / |r x d|`, and what is left is one residual, `f . a1 = 0`, whose zeros along
 //! S0 are the solutions of the slice. The angles follow by `atan2`.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::{
     General, holds, is_finite,
     slice::{Slice, Zero},
+    trace::Angles,
 };
 use crate::{model::frames::Pose, robot::chain::Chain};
 
@@ -37,6 +40,12 @@ const MIN_SHOULDER_OFFSET_M: f64 = 1e-3;
 
 /// How far a closed-form angle may be beyond its limit before the polishing clamps it, rad: its own rounding.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
+
+/// An arm is nearly stretched when the wrist is farther away than this share of its length.
+const NEARLY_STRETCHED: f64 = 0.93;
+
+/// The joint that is chosen freely: W1.
+pub(super) const FREE_JOINT: usize = 5;
 
 /// The inverse kinematics of a chain of this structure.
 #[derive(Clone, Debug)]
@@ -136,12 +145,13 @@ impl ClosedForm {
     /// The solutions over the self-motion of the arm: those of `slices` angles of the joint W1, evenly spread over its
     /// range, in that order.
     pub fn manifold(&self, target: &Pose, slices: usize) -> Vec<Vec<f64>> {
-        let (lower, upper) = (self.general.chain().lower()[5], self.general.chain().upper()[5]);
+        let (lower, upper) = (self.general.chain().lower()[FREE_JOINT], self.general.chain().upper()[FREE_JOINT]);
         let angle = |number: usize| lower + (upper - lower) * (number as f64 + 0.5) / slices as f64;
         (0..slices).flat_map(|number| self.slice(target, angle(number))).collect()
     }
 
-    /// All solutions within limits that have the joint W1 at `w1_rad`, but for pairs that nearly coincide. Empty when
+    /// All solutions within limits that have the joint W1 at `w1_rad`, but for pairs that nearly coincide, which
+    /// [`ClosedForm::branches`] finds. Empty when
     /// there are none, when the target is not finite, and at the one angle (k = 0) at which W2 does not move the elbow.
     pub fn slice(&self, target: &Pose, w1_rad: f64) -> Vec<Vec<f64>> {
         if !is_finite(target) || !w1_rad.is_finite() {
@@ -149,41 +159,80 @@ impl ClosedForm {
         }
         let slice = Slice::new(self, target, w1_rad);
         let mut solutions: Vec<Vec<f64>> = Vec::new();
-        for zero in slice.zeros() {
+        for zero in slice.zeros(self.s0_range()) {
             let polished = self.angles(&slice, &zero).and_then(|q_rad| self.general.polished(target, q_rad));
             solutions.extend(polished.filter(|q_rad| !holds(&solutions, q_rad)));
         }
         solutions
     }
 
+    /// The solutions with the joint W1 at `w1_rad`, whatever the limits of the others; good to about 1e-4 rad.
+    pub(super) fn unlimited_slice(&self, target: &Pose, w1_rad: f64) -> Vec<Angles> {
+        let slice = Slice::new(self, target, w1_rad);
+        let zeros = slice.zeros([-std::f64::consts::PI, std::f64::consts::PI]);
+        zeros.iter().filter_map(|zero| self.unlimited_angles(&slice, zero)).collect()
+    }
+
     /// The joint angles at a zero of the residual; none when one is beyond its limits.
     fn angles(&self, slice: &Slice, zero: &Zero) -> Option<Vec<f64>> {
+        let chain = self.general.chain();
+        let limits = chain.lower().iter().zip(chain.upper());
+        let angles = self.unlimited_angles(slice, zero)?;
+        angles.iter().zip(limits).map(|(angle, (lower, upper))| turned_into(*angle, *lower, *upper)).collect()
+    }
+
+    /// The joint angles at a zero of the residual, but for whole turns.
+    fn unlimited_angles(&self, slice: &Slice, zero: &Zero) -> Option<Angles> {
         let at = slice.elbow(zero.s0, zero.w2_sign);
         let m = at.r.cross(&at.d).norm();
         // At m = 0 the arm is stretched and the elbow's axis undefined: the neighbouring slices stand for this one.
         let y = at.r.cross(&at.d) * (zero.elbow_sign / (m > 0.0).then_some(m)?);
-        let across_r = y.cross(&at.r);
+        Some(self.angles_at(slice, zero.s0, [slice.w1, at.w2()], [&at.r, &at.d, &y]))
+    }
+
+    /// The joint angles when S0, the wrist (W1 and W2), r, d and the elbow's axis y are known.
+    fn angles_at(&self, slice: &Slice, s0: f64, [w1, w2]: [f64; 2], [r, d, y]: [&Vector3<f64>; 3]) -> Angles {
+        let (u, a1) = (Vector3::new(s0.cos(), s0.sin(), 0.0), Vector3::new(-s0.sin(), s0.cos(), 0.0));
         let [l1, b] = self.upper_arm_m;
-        let f = (at.r * l1 - across_r * b).normalize();
+        let f = (r * l1 - y.cross(r) * b).normalize();
         let x_e = y.cross(&f);
-        let s1 = (-f.z).atan2(f.dot(&at.u));
-        let down = -at.u * s1.sin() - Vector3::z() * s1.cos();
-        let e1 = at.d.dot(&x_e).atan2(at.d.dot(&f));
+        let s1 = (-f.z).atan2(f.dot(&u));
+        let down = -u * s1.sin() - Vector3::z() * s1.cos();
+        let e1 = d.dot(&x_e).atan2(d.dot(&f));
         let across = x_e * e1.cos() - f * e1.sin();
-        let a = slice.x * at.w2.sin() + slice.y * at.w2.cos();
-        let formula_rad = [
-            zero.s0,
-            s1,
-            x_e.dot(&at.a1).atan2(x_e.dot(&down)),
-            e1,
-            (-a.dot(&across)).atan2(a.dot(&y)),
-            slice.w1,
-            at.w2,
-        ];
-        let chain = self.general.chain();
-        let limits = chain.lower().iter().zip(chain.upper());
-        let angles = formula_rad.iter().zip(&self.offset_rad).map(|(angle, offset)| angle - offset);
-        angles.zip(limits).map(|(angle, (lower, upper))| turned_into(angle, *lower, *upper)).collect()
+        let a = slice.x * w2.sin() + slice.y * w2.cos();
+        let e0 = x_e.dot(&a1).atan2(x_e.dot(&down));
+        let w0 = (-a.dot(&across)).atan2(a.dot(y));
+        Angles::from([s0, s1, e0, e1, w0, w1, w2]) - Angles::from(self.offset_rad)
+    }
+
+    /// Postures near the target in which the arm is stretched, r along d, when the target is that far. There the whole
+    /// upper arm turns about r while W1 hardly moves, so that slices may miss it. `turns` postures for each way in which
+    /// shoulder and wrist can point.
+    pub(super) fn stretched(&self, target: &Pose, turns: usize) -> Vec<Angles> {
+        let frame = Slice::new(self, target, 0.0);
+        let wrist = frame.wrist();
+        let length_m = self.upper_arm_m[0].hypot(self.upper_arm_m[1]) + self.forearm_m[0].hypot(self.forearm_m[1]);
+        let mut postures = Vec::new();
+        for s0 in [wrist.y.atan2(wrist.x), (-wrist.y).atan2(-wrist.x)] {
+            let to_wrist = wrist - Vector3::new(s0.cos(), s0.sin(), 0.0) * self.shoulder_m;
+            if to_wrist.norm() < NEARLY_STRETCHED * length_m {
+                continue;
+            }
+            let d = to_wrist.normalize();
+            let r = d * self.upper_arm_m[0].hypot(self.upper_arm_m[1]);
+            let Some(a) = d.cross(&frame.z).try_normalize(f64::EPSILON) else { continue };
+            for a in [a, -a] {
+                let wrist =
+                    [(-d.dot(&a.cross(&frame.z))).atan2(d.dot(&frame.z)), a.dot(&frame.x).atan2(a.dot(&frame.y))];
+                for turn in 0..turns {
+                    let angle = TAU * turn as f64 / turns as f64;
+                    let y = a * angle.cos() + d.cross(&a) * angle.sin();
+                    postures.push(self.angles_at(&frame, s0, wrist, [&r, &d, &y]));
+                }
+            }
+        }
+        postures
     }
 }
 

@@ -104,6 +104,21 @@ impl General {
         q_rad
     }
 
+    /// The first solution that is reached from at most `starts` postures, which fill the joint ranges evenly, the middle
+    /// first; failing that the outcome that came nearest.
+    pub fn solve(&self, target: &Pose, starts: usize) -> Solution {
+        let mut nearest = Solution::NotFound { residual: f64::INFINITY };
+        for start in 0..starts {
+            match (self.solve_from(target, &self.start(start)), &nearest) {
+                (Solution::NotFound { residual }, Solution::NotFound { residual: least }) => {
+                    nearest = Solution::NotFound { residual: residual.min(*least) };
+                }
+                (outcome, _) => return outcome,
+            }
+        }
+        nearest
+    }
+
     /// The solutions that are reached from `starts` postures, which fill the joint ranges evenly; each solution once.
     pub fn solutions(&self, target: &Pose, starts: usize) -> Vec<Vec<f64>> {
         let mut solutions: Vec<Vec<f64>> = Vec::new();
@@ -123,7 +138,7 @@ impl General {
     /// The posture of this number in a sequence that fills the joint ranges evenly, the middle first: the additive
     /// recurrence on powers of `1 / phi`, `phi^(n + 1) = phi + 1` (M. Roberts, "The unreasonable effectiveness of
     /// quasirandom sequences", 2018).
-    fn start(&self, number: usize) -> Vec<f64> {
+    pub(super) fn start(&self, number: usize) -> Vec<f64> {
         let dof = self.chain.dof();
         let mut phi = 2.0_f64;
         for _ in 0..64 {

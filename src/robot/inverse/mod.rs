@@ -4,12 +4,17 @@
 //! robot's name, and a damped least-squares search for every other chain. This module knows nothing of grasps or
 //! objectives; a target that cannot be reached is an outcome, not an error.
 
+mod branch;
 mod closed_form;
 mod general;
+mod manifold;
 mod slice;
+mod trace;
 
+pub use branch::{Branch, BranchSample, Interval};
 pub use closed_form::ClosedForm;
 pub use general::General;
+pub use manifold::SelfMotion;
 
 use super::chain::Chain;
 use crate::model::frames::Pose;

@@ -24,6 +24,9 @@ const TURN_TANGENTS: [f64; 6] = [0.0, 0.3, 0.7, 1.2, 2.2, 5.0];
 /// How far from the end of a window that does not close the residual is first sampled, rad of theta.
 const INSET: f64 = 1e-9;
 
+/// Which way round the elbow's axis.
+const ELBOW_SIGNS: [f64; 2] = [1.0, -1.0];
+
 /// A target with one angle of W1, in the shoulder's frame.
 pub(super) struct Slice<'a> {
     arm: &'a ClosedForm,
@@ -32,7 +35,8 @@ pub(super) struct Slice<'a> {
     /// The wrist frame's axes.
     pub x: Vector3<f64>,
     pub y: Vector3<f64>,
-    z: Vector3<f64>,
+    pub z: Vector3<f64>,
+    wrist: Vector3<f64>,
     c0: Vector3<f64>,
     k: f64,
     /// `L1^2 + B^2`, m^2.
@@ -50,13 +54,21 @@ pub(super) struct Zero {
 
 /// What is known of the elbow when S0 and W2 are.
 pub(super) struct Elbow {
-    pub u: Vector3<f64>,
     pub a1: Vector3<f64>,
-    pub w2: f64,
+    /// Sine and cosine of W2.
+    w2_sin_cos: [f64; 2],
     /// From where S1 meets E0 to where E1 meets W0, m.
     pub r: Vector3<f64>,
     /// The direction of the forearm.
     pub d: Vector3<f64>,
+}
+
+impl Elbow {
+    /// W2, rad.
+    pub fn w2(&self) -> f64 {
+        let [sin, cos] = self.w2_sin_cos;
+        sin.atan2(cos)
+    }
 }
 
 /// The equation of W2, `x cos w2 - y sin w2 = n`, at one S0; m^2.
@@ -119,10 +131,16 @@ impl<'a> Slice<'a> {
             x: column(0),
             y: column(1),
             z: column(2),
+            wrist: x_fm.translation.vector,
             c0: x_fm.translation.vector - column(2) * (c * sin + l2 * cos),
             k: c * cos - l2 * sin,
             length_squared: l1 * l1 + b * b,
         }
+    }
+
+    /// r_M, m.
+    pub fn wrist(&self) -> Vector3<f64> {
+        self.wrist
     }
 
     /// `2 k b . q = |q|^2 + k^2 - L1^2 - B^2` in the terms of W2.
@@ -144,7 +162,7 @@ impl<'a> Slice<'a> {
         let b = self.x * cos2 - self.y * sin2;
         let (sin1, cos1) = self.w1.sin_cos();
         let q = self.c0 - u * self.arm.shoulder_m;
-        Elbow { u, a1, w2: sin2.atan2(cos2), r: q - b * self.k, d: self.z * cos1 - b * sin1 }
+        Elbow { a1, w2_sin_cos: [sin2, cos2], r: q - b * self.k, d: self.z * cos1 - b * sin1 }
     }
 
     /// The part of the forearm's direction that is normal to r, times |r|: what the elbow's axis is normal to, m.
@@ -154,20 +172,20 @@ impl<'a> Slice<'a> {
         (at.d * self.length_squared - at.r * at.r.dot(&at.d)) / self.length_squared.sqrt()
     }
 
-    /// `f . a1` times `|r x d| (L1^2 + B^2)`: continuous wherever there is a W2.
-    fn residual(&self, window: &Window, theta: f64, elbow_sign: f64) -> f64 {
+    /// `f . a1` times `|r x d| (L1^2 + B^2)`, for the elbow's axis one way round and the other: continuous wherever there
+    /// is a W2.
+    fn residuals(&self, window: &Window, theta: f64) -> [f64; 2] {
         let (s0, w2_sign) = window.at(theta);
         let at = self.elbow(s0, w2_sign);
         let [l1, b] = self.arm.upper_arm_m;
         let (along_r, along_d) = (at.r.dot(&at.a1), at.d.dot(&at.a1));
         let r_d = at.r.dot(&at.d);
         let m = (self.length_squared - r_d * r_d).max(0.0).sqrt();
-        l1 * along_r * m - elbow_sign * b * (self.length_squared * along_d - r_d * along_r)
+        ELBOW_SIGNS.map(|sign| l1 * along_r * m - sign * b * (self.length_squared * along_d - r_d * along_r))
     }
 
-    /// The zeros of the residual within the limits of S0; some of them twice.
-    pub fn zeros(&self) -> Vec<Zero> {
-        let range = self.arm.s0_range();
+    /// The zeros of the residual in a range of S0, rad; some of them twice.
+    pub fn zeros(&self, range: [f64; 2]) -> Vec<Zero> {
         let mut zeros = Vec::new();
         for window in self.windows(range) {
             let share = (window.to - window.from) / (range[1] - range[0]);
@@ -175,9 +193,11 @@ impl<'a> Slice<'a> {
             let spacing = PI / count;
             for run in window.runs(spacing) {
                 let places = self.places(&window, run, spacing);
-                for elbow_sign in [1.0, -1.0] {
-                    let residual = |theta: f64| self.residual(&window, theta, elbow_sign);
-                    let mut samples: Vec<(f64, f64)> = places.iter().map(|&theta| (theta, residual(theta))).collect();
+                let residuals: Vec<[f64; 2]> = places.iter().map(|&theta| self.residuals(&window, theta)).collect();
+                for (number, elbow_sign) in ELBOW_SIGNS.into_iter().enumerate() {
+                    let residual = |theta: f64| self.residuals(&window, theta)[number];
+                    let values = residuals.iter().map(|values| values[number]);
+                    let mut samples: Vec<(f64, f64)> = places.iter().copied().zip(values).collect();
                     add_dips(&mut samples, residual);
                     for [before, after] in samples.array_windows() {
                         if before.1 * after.1 < 0.0 || after.1 == 0.0 {

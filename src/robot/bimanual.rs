@@ -1,0 +1,129 @@
+//! The solutions of several arms that hold one object, best first.
+//!
+//! Each arm has a list of solutions; a combination takes one of each. Combinations are made one by one, in the order of
+//! their cost, so that a caller who needs the best that passes a test pays for no more. This module knows nothing of
+//! what the costs mean.
+
+use std::{cmp::Ordering, collections::BinaryHeap};
+
+use super::inverse::ClosedForm;
+use crate::model::frames::Pose;
+
+/// One arm's solutions in the order of their cost.
+#[derive(Clone, Debug)]
+pub struct RankedSolutions {
+    /// Cost and angles (rad), the least cost first.
+    solutions: Vec<(f64, Vec<f64>)>,
+}
+
+impl RankedSolutions {
+    /// Solutions ranked by `cost`, of any unit. Those whose cost is no number or infinite are left out. Equal costs stay
+    /// in the order given.
+    pub fn new(solutions: impl IntoIterator<Item = Vec<f64>>, cost: impl Fn(&[f64]) -> f64) -> Self {
+        let ranked = solutions.into_iter().map(|q_rad| (cost(&q_rad), q_rad));
+        let mut solutions: Vec<_> = ranked.filter(|(cost, _)| cost.is_finite()).collect();
+        solutions.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self { solutions }
+    }
+
+    /// The samples of every branch of an arm whose gripper holds, at `x_og`, an object at `x_wo`. Empty when the arm does
+    /// not reach it.
+    pub fn of_grasp(arm: &ClosedForm, x_wo: &Pose, x_og: &Pose, cost: impl Fn(&[f64]) -> f64) -> Self {
+        let motion = arm.branches(&(x_wo * x_og));
+        let samples = motion.branches().iter().flat_map(|branch| branch.samples());
+        Self::new(samples.map(|sample| sample.q_rad.to_vec()), cost)
+    }
+
+    /// The number of solutions.
+    pub fn len(&self) -> usize {
+        self.solutions.len()
+    }
+
+    /// True when the arm has no solution.
+    pub fn is_empty(&self) -> bool {
+        self.solutions.is_empty()
+    }
+}
+
+/// One solution of every arm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Combination<'a> {
+    /// The sum of the costs.
+    pub cost: f64,
+    /// The angles of each arm, in the order of the arms, rad.
+    pub q_rad: Vec<&'a [f64]>,
+}
+
+/// All combinations of the solutions of any number of arms, the least sum of costs first; equal sums in the order of
+/// the first arm's solutions, then the second's. None when an arm has no solution, or there is no arm.
+///
+/// A heap holds the combinations that may be next. From one that is taken, its successors are those with one arm's next
+/// solution, for the arms from the last that is not at its first solution onward: thus each comes from one predecessor
+/// only, whose cost is not greater. The k-th takes `O(log k)` and nothing is computed ahead of it.
+#[derive(Clone, Debug)]
+pub struct Combinations<'a> {
+    arms: &'a [RankedSolutions],
+    next: BinaryHeap<Candidate>,
+}
+
+impl<'a> Combinations<'a> {
+    /// The combinations of these arms. A test of pairs (such as whether the arms touch) is `.filter(..)` after this.
+    pub fn new(arms: &'a [RankedSolutions]) -> Self {
+        let mut combinations = Self { arms, next: BinaryHeap::new() };
+        if !arms.is_empty() && arms.iter().all(|arm| !arm.is_empty()) {
+            combinations.push(vec![0; arms.len()]);
+        }
+        combinations
+    }
+
+    fn push(&mut self, ranks: Vec<usize>) {
+        let cost = ranks.iter().zip(self.arms).map(|(&rank, arm)| arm.solutions[rank].0).sum();
+        self.next.push(Candidate { cost, ranks });
+    }
+}
+
+impl<'a> Iterator for Combinations<'a> {
+    type Item = Combination<'a>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let Candidate { cost, ranks } = self.next.pop()?;
+        let first_movable = ranks.iter().rposition(|&rank| rank > 0).unwrap_or(0);
+        for arm in first_movable..ranks.len() {
+            if ranks[arm] + 1 < self.arms[arm].len() {
+                let mut successor = ranks.clone();
+                successor[arm] += 1;
+                self.push(successor);
+            }
+        }
+        let q_rad = ranks.iter().zip(self.arms).map(|(&rank, arm)| arm.solutions[rank].1.as_slice()).collect();
+        Some(Combination { cost, q_rad })
+    }
+}
+
+/// The places of a combination in the arms' lists.
+#[derive(Clone, Debug)]
+struct Candidate {
+    cost: f64,
+    ranks: Vec<usize>,
+}
+
+impl Ord for Candidate {
+    /// The greatest is taken first: the least cost.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.cost.total_cmp(&self.cost).then_with(|| other.ranks.cmp(&self.ranks))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Candidate {}
