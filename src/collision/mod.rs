@@ -153,7 +153,13 @@ impl CollisionModel {
     pub fn first_violation(&self, scene: &Scene<'_>) -> Option<Violation> {
         self.robot_self(scene.link_poses)
             .or_else(|| self.robot_board(scene))
-            .or_else(|| scene.person.iter().find_map(|part| self.person(scene, part)))
+            .or_else(|| self.first_violation_of_person(scene))
+    }
+
+    /// The first rule that the person breaks; the robot and the board are taken as they are. With no link poses, the
+    /// board alone is in the way.
+    pub fn first_violation_of_person(&self, scene: &Scene<'_>) -> Option<Violation> {
+        scene.person.iter().find_map(|part| self.person(scene, part))
     }
 
     /// The least that any two bodies are farther apart than they must be, m: at most 0 when a rule is broken, infinite

@@ -120,8 +120,8 @@ proptest! {
         let robot = robot_points(&mut generator(7));
         let robot_moved: Vec<_> = robot.iter().map(|p| moved * p).collect();
         for form in [PeripersonalForm::Min, PeripersonalForm::Mean, PeripersonalForm::Weighted] {
-            let here = peripersonal_m(form, &human.body_points_w(&x_wb, &q_rad), &robot);
-            let there = peripersonal_m(form, &human.body_points_w(&x_wb_moved, &q_rad), &robot_moved);
+            let here = peripersonal_m(form, None, &human.body_points_w(&x_wb, &q_rad), &robot);
+            let there = peripersonal_m(form, None, &human.body_points_w(&x_wb_moved, &q_rad), &robot_moved);
             // Distances of order one from positions of order three.
             prop_assert!((here - there).abs() < 1e-13);
         }

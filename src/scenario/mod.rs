@@ -42,9 +42,16 @@ pub struct LoadedScenario {
 /// # Errors
 /// When the file, the robot or the plan that it names cannot be read, or any value is not what the format asks for.
 pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
-    let text = error::read_text(path)?;
-    let file = file::parse(path, &text)?;
-    let (scenario, robot) = resolve::resolve(path, &text, &file)?;
+    load_text(path, &error::read_text(path)?)
+}
+
+/// Checks and completes the text of a scenario file; files that it names are relative to `path`'s folder.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
+    let file = file::parse(path, text)?;
+    let (scenario, robot) = resolve::resolve(path, text, &file)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let plan = match &scenario.planner.plan {
         Some(plan) => Some(read_plan(&folder.join(plan), Some(&robot))?.0),
