@@ -17,7 +17,7 @@ lint:
     cargo fmt --check
     cargo clippy --release --all-targets -- -D warnings
 
-# Every scenario, four lines a minute on two cores
+# Every scenario
 scenarios:
     cargo run --release -- run scenarios/*.toml
 

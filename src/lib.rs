@@ -20,7 +20,7 @@
 //! | [`planner`] | the search for a comfortable and stable hold |
 //! | [`sim`] | the rapier simulation of a hold |
 //! | [`judge`] | a trace against its limits |
-//! | [`record`] | the rerun recording of a run (feature `recording`) |
+//! | `record` | the rerun recording of a run (feature `recording`) |
 //! | [`report`] | tables, JSON, JUnit |
 //! | [`cli`] | the commands: they compose all of the above |
 

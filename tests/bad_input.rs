@@ -165,3 +165,122 @@ fn a_format_from_the_future() {
         "bad.toml:1: format: found 2, expected 1, the only format that benchdog 0.1.0 reads",
     );
 }
+
+const PLAN: &str = include_str!("../scenarios/plans/cut-rim.json");
+
+/// A plan with one replacement is refused with exactly this message.
+#[track_caller]
+fn assert_plan_refused(replace: &str, with: &str, message: &str) {
+    assert!(PLAN.contains(replace), "the plan has no {replace}");
+    let (output, left) =
+        benchdog_on("bad.json", &PLAN.replacen(replace, with, 1), &["simulate", "bad.json", "--junit", "junit.xml"]);
+    assert_refused(&output, message);
+    assert_eq!(left, ["bad.json"], "files were written");
+}
+
+#[test]
+fn the_plan_that_the_cases_spoil_is_good() {
+    let (output, _) = benchdog_on("good.json", PLAN, &["simulate", "good.json", "--record", "never"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_plan_that_is_no_json() {
+    assert_plan_refused("\"arms\": [", "\"arms\": ", "bad.json:51: arms: invalid type: map, expected a sequence");
+}
+
+#[test]
+fn an_unknown_key_in_a_plan() {
+    assert_plan_refused(
+        "\"grip_force_n\"",
+        "\"grip\"",
+        "bad.json:84: arms[0].grip: unknown field `grip`, expected one of `name`, `joints`, `q_rad`, `x_og`, `grip_force_n`",
+    );
+}
+
+#[test]
+fn joints_that_are_not_the_robots() {
+    assert_plan_refused(
+        "\"left_s0\"",
+        "\"left_x0\"",
+        "bad.json:53: arms[0].joints: found left_x0, left_s1, left_e0, left_e1, left_w0, left_w1, left_w2, expected the joints \
+         of the left arm: left_s0, left_s1, left_e0, left_e1, left_w0, left_w1, left_w2",
+    );
+}
+
+#[test]
+fn an_arm_that_the_robot_does_not_have() {
+    assert_plan_refused(
+        "\"name\": \"left\"",
+        "\"name\": \"middle\"",
+        "bad.json:52: arms[0].name: found \"middle\", expected an arm of the robot: left, right",
+    );
+}
+
+#[test]
+fn an_angle_outside_its_limits() {
+    assert_plan_refused(
+        "0.7981595147070633",
+        "7.5",
+        "bad.json:63: arms[0].q_rad[0]: found 7.5, expected -1.70167993878 to 1.70167993878 rad, the limits of left_s0",
+    );
+}
+
+#[test]
+fn a_hand_that_is_not_where_its_angles_put_it() {
+    assert_plan_refused(
+        "0.6406253063497958",
+        "0.7",
+        "bad.json:71: arms[0].x_og: found the hand 59.37 mm and 0.00 degrees from where q_rad puts it, expected x_wo x_og \
+         to equal the arm's forward kinematics within 1 mm and 0.1 degrees",
+    );
+}
+
+#[test]
+fn a_quaternion_not_of_unit_length() {
+    assert_plan_refused(
+        "-0.9619320987003235",
+        "-0.9",
+        "bad.json:49: object.x_wo: found a quaternion of length 0.9405778210706393, expected unit length",
+    );
+}
+
+#[test]
+fn a_grip_stronger_than_the_gripper() {
+    assert_plan_refused(
+        "\"grip_force_n\": 30.0",
+        "\"grip_force_n\": 40.0",
+        "bad.json:84: arms[0].grip_force_n: found 40, expected at most 35 N, what the left gripper gives",
+    );
+}
+
+#[test]
+fn a_plan_for_an_unknown_robot() {
+    assert_plan_refused(
+        "\"robot\": \"baxter\"",
+        "\"robot\": \"backster\"",
+        "bad.json:4: robot: found robot \"backster\", expected a built-in robot (baxter) or the path of a description file",
+    );
+}
+
+#[test]
+fn a_plan_of_a_format_from_the_future() {
+    assert_plan_refused(
+        "\"format\": 1,",
+        "\"format\": 2, \"colour\": \"blue\",",
+        "bad.json:2: format: found 2, expected 1, the only format that benchdog 0.1.0 reads",
+    );
+}
+
+#[test]
+fn a_plan_for_another_operation_than_the_scenarios() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("plan.json"), PLAN).unwrap();
+    fs::write(folder.path().join("bad.toml"), format!("{SCENARIO}\n[planner]\nplan = \"plan.json\"\n")).unwrap();
+    let output = benchdog_in(folder.path(), &["run", "bad.toml"]);
+    assert_refused(
+        &output,
+        "bad.toml:17: planner.plan: found a plan for Cut with [0.0, 30.0, 0.0, 0.0, 0.0, 0.0] at [0.12, 0.0, 0.015], expected \
+         Drill with [0.0, 0.0, -15.0, 0.0, 0.0, 0.0] at [0.0, 0.0, 0.015]",
+    );
+}

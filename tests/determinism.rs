@@ -52,7 +52,7 @@ fn a_plan_that_went_through_a_file_gives_the_same_simulation() {
         .arg(folder.join("plan.json"))
         .output()
         .unwrap();
-    let again: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let again: Value = serde_json::from_slice::<Vec<Value>>(&output.stdout).unwrap().remove(0);
     let first: Value = serde_json::from_slice(&fs::read(folder.join("verdict.json")).unwrap()).unwrap();
     assert_eq!(again["fingerprint"], first["fingerprint"]);
 }

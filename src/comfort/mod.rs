@@ -8,6 +8,8 @@
 mod answers;
 mod best;
 pub mod curve;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::Point3;
 

@@ -26,7 +26,7 @@ use super::{
     entity, palette,
     plots::{JOINTS_SHOWN, LIMIT, PLOTS, hardest_first},
 };
-use crate::model::{scenario::Hand, verdict::CheckKind};
+use crate::model::verdict::CheckKind;
 
 /// A view or a container with its share of its parent's room.
 struct Placed {
@@ -101,20 +101,13 @@ impl Layout {
         Ok(placed)
     }
 
-    /// The scene, seen from the side of the person's idle arm: robot, board and person in profile, a little from
-    /// behind the person, so that the worked face shows.
+    /// The scene: robot, board and person in profile.
     fn scene(&mut self, input: &RecordingInput) -> Result<Placed, RecordError> {
         let view = self.view("3D", "scene", &["+ /scene/**"], 0.76)?;
-        let board = input.plan.object.x_wo.translation.vector;
-        let idle_side = match input.plan.human.map(|human| human.hand) {
-            // The person faces the robot: their left is the robot's right, -y.
-            Some(Hand::Right) | None => -1.0,
-            Some(Hand::Left) => 1.0,
-        };
-        let eye = board + Vector3::new(0.65, 1.25 * idle_side, 0.65);
+        let (eye, target) = eye_and_target(input);
         let controls = EyeControls3D::new()
             .with_position(point(&eye))
-            .with_look_target(point(&board))
+            .with_look_target(point(&target))
             .with_eye_up([0.0, 0.0, 1.0]);
         self.log(&child(&view.path, "EyeControls3D"), &controls)?;
         let floor = rerun::components::Plane3D::new([0.0, 0.0, 1.0], input.robot.floor_z_m as f32);
@@ -179,6 +172,24 @@ fn query(plot: &str, series: &str) -> String {
         "**" => format!("+ {}/**", entity(&["plots", plot])),
         _ => format!("+ {}", entity(&["plots", plot, series])),
     }
+}
+
+/// From where the scene is seen and what is looked at, in W: robot, board and person in profile, from the side to which the
+/// worked face looks, and from far enough to have all three in view.
+fn eye_and_target(input: &RecordingInput) -> (Vector3<f64>, Vector3<f64>) {
+    let board = input.plan.object.x_wo;
+    let robot = Vector3::zeros();
+    // Without a person the place in front of the board is shown.
+    let person = input.plan.human.map_or(board.translation.vector + Vector3::x() * 0.6, |human| {
+        human.x_wb.translation.vector + Vector3::z() * (0.6 * human.height_m)
+    });
+    let apart = person - robot;
+    let side = Vector3::z().cross(&apart).normalize();
+    let face_w = board.rotation * Vector3::z();
+    let side = if side.dot(&face_w) < 0.0 { -side } else { side };
+    let target = (2.0 * board.translation.vector + person + robot) / 4.0;
+    let span_m = apart.norm().max(0.8);
+    (target + side * (1.45 * span_m) + apart * 0.25 + Vector3::z() * (0.45 * span_m), target)
 }
 
 fn point(vector: &Vector3<f64>) -> [f32; 3] {

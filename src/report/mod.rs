@@ -1,6 +1,6 @@
 //! What a run tells its reader: a table for the console, JSON for programs, JUnit for a CI job. One file a format.
 //!
-//! Pure functions from outcomes to text; only [`file`] touches the disk. Nothing here may change a verdict, print, or
+//! Pure functions from outcomes to text; only [`mod@file`] touches the disk. Nothing here may change a verdict, print, or
 //! look at a clock.
 
 pub mod console;

@@ -11,6 +11,13 @@ use crate::{
 /// How far from the face's rectangle an operation point may be, m: rounding of written figures.
 const ON_BOARD_TOLERANCE_M: f64 = 1e-9;
 
+/// The one key that is read before the rest: a file of another format has other keys.
+#[derive(serde::Deserialize)]
+pub struct FormatProbe {
+    /// The number that the file gives.
+    pub format: u32,
+}
+
 /// Checks values of one file.
 pub struct Checker<'a> {
     path: &'a Path,
@@ -135,6 +142,9 @@ impl<'a> Checker<'a> {
         let [x, y, z] = size_m.map(|side| side / 2.0);
         let half_m = nalgebra::Vector3::new(x, y, z);
         let inside = (p_ot.abs() - half_m).max() <= ON_BOARD_TOLERANCE_M;
+        if p_ot.z.abs() > z + ON_BOARD_TOLERANCE_M {
+            return Err(self.value(key, format!("z = {}", p_ot.z), format!("a point on the board: |z| <= {z} m")));
+        }
         let expected = format!("a point on the board: |x| <= {x} m, |y| <= {y} m");
         self.that(inside, key, format!("[{}, {}]", p_ot.x, p_ot.y), &expected)
     }

@@ -21,7 +21,7 @@ use crate::{
         plan::Plan,
         scenario::{ArmFigures, PadFigures, RobotFigures, Scenario},
     },
-    robot::Robot,
+    robot::{BUILTIN, Robot, RobotError},
 };
 
 /// A scenario that can be run: resolved, with its robot and, where the file names one, the plan to judge.
@@ -50,14 +50,36 @@ pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
 /// # Errors
 /// As for [`load`].
 pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
+    if let Ok(probe) = toml::from_str::<check::FormatProbe>(text) {
+        check::Checker::toml(path, text).format(probe.format)?;
+    }
     let file = file::parse(path, text)?;
     let (scenario, robot) = resolve::resolve(path, text, &file)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let plan = match &scenario.planner.plan {
-        Some(plan) => Some(read_plan(&folder.join(plan), Some(&robot))?.0),
+        Some(plan) => {
+            let plan = read_plan(&folder.join(plan), Some(&robot))?.0;
+            resolve::plan_answers(path, text, &scenario, &plan)?;
+            Some(plan)
+        }
         None => None,
     };
     Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan })
+}
+
+/// Loads a robot for a file in `folder`. One that comes from a path is named by its whole path from then on, since the
+/// plan that names it may be written to another folder.
+///
+/// # Errors
+/// When there is no such robot or its files cannot be used.
+fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
+    let mut robot = Robot::load(description, folder)?;
+    if !BUILTIN.contains(&description)
+        && let Ok(path) = folder.join(description).canonicalize()
+    {
+        robot.description = path.display().to_string();
+    }
+    Ok(robot)
 }
 
 /// The figures of a robot that a plan's result depends on.

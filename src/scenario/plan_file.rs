@@ -2,7 +2,12 @@
 
 use std::path::Path;
 
-use super::{InputError, InputErrorKind, check::Checker, error::read_text};
+use super::{
+    InputError, InputErrorKind,
+    check::{Checker, FormatProbe},
+    error::read_text,
+    load_robot,
+};
 use crate::{
     model::plan::{ArmHold, Plan},
     robot::{Arm, Chain, Robot},
@@ -20,16 +25,19 @@ const HAND_TOLERANCE: (f64, f64) = (1e-3, 0.1 * std::f64::consts::PI / 180.0);
 /// When the file cannot be read, is not a plan of this format, or asks for what the robot is not or cannot do.
 pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), InputError> {
     let text = read_text(path)?;
-    let plan = parse(path, &text)?;
     let check = Checker::json(path, &text);
-    check.format(plan.format)?;
+    if let Ok(probe) = serde_json::from_str::<FormatProbe>(&text) {
+        check.format(probe.format)?;
+    }
+    let mut plan = parse(path, &text)?;
     let robot = match robot {
         Some(robot) if robot.description == plan.robot => robot.clone(),
         _ => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            Robot::load(&plan.robot, folder).map_err(|e| check.robot("robot", e))?
+            load_robot(&plan.robot, folder).map_err(|e| check.robot("robot", e))?
         }
     };
+    plan.robot.clone_from(&robot.description);
     check_object(&check, &plan)?;
     check_arms(&check, &plan, &robot)?;
     Ok((plan, robot))

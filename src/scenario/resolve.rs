@@ -8,7 +8,7 @@ use super::{
     InputError,
     check::Checker,
     file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
-    material, robot_figures,
+    load_robot, material, robot_figures,
 };
 use crate::{
     human::{body::MAX_LEAN_DEG, tools::default_tool},
@@ -35,10 +35,9 @@ const MAX_STEPS: f64 = 300_000.0;
 /// When the robot cannot be loaded or a figure is not what it must be.
 pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario, Robot), InputError> {
     let check = Checker::toml(path, text);
-    check.format(file.format)?;
     name(&check, &file.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let robot = Robot::load(&file.robot.description, folder).map_err(|e| check.robot("robot.description", e))?;
+    let robot = load_robot(&file.robot.description, folder).map_err(|e| check.robot("robot.description", e))?;
     let object = board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
     grip(&check, &file.grip, &robot)?;
@@ -209,6 +208,35 @@ fn limits(check: &Checker<'_>, section: &LimitsSection, kind: OperationKind) -> 
     check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
     check.within("limits.load_factor", limits.load_factor, 0.0, 100.0, "a multiple of the load")?;
     Ok(limits)
+}
+
+/// How far a plan's board or operation may be from the scenario's, m, N and N m: rounding of written figures.
+const SAME: f64 = 1e-6;
+
+/// Checks that the plan which a scenario names is one for its robot, board and operation; the tool's roll is the plan's.
+///
+/// # Errors
+/// When it answers another scenario.
+pub fn plan_answers(path: &Path, text: &str, scenario: &Scenario, plan: &Plan) -> Result<(), InputError> {
+    let check = Checker::toml(path, text);
+    let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
+    let same_robot = plan.robot == scenario.robot.description;
+    let found = format!("a plan for the robot \"{}\"", plan.robot);
+    check.that(same_robot, "planner.plan", found, &format!("one for \"{}\"", scenario.robot.description))?;
+    let (found, expected) = (plan.object, &scenario.object);
+    let same_board = close(&found.size_m, &expected.size_m) && close(&[found.mass_kg], &[expected.mass_kg()]);
+    let found = format!("a plan for a board of {:?} m and {} kg", found.size_m, found.mass_kg);
+    let expected = format!("{:?} m and {} kg", expected.size_m, expected.mass_kg());
+    check.that(same_board, "planner.plan", found, &expected)?;
+    let (found, expected) = (&plan.operation, &scenario.operation);
+    let (tip, meant) = (found.x_ot.translation.vector, expected.x_ot.translation.vector);
+    let same_operation = found.kind == expected.kind
+        && close(tip.as_slice(), meant.as_slice())
+        && close(found.wrench_o.to_vector().as_slice(), expected.wrench_o.to_vector().as_slice());
+    let describe = |kind, wrench: [f64; 6], at: &[f64]| format!("{kind:?} with {wrench:?} at {at:?}");
+    let found = format!("a plan for {}", describe(found.kind, found.wrench_o.into(), tip.as_slice()));
+    let expected = describe(expected.kind, expected.wrench_o.into(), meant.as_slice());
+    check.that(same_operation, "planner.plan", found, &expected)
 }
 
 /// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.

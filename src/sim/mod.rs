@@ -64,10 +64,13 @@ use crate::{
     model::{
         plan::Plan,
         scenario::SimulationSettings,
-        trace::{ArmTrace, Trace},
+        trace::{ArmTrace, Sample, Trace},
     },
     robot::Robot,
 };
+
+/// How long the board may go without a touch before it counts as lost, s: long enough to see it fall, 5 cm by then.
+const LOST_AFTER_S: f64 = 0.1;
 
 /// Simulates a hold: settle, ramp, hold, release.
 ///
@@ -75,6 +78,8 @@ use crate::{
 /// robot, under gravity and the operation's wrench. The wrench acts at the tool point and turns with the board: nothing
 /// while settling, growing evenly in the ramp, whole in the hold, nothing after. `friction` is the Coulomb coefficient
 /// between pads and board.
+///
+/// When no pad has touched the board for a tenth of a second the board is lost, and the trace ends there.
 ///
 /// A simulation that breaks down is no error: its trace ends with the last state that can be believed and says why in
 /// [`Trace::broke_down`]. Equal inputs give equal traces, bit by bit.
@@ -85,6 +90,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &Simulation
     let profile = LoadProfile::new(settings)?;
     let mut scene = Scene::new(robot, plan, friction, settings.timestep_s)?;
     let mut trace = empty_trace(robot, plan, profile.steps() + 1);
+    let mut untouched_s = 0.0;
     for step in 0..=profile.steps() {
         let (phase, load_factor) = profile.at(step);
         if step > 0 {
@@ -99,8 +105,19 @@ pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &Simulation
         let sample = &mut trace.samples[step];
         (sample.time_s, sample.phase) = (time_s, phase);
         scene.observe(sample);
+        untouched_s = if is_touched(sample) { 0.0 } else { untouched_s + settings.timestep_s };
+        if untouched_s > LOST_AFTER_S {
+            trace.samples.truncate(step + 1);
+            break;
+        }
     }
     Ok(trace)
+}
+
+/// True when some pad presses on the board; also before the first step, which has no forces yet.
+fn is_touched(sample: &Sample) -> bool {
+    let mut pads = sample.arms.iter().flat_map(|arm| &arm.pads);
+    sample.time_s == 0.0 || pads.any(|pad| pad.normal_force_n > 0.0)
 }
 
 /// A trace with room for every sample, so that the steps allocate nothing of ours.

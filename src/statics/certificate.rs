@@ -11,11 +11,18 @@ use super::{
     program::{FORCE_UNIT_N, Layout, MAX_LOAD_FACTOR, Program, ProgramKind, wrench_units},
 };
 
-/// A dual vector of a hold's load program, in the program's scaled rows.
+/// A dual vector of a hold's load program, with or without torque limits, in the program's scaled rows.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DualVector(pub(super) Vec<f64>);
+pub struct DualVector {
+    kind: ProgramKind,
+    z: Vec<f64>,
+}
 
 impl DualVector {
+    pub(super) fn new(program: &Program, z: &[f64]) -> Self {
+        Self { kind: program.layout.kind(), z: z.to_vec() }
+    }
+
     /// An upper bound of the load factor of this hold, by weak duality, true up to rounding whatever the vector: its
     /// inequality parts are first moved into the dual cone, and what is left of `q + A'z` is charged at the largest
     /// size that each variable can have. Infinite when the vector is that of a hold with other dimensions.
@@ -24,7 +31,7 @@ impl DualVector {
     /// When the hold is broken.
     pub fn upper_bound(&self, hold: &Hold) -> Result<f64, HoldError> {
         hold.check()?;
-        let program = Program::load(hold, ProgramKind::Load);
+        let program = Program::load(hold, self.kind);
         Ok(self.bound(hold, &program, &program.q))
     }
 
@@ -35,13 +42,18 @@ impl DualVector {
     /// When the hold is broken.
     pub fn proves_infeasible(&self, hold: &Hold) -> Result<bool, HoldError> {
         hold.check()?;
-        let program = Program::load(hold, ProgramKind::Load);
-        Ok(self.bound(hold, &program, &vec![0.0; program.q.len()]) < 0.0)
+        let program = Program::load(hold, self.kind);
+        Ok(self.refutes(hold, &program))
+    }
+
+    /// True when this vector proves that the program has no feasible point.
+    pub(super) fn refutes(&self, hold: &Hold, program: &Program) -> bool {
+        self.bound(hold, program, &vec![0.0; program.q.len()]) < 0.0
     }
 
     /// `b'z + sum |q + A'z|_i x_i,max` for the vector moved into the dual cone.
     fn bound(&self, hold: &Hold, program: &Program, q: &[f64]) -> f64 {
-        if self.0.len() != program.b.len() {
+        if self.z.len() != program.b.len() {
             return f64::INFINITY;
         }
         let z = self.in_dual_cone(&program.layout, hold.hands.len());
@@ -55,7 +67,7 @@ impl DualVector {
     }
 
     fn in_dual_cone(&self, layout: &Layout, hands: usize) -> Vec<f64> {
-        let mut z = self.0.clone();
+        let mut z = self.z.clone();
         let first_cone = layout.friction_rows(0, 0);
         z[layout.load_rows()..first_cone].iter_mut().for_each(|value| *value = value.max(0.0));
         for cone in 0..2 * hands {

@@ -33,7 +33,7 @@ const DISPLACEMENT_UNIT_M: f64 = 1e-3;
 
 /// Compliance of a pad against a force through its centre, m/N; against a moment, this over the square of the lever at
 /// which the pad takes it up (a half side, or the torsion radius). See the module's text.
-const PAD_COMPLIANCE_M_N: f64 = 1e-9;
+const PAD_COMPLIANCE_M_N: f64 = 1e-10;
 
 /// The forces and displacements at one load factor. Displacements are measured from where the commanded angles, with
 /// gravity of the arms compensated, would put board and hands; only changes of them are observed.

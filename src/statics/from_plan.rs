@@ -29,7 +29,7 @@ impl Hold {
     /// the two faces, and only their part on the face counts (see [`clip_to_rectangle`]).
     ///
     /// # Errors
-    /// When an arm is unknown, its angles are too few or too many, its fingers do not straddle the faces, or a pad does
+    /// When an arm is unknown, its joints are not the robot's, its angles are too few or too many, its fingers do not straddle the faces, or a pad does
     /// not touch the board.
     pub fn from_plan(
         robot: &Robot,
@@ -81,12 +81,17 @@ impl HandModel {
             let (found, expected) = (plan_arm.q_rad.len(), chain.dof());
             return Err(HoldError::JointCount { hand: name.clone(), what: "q_rad", found, expected });
         }
+        let joints: Vec<String> = arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect();
+        if plan_arm.joints != joints {
+            let found = plan_arm.joints.clone();
+            return Err(HoldError::JointNames { hand: name.clone(), found, expected: joints });
+        }
         let pads = [0, 1].map(|finger| pad_model(&arm.gripper, finger, plan_arm, object, friction));
         let [first, second] = pads;
         let grasp_point_g = arm.gripper.grasp_point_g();
         Ok(Self {
             name: name.clone(),
-            joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
+            joints,
             pads: [first?, second?],
             grip_force_n: plan_arm.grip_force_n,
             grasp_point_o: (plan_arm.x_og * nalgebra::Point3::from(grasp_point_g)).coords,

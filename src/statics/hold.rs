@@ -130,6 +130,16 @@ pub enum HoldError {
     /// An arm that the robot does not have.
     #[error("found arm \"{0}\", which the robot does not have")]
     UnknownArm(String),
+    /// Joints that are not the arm's, or in another order.
+    #[error("{hand} hand: found the joints {found:?}, expected {expected:?}")]
+    JointNames {
+        /// The hand.
+        hand: String,
+        /// The plan's joints.
+        found: Vec<String>,
+        /// The robot's.
+        expected: Vec<String>,
+    },
     /// A pad that does not touch the object's face.
     #[error("{hand} {pad} pad: no part of it lies on the board")]
     PadOffBoard {

@@ -75,7 +75,7 @@ impl LoadFactorOutcome {
 
 /// A limit of a pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PadLimit {
+enum PadLimit {
     /// Sliding along the face.
     Friction,
     /// Turning about the normal.
@@ -88,7 +88,7 @@ pub enum PadLimit {
 
 impl PadLimit {
     /// The name in plans and tables.
-    pub fn name(self) -> &'static str {
+    fn name(self) -> &'static str {
         match self {
             Self::Friction => "friction",
             Self::Torsion => "torsion",
@@ -104,7 +104,13 @@ pub(super) fn interpret(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -
         SolverStatus::Solved => 0.0,
         SolverStatus::AlmostSolved => ALMOST_SOLVED_MARGIN,
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-            return LoadFactorOutcome::GravityInfeasible { certificate: DualVector(raw.z.to_vec()) };
+            let certificate = DualVector::new(program, raw.z);
+            // The solver's word is not enough: the proof must be one.
+            return if certificate.refutes(hold, program) {
+                LoadFactorOutcome::GravityInfeasible { certificate }
+            } else {
+                LoadFactorOutcome::Unknown { status: format!("{:?}", raw.status) }
+            };
         }
         status => return LoadFactorOutcome::Unknown { status: format!("{status:?}") },
     };
@@ -118,7 +124,7 @@ pub(super) fn interpret(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -
         pad_wrenches_p,
         joint_torque_nm,
         dual_twist: balance_twist(raw.z, 1.0),
-        dual: DualVector(raw.z.to_vec()),
+        dual: DualVector::new(program, raw.z),
     })
 }
 

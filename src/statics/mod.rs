@@ -31,7 +31,7 @@ pub use compliance::{Twist, WeldedHold};
 pub use compliant_load::{CompliantLoadFactor, Crossing};
 pub use equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome};
 pub use hold::{HandModel, Hold, HoldError, PadModel};
-pub use load_factor::{LoadFactor, LoadFactorOutcome, PadLimit};
+pub use load_factor::{LoadFactor, LoadFactorOutcome};
 pub use patch::{clip_to_rectangle, mean_distance_from_centre_m};
 pub use program::MAX_LOAD_FACTOR;
 pub use workspace::StabilityWorkspace;

@@ -55,8 +55,7 @@ fn trim(low: &mut Vector2<f64>, high: &mut Vector2<f64>, outward: &Vector2<f64>,
     // The share of the box that is left when this axis gives way; an axis along the edge cannot help.
     let remaining = |axis: usize| 1.0 - excess_m / (outward[axis].abs() * (high[axis] - low[axis]));
     let axis = if remaining(0) >= remaining(1) { 0 } else { 1 };
-    // `>` rather than `<=` so that a box of no size, whose share is not a number, is dropped as well.
-    if !(remaining(axis) > 0.0) {
+    if remaining(axis).is_nan() || remaining(axis) <= 0.0 {
         return None;
     }
     let cut_m = excess_m / outward[axis].abs();

@@ -73,6 +73,10 @@ impl Layout {
         Self { kind, dofs: hold.hands.iter().map(HandModel::dof).collect() }
     }
 
+    pub(super) fn kind(&self) -> ProgramKind {
+        self.kind
+    }
+
     fn hands(&self) -> usize {
         self.dofs.len()
     }
@@ -175,7 +179,7 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// The program of socp form 1 to 5: maximise lambda, with torque limits for [`ProgramKind::Load`], without for
+    /// Maximise lambda, with torque limits for [`ProgramKind::Load`], without for
     /// [`ProgramKind::Friction`].
     pub(super) fn load(hold: &Hold, kind: ProgramKind) -> Self {
         let layout = Layout::new(hold, kind);

@@ -1,0 +1,281 @@
+//! The compliant equilibrium against the welded hold, closed forms, the energy theorem and a scan.
+
+use benchdog::{
+    model::{scenario::Limits, wrench::Wrench},
+    statics::{CompliantResponse, Crossing, Hold, LoadFactorOutcome, ResponseOutcome, StabilityWorkspace, WeldedHold},
+};
+use nalgebra::{DVector, Vector3};
+
+use crate::fixtures::{limits, random_hold, strong_hand, two_strong_hands};
+
+fn response(hold: &Hold, load_factor: f64) -> CompliantResponse {
+    match StabilityWorkspace::new().response(hold, load_factor).unwrap() {
+        ResponseOutcome::Found(response) => response,
+        other => panic!("expected an equilibrium, found {other:?}"),
+    }
+}
+
+/// A random hold whose pads are far from their limits.
+fn elastic_hold(seed: u64) -> Hold {
+    let mut hold = random_hold(seed, 2);
+    hold.hands.iter_mut().for_each(|hand| hand.grip_force_n = 1e3);
+    hold
+}
+
+/// No limit but those of pads.
+fn no_limits() -> Limits {
+    Limits { slip_mm: 1e9, slip_deg: 1e9, deflection_mm: 1e9, creep_mm_s: 1e9, torque_ratio: 1e9, load_factor: 1.0 }
+}
+
+/// The pads' own compliance, two in parallel: 1e-10/(2 e^2) = 2.3e-7 rad/(N m) beside an arm's 1e-3 about an axis, and
+/// less along one. With moments that levers raise, below a thousandth.
+const PAD_SHARE: f64 = 1e-3;
+
+#[test]
+fn without_slip_the_board_moves_as_if_welded() {
+    for seed in 0..20 {
+        let hold = elastic_hold(seed);
+        let welded = WeldedHold::new(&hold).unwrap();
+        let expected = welded.twist_at_tip(&hold.load);
+        let found = response(&hold, 1.0);
+        approx::assert_relative_eq!(found.deflection_m, expected.linear, epsilon = PAD_SHARE * expected.linear.norm());
+        for (hand, slip) in found.slip.iter().enumerate() {
+            // A pad gives way by its own compliance, 1e-10 m/N times some 30 N; for moments of 3 N m, 1e-6 rad.
+            assert!(slip.linear.norm() < 1e-7 && slip.angular.norm() < 5e-6, "hand {hand}: {slip:?}");
+        }
+        let unloaded = response(&hold, 0.0);
+        for ((hand, wrench), (loaded, unloaded)) in hold
+            .hands
+            .iter()
+            .zip(welded.hand_wrenches(&hold.load))
+            .zip(found.equilibrium.joint_torque_nm.iter().zip(&unloaded.equilibrium.joint_torque_nm))
+        {
+            let expected = hand.jacobian_o.tr_mul(&wrench.to_vector());
+            let largest = expected.amax();
+            approx::assert_relative_eq!(
+                loaded - unloaded,
+                DVector::from(expected.as_slice().to_vec()),
+                epsilon = 5.0 * PAD_SHARE * largest
+            );
+        }
+    }
+}
+
+#[test]
+fn without_slip_pads_do_not_matter() {
+    for seed in 0..10 {
+        let hold = elastic_hold(seed);
+        let reference = response(&hold, 1.0).deflection_m;
+        let mut other = hold.clone();
+        for hand in &mut other.hands {
+            hand.grip_force_n *= 1.7;
+            hand.pads[0].friction *= 1.5;
+            hand.pads[1].half_sides_m[0] *= 0.7;
+            hand.pads[1].x_op.translation.vector.x += 0.005;
+        }
+        approx::assert_relative_eq!(
+            response(&other, 1.0).deflection_m,
+            reference,
+            epsilon = PAD_SHARE * reference.norm()
+        );
+    }
+}
+
+#[test]
+fn welded_hands_are_springs_in_parallel() {
+    // Two hands of 1000 N/m and 1000 N m/rad at x = +-0.23 m.
+    let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::new(1.0, 0.0, 0.0)));
+    hold.p_ot = Vector3::zeros();
+    let stiffness = WeldedHold::new(&hold).unwrap().stiffness_about_tip();
+    let about_z = 2.0 * (1000.0 + 1000.0 * 0.23 * 0.23);
+    approx::assert_relative_eq!(stiffness[(0, 0)], 2000.0, epsilon = 1e-9);
+    approx::assert_relative_eq!(stiffness[(5, 5)], about_z, epsilon = 1e-9);
+    // Twice 1000 N/m: half a millimetre a newton.
+    approx::assert_relative_eq!(response(&hold, 1.0).deflection_m.x, 5e-4, max_relative = 1e-5);
+    // Under a moment about z, each hand is pushed along y as well.
+    hold.load = Wrench::new(Vector3::zeros(), Vector3::new(0.0, 0.0, 1.0));
+    hold.p_ot = Vector3::new(0.1, 0.0, 0.0);
+    approx::assert_relative_eq!(response(&hold, 0.2).deflection_m.y, 0.1 * 0.2 / about_z, max_relative = PAD_SHARE);
+}
+
+#[test]
+fn a_hand_that_slides_leaves_the_rest_to_the_other() {
+    // Along x, in line with both hands: each takes half until the weak one slides at 2 mu F = 12 N.
+    let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::new(30.0, 0.0, 0.0)));
+    hold.p_ot = Vector3::zeros();
+    hold.hands[1].grip_force_n = 10.0;
+    let compliance = 1e-3;
+    let elastic = response(&hold, 0.5);
+    approx::assert_relative_eq!(elastic.deflection_m.x, 7.5 * compliance, max_relative = 1e-4);
+    let sliding = response(&hold, 1.0);
+    // The strong hand takes 30 - 12 N; the weak one moved by 12 N's worth, the board by 18 N's.
+    approx::assert_relative_eq!(sliding.deflection_m.x, 18.0 * compliance, max_relative = 1e-4);
+    approx::assert_relative_eq!(sliding.slip[1].linear.x, 6.0 * compliance, max_relative = 1e-4);
+    assert!(sliding.slip[0].linear.norm() < 1e-6);
+    let crossing = sliding.crossing(&hold, &limits());
+    assert_eq!(crossing, Some(Crossing::Slip { hand: "right".into() }));
+    // Slip of 1 mm at 12 + 12 + 1 N, in units of 30 N.
+    let found = StabilityWorkspace::new().compliant_load_factor(&hold, &limits()).unwrap();
+    approx::assert_abs_diff_eq!(found.load_factor, 25.0 / 30.0, epsilon = 1.1e-3);
+    assert_eq!(found.first_limit, Some(Crossing::Slip { hand: "right".into() }));
+}
+
+#[test]
+fn a_hand_that_turns_becomes_a_hinge() {
+    // One hand on springs that turn easily, one stiff; a moment about the pads' normal through the board. The weak
+    // pads turn at 2 mu e F, and the other hand takes the rest.
+    let hand = |name: &str, grip_n: f64| {
+        let mut hand = strong_hand(name, Vector3::zeros(), Vector3::z(), Vector3::x(), grip_n, 0.6, 0.03);
+        hand.stiffness_nm_rad = DVector::from_element(6, 100.0);
+        hand
+    };
+    let load = Wrench::new(Vector3::zeros(), Vector3::new(0.0, 0.0, 1.0));
+    let hold = Hold {
+        hands: vec![hand("left", 100.0), hand("right", 10.0)],
+        weight: Wrench::default(),
+        load,
+        p_ot: Vector3::zeros(),
+    };
+    let held_nm = 2.0 * 0.6 * 10.0 * hold.hands[1].pads[0].torsion_radius_m();
+    let found = response(&hold, 1.0);
+    let turned_rad = (1.0 - held_nm) / 100.0;
+    let slip_rad = turned_rad - held_nm / 100.0;
+    approx::assert_relative_eq!(found.slip[1].angular.z, slip_rad, max_relative = PAD_SHARE);
+    approx::assert_relative_eq!(found.equilibrium.board.angular.z, turned_rad, max_relative = PAD_SHARE);
+}
+
+#[test]
+fn the_work_of_the_load_is_the_slope_of_the_energy() {
+    // d(energy)/d(lambda) = load . d(lambda), slip or no slip: energy by the joints' springs, displacement by duality.
+    let mut workspace = StabilityWorkspace::new();
+    let mut compared = 0;
+    for seed in 0..40 {
+        let hold = random_hold(seed, 1 + seed as usize % 3);
+        let Some(last) = workspace.friction_load_factor(&hold).unwrap().load_factor() else { continue };
+        let at = 0.8 * last.min(5.0);
+        let step = 1e-3 * at;
+        let energy = |load_factor: f64| {
+            let torques = response(&hold, load_factor).equilibrium.joint_torque_nm;
+            let of_hand = |(hand, torque): (&benchdog::statics::HandModel, &DVector<f64>)| {
+                let spring = torque - &hand.gravity_torque_nm;
+                spring.component_mul(&spring).component_div(&hand.stiffness_nm_rad).sum() / 2.0
+            };
+            hold.hands.iter().zip(&torques).map(of_hand).sum::<f64>()
+        };
+        let slope = (energy(at + step) - energy(at - step)) / (2.0 * step);
+        let work = response(&hold, at).equilibrium.board.work(&hold.load);
+        // The energy's third derivative jumps where a pad starts to slip; the difference quotient is then good to the
+        // step, 1e-3. The pads' own energy is another thousandth.
+        approx::assert_relative_eq!(work, slope, max_relative = 5e-3, epsilon = 1e-6);
+        compared += 1;
+    }
+    assert!(compared >= 20, "only {compared} of 40 random holds carry their weight");
+}
+
+#[test]
+fn one_hand_alone_is_limited_by_its_pads() {
+    // Statically determinate: the equilibrium ends where friction does, whatever the springs.
+    let hand = strong_hand("left", Vector3::zeros(), Vector3::y(), Vector3::x(), 30.0, 0.6, 0.03);
+    let load = Wrench::from_force(Vector3::new(0.0, 0.0, -10.0));
+    let hold = Hold { hands: vec![hand], weight: Wrench::default(), load, p_ot: Vector3::zeros() };
+    let mut workspace = StabilityWorkspace::new();
+    let found = workspace.compliant_load_factor(&hold, &no_limits()).unwrap();
+    approx::assert_abs_diff_eq!(found.load_factor, 3.6, epsilon = 3.6e-3);
+    let Some(Crossing::NoEquilibrium { binding }) = &found.first_limit else { panic!("{:?}", found.first_limit) };
+    assert!(binding.contains(&"left upper pad: friction".into()), "{binding:?}");
+    // Beyond, there is none; and too heavy a board has none at all.
+    assert!(matches!(workspace.response(&hold, 3.7).unwrap(), ResponseOutcome::NoEquilibrium { load_factor: 3.7 }));
+    let mut heavy = hold.clone();
+    heavy.weight = Wrench::from_force(Vector3::new(0.0, 0.0, -40.0));
+    assert!(matches!(workspace.response(&heavy, 1.0).unwrap(), ResponseOutcome::NoEquilibrium { load_factor: 0.0 }));
+    let found = workspace.compliant_load_factor(&heavy, &no_limits()).unwrap();
+    assert_eq!((found.load_factor, found.first_limit), (0.0, Some(Crossing::NoEquilibrium { binding: Vec::new() })));
+}
+
+#[test]
+fn elastic_limits_are_found_where_the_springs_put_them() {
+    let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::new(10.0, 0.0, 0.0)));
+    hold.p_ot = Vector3::zeros();
+    let mut workspace = StabilityWorkspace::new();
+    // 5 mm a load factor: 15 mm at 3.
+    let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
+    approx::assert_abs_diff_eq!(found.load_factor, 3.0, epsilon = 3.1e-3);
+    assert_eq!(found.first_limit, Some(Crossing::Deflection));
+    // Both probes sit at the welded prediction.
+    assert_eq!(found.equilibria, 3);
+    // The first joint of each hand moves along x and takes 5 N m a load factor on top of 4.
+    for hand in &mut hold.hands {
+        hand.effort_nm[0] = 14.0;
+        hand.gravity_torque_nm[0] = -4.0;
+    }
+    let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
+    approx::assert_abs_diff_eq!(found.load_factor, 2.0, epsilon = 2.1e-3);
+    assert_eq!(found.first_limit.unwrap().to_string(), "left_0: torque");
+    // Beyond its torque already under gravity.
+    hold.hands[1].gravity_torque_nm[0] = -15.0;
+    let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
+    assert_eq!(found.load_factor, 0.0);
+    assert_eq!(found.first_limit.unwrap().to_string(), "right_0: torque");
+    // Nothing to hold: the cap.
+    let idle = two_strong_hands(Wrench::default(), Wrench::default());
+    let found = workspace.compliant_load_factor(&idle, &limits()).unwrap();
+    assert_eq!((found.load_factor, found.first_limit), (100.0, None));
+}
+
+#[test]
+fn the_search_finds_the_first_crossing_of_a_scan() {
+    let mut workspace = StabilityWorkspace::new();
+    let mut crossings = 0;
+    for seed in 0..40 {
+        let hold = random_hold(seed, 1 + seed as usize % 2);
+        let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
+        let kept = |workspace: &mut StabilityWorkspace, load_factor: f64| {
+            let outcome = workspace.response(&hold, load_factor).unwrap();
+            matches!(outcome, ResponseOutcome::Found(response) if response.crossing(&hold, &limits()).is_none())
+        };
+        if found.load_factor > 0.0 {
+            for step in 0..=20 {
+                let load_factor = found.load_factor * f64::from(step) / 20.0;
+                assert!(kept(&mut workspace, load_factor), "seed {seed}: crossed at {load_factor} before {found:?}");
+            }
+        }
+        if found.load_factor < 100.0 {
+            // The search's tolerance is a thousandth.
+            let beyond = found.load_factor + 1.1e-3 * found.load_factor.max(1.0);
+            assert!(!kept(&mut workspace, beyond), "seed {seed}: nothing crossed at {beyond} after {found:?}");
+            crossings += 1;
+        }
+    }
+    assert!(crossings >= 30, "only {crossings} of 40");
+}
+
+#[test]
+fn the_compliant_load_factor_is_never_above_the_best_case() {
+    let mut workspace = StabilityWorkspace::new();
+    for seed in 0..60 {
+        let hold = random_hold(seed, 1 + seed as usize % 4);
+        let best = match workspace.load_factor(&hold).unwrap() {
+            LoadFactorOutcome::Solved(solved) => solved.load_factor,
+            LoadFactorOutcome::GravityInfeasible { .. } => 0.0,
+            LoadFactorOutcome::Unknown { status } => panic!("seed {seed}: {status}"),
+        };
+        let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
+        assert!(found.load_factor <= best + 1e-4 * best.max(1.0), "seed {seed}: {found:?} above {best}");
+    }
+}
+
+#[test]
+fn springs_that_cannot_give_way_have_no_welded_stiffness() {
+    // Two joints leave four directions rigid.
+    let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::x()));
+    for hand in &mut hold.hands {
+        hand.joints.truncate(2);
+        hand.jacobian_o = hand.jacobian_o.columns(0, 2).into_owned();
+        for values in [&mut hand.gravity_torque_nm, &mut hand.effort_nm, &mut hand.stiffness_nm_rad] {
+            *values = values.rows(0, 2).into_owned();
+        }
+    }
+    assert!(WeldedHold::new(&hold).is_none());
+    // The equilibrium does without: both first joints are springs of 1000 N/m along x.
+    approx::assert_relative_eq!(response(&hold, 1.0).deflection_m.x, 5e-4, max_relative = 1e-3);
+}
