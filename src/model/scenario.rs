@@ -161,7 +161,8 @@ impl Board {
 pub enum PersonAnswer {
     /// The best feasible answer.
     Most,
-    /// The mean over all feasible answers of a uniform grid.
+    /// The mean over all feasible answers of a uniform grid. The search looks for holds with the best answer and ranks the
+    /// best few of them by the mean.
     Average,
 }
 
