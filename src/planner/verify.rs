@@ -130,12 +130,17 @@ fn figures(
             None => flaws.push(Flaw("the person has no answer on the grid of the average".into())),
         }
     }
-    let compared = [
+    let mut compared = vec![
         ("muscular", written.muscular, found.muscular),
         ("muscular_regularised", written.muscular_regularised, found.muscular_regularised),
         ("peripersonal_m", written.peripersonal_m, found.peripersonal_m),
         ("objective", written.objective, found.objective),
     ];
+    if let (Some(written), Some(found)) = (written.average, found.average) {
+        let AverageComfort { muscular_regularised, peripersonal_m, .. } = found;
+        compared.push(("average.muscular_regularised", written.muscular_regularised, muscular_regularised));
+        compared.push(("average.peripersonal_m", written.peripersonal_m, peripersonal_m));
+    }
     for (name, written, found) in compared {
         expect(same(written, found), flaws, || format!("comfort.{name} is {written} in the plan and {found} in fact"));
     }
