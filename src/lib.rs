@@ -16,6 +16,7 @@
 //! | [`human`] | the person: body, arm, strength, both comfort metrics |
 //! | [`statics`] | how much load a hold stands: the stability program and the compliant equilibrium |
 //! | [`collision`] | robot, board, tool and person: who touches whom |
+//! | [`comfort`] | how comfortable a hold is: over all of the person's answers to it |
 //! | [`planner`] | the search for a comfortable and stable hold |
 //! | [`sim`] | the rapier simulation of a hold |
 //! | [`judge`] | a trace against its limits |
@@ -28,6 +29,7 @@
 
 pub mod cli;
 pub mod collision;
+pub mod comfort;
 pub mod human;
 pub mod judge;
 pub mod model;

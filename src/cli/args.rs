@@ -33,6 +33,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Simulate and judge a plan, ours or anybody's
     Simulate(SimulateArgs),
+    /// Write the best and worst muscular comfort along a circle that is cut, as CSV and SVG
+    Curve(CurveArgs),
     /// Print the JSON Schema of a file format
     Schema(SchemaArgs),
 }
@@ -95,6 +97,17 @@ pub struct SimulateArgs {
     /// Reports and recordings.
     #[command(flatten)]
     pub report: ReportArgs,
+}
+
+/// `benchdog curve`.
+#[derive(Clone, Debug, Args)]
+pub struct CurveArgs {
+    /// Scenario of a cut, whose person, tool, board, force and distance from the middle count; that of the paper's
+    /// reproduction unless given
+    pub scenario: Option<PathBuf>,
+    /// Folder for `muscular_curve.csv` and `muscular_curve.svg`
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
 }
 
 /// `benchdog schema`.

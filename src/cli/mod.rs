@@ -2,6 +2,7 @@
 //! written, and turn what happened into an exit code. Nothing below this module knows any of these.
 
 mod args;
+mod curve;
 mod exit;
 mod finish;
 mod output;
@@ -38,6 +39,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(args),
         Command::Plan(args) => plan::plan(args),
         Command::Simulate(args) => simulate::simulate(args),
+        Command::Curve(args) => curve::curve(args),
         Command::Schema(args) => schema::schema(args),
     });
     match outcome {

@@ -174,14 +174,23 @@ impl CollisionModel {
             return Some(Violation { bodies: [body; 2], required_m: 0.0, distance_m: f64::NAN });
         }
         // Every primitive is placed once: a link is near to several others.
-        let placed = self.links.iter().zip(scene.link_poses).flat_map(|(link, x_wl)| place_all(&link.pieces, x_wl));
-        let placed: Vec<Placed<'_>> = placed.collect();
+        let placed = self.placed_primitives(scene.link_poses);
         let links = self.placed_links(scene.link_poses, &placed);
         let board = Piece::cuboid(scene.board_size_m);
         let board = board.placed(&scene.x_wo);
         self.robot_self(&links)
             .or_else(|| self.robot_board(scene, &links, &board))
             .or_else(|| scene.person.iter().find_map(|part| person(&links, &board, part)))
+    }
+
+    /// The first rule that the person breaks; the robot and the board are taken as they are, and as finite. With no link
+    /// poses, the board alone is in the way.
+    pub fn first_violation_of_person(&self, scene: &Scene<'_>) -> Option<Violation> {
+        let placed = self.placed_primitives(scene.link_poses);
+        let links = self.placed_links(scene.link_poses, &placed);
+        let board = Piece::cuboid(scene.board_size_m);
+        let board = board.placed(&scene.x_wo);
+        scene.person.iter().find_map(|part| person(&links, &board, part))
     }
 
     /// The least that any two bodies are farther apart than they must be, m: at most 0 when a rule is broken, infinite
@@ -248,6 +257,11 @@ impl CollisionModel {
     /// True for the fingers of a gripper that holds the board.
     fn may_touch_board(&self, scene: &Scene<'_>, link: usize) -> bool {
         scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link))
+    }
+
+    /// All primitives of all links in the world, link by link.
+    fn placed_primitives(&self, poses: &[Pose]) -> Vec<Placed<'_>> {
+        self.links.iter().zip(poses).flat_map(|(link, x_wl)| place_all(&link.pieces, x_wl)).collect()
     }
 
     /// All links, with their primitives out of the list of all.

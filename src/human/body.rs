@@ -19,6 +19,9 @@ pub fn standing_pose_w(x_m: f64, y_m: f64, heading_rad: f64, floor_z_m: f64) -> 
     Isometry3::from_parts(Vector3::new(x_m, y_m, floor_z_m).into(), rotation)
 }
 
+/// How far a person may lean, degrees: beyond, nobody stands at ease.
+pub const MAX_LEAN_DEG: f64 = 15.0;
+
 /// A segment of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
@@ -43,6 +46,8 @@ pub struct Body {
     pub hip_m: f64,
     /// Height of the knees over the floor, m.
     pub knee_m: f64,
+    /// How far the trunk leans forward about the hips, rad. All other figures are those of the upright body.
+    pub lean_rad: f64,
     /// Shoulder to elbow.
     pub upper_arm: Segment,
     /// Elbow to wrist.
@@ -163,6 +168,7 @@ impl Body {
             chin_m: lengths.chin_height * height_m,
             hip_m: lengths.hip_height * height_m,
             knee_m: lengths.knee_height * height_m,
+            lean_rad: person.lean_deg.to_radians(),
             upper_arm: segment(lengths.upper_arm, &of_sex.upper_arm),
             forearm: segment(lengths.forearm, &of_sex.forearm),
             hand: segment(lengths.hand, &of_sex.hand),
@@ -170,6 +176,14 @@ impl Body {
             arm_limits_rad: arm.limits_deg.map(|range| range.map(f64::to_radians)),
             thickness: capsules.thickness.scaled(height_m / capsules.reference_height_m),
         }
+    }
+
+    /// The upper body's frame V in B: that of the upright body, turned forward about the hips by the lean. Everything
+    /// above the hips is in V what it is in B when the person stands upright.
+    pub fn x_bv(&self) -> Pose {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), self.lean_rad);
+        let hips = Vector3::new(0.0, 0.0, self.hip_m);
+        Isometry3::from_parts((hips - turn * hips).into(), turn)
     }
 }
 

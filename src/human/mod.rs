@@ -2,7 +2,8 @@
 //!
 //! [`Human`] is the way in. It takes poses and wrenches as the rest of the crate has them and mirrors them for a
 //! left-handed person; all other parts know a right arm only. A posture is the body's pose X_WB and the seven angles of
-//! the working arm. Nothing here knows robots, boards or how a posture is searched for.
+//! the working arm; a scenario may let the trunk lean forward by a fixed angle. All that is above the hips is computed in
+//! the upper body's frame V, in which the leaning body is the upright one. Nothing here knows robots, boards or how a posture is searched for.
 //!
 //! | part | what it does |
 //! |---|---|
@@ -12,13 +13,17 @@
 //! | [`swivel`] | inverse kinematics, ranges of the swivel |
 //! | [`strength`] | largest torque of each joint |
 //! | [`muscular`] | joint torques, activations, muscular comfort |
+//! | [`gradient`] | how muscular comfort changes with the joints' angles |
 //! | [`peripersonal`] | peripersonal comfort |
+//! | [`rula`] | the RULA score of a posture |
 //! | [`tools`] | the tools of the paper |
 
 pub mod arm;
 pub mod body;
+pub mod gradient;
 pub mod muscular;
 pub mod peripersonal;
+pub mod rula;
 pub mod shape;
 pub mod strength;
 pub mod swivel;
@@ -31,10 +36,10 @@ mod testing;
 mod tests;
 
 pub use arm::{Arm, ArmAngles, ArmFrames, ArmJacobian};
-pub use body::{Body, standing_pose_w};
+pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use muscular::{JointTorques, Muscular};
-pub use peripersonal::peripersonal_m;
-pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, Side};
+pub use peripersonal::{Distances, peripersonal_m};
+pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, STILL_POINTS, Side};
 pub use strength::{Sense, Strength};
 pub use swivel::{ArmSolutions, ShoulderBranch, SwivelCircle, SwivelInterval, SwivelIntervals};
 pub use tools::default_tool;
@@ -45,6 +50,7 @@ use self::mirror::Mirrored;
 use crate::model::{
     GRAVITY_W,
     frames::{Pose, rotation_from_xyzw},
+    plan::RulaScore,
     scenario::{Hand, Person, StrengthDirection, Tool},
     wrench::Wrench,
 };
@@ -75,6 +81,8 @@ pub struct Human {
     arm: Arm,
     strength: Strength,
     tool_kg: f64,
+    /// The upper body's frame in the body's; its own mirror image.
+    x_bv: Pose,
 }
 
 impl Human {
@@ -86,6 +94,8 @@ impl Human {
         let positive = |v: f64| v.is_finite() && v > 0.0;
         check("person's height_m", person.height_m, positive, "a positive number")?;
         check("person's mass_kg", person.mass_kg, positive, "a positive number")?;
+        let leans = |lean: f64| (0.0..=MAX_LEAN_DEG).contains(&lean);
+        check("person's lean_deg", person.lean_deg, leans, "a number from 0 to 15")?;
         check("person's percentile", person.percentile, |p| p > 0.0 && p < 100.0, "a number between 0 and 100")?;
         check("tool's mass_kg", tool.mass_kg, |m| m.is_finite() && m >= 0.0, "zero or a positive number")?;
         for coordinate in tool.tip_h_m {
@@ -95,7 +105,8 @@ impl Human {
         let body = Body::new(person);
         let arm = Arm::new(&body, Isometry3::from_parts(tool.tip_h_m.into(), rotation));
         let strength = Strength::new(person.sex, person.percentile);
-        Ok(Self { hand: person.hand, body, arm, strength, tool_kg: tool.mass_kg })
+        let x_bv = body.x_bv();
+        Ok(Self { hand: person.hand, body, arm, strength, tool_kg: tool.mass_kg, x_bv })
     }
 
     /// The body, as that of a right-handed person.
@@ -103,7 +114,7 @@ impl Human {
         &self.body
     }
 
-    /// The working arm, as a right arm.
+    /// The working arm, as a right arm of an upright body.
     pub fn arm(&self) -> &Arm {
         &self.arm
     }
@@ -113,10 +124,15 @@ impl Human {
         &self.strength
     }
 
-    /// Pose of the working shoulder's frame in the body's: S has the axes of B.
+    /// Pose of the working shoulder's frame in the body's: S has the axes of B, or of V when the trunk leans.
     pub fn x_bs(&self) -> Pose {
-        let p_bs_m = self.on_working_side(self.arm.p_bs_m);
-        Isometry3::translation(p_bs_m.x, p_bs_m.y, p_bs_m.z)
+        let p_vs_m = self.on_working_side(self.arm.p_bs_m);
+        self.x_bv * Isometry3::translation(p_vs_m.x, p_vs_m.y, p_vs_m.z)
+    }
+
+    /// The tool tip's frame in the working hand's, X_HT.
+    pub fn x_ht(&self) -> Pose {
+        self.on_working_side(self.arm.x_ht)
     }
 
     /// Shoulder to wrist of the straight arm, m.
@@ -127,14 +143,14 @@ impl Human {
     /// The tool tip's frame in the body's, X_BT. For a left-handed person the tool is mirrored too: x_T and z_T are the
     /// mirror images, y_T completes a right-handed frame.
     pub fn tool_pose_b(&self, q_rad: &ArmAngles) -> Pose {
-        self.on_working_side(self.arm.tool_pose_b(q_rad))
+        self.x_bv * self.on_working_side(self.arm.tool_pose_b(q_rad))
     }
 
     /// The postures that put the tool's tip at `x_bt`, as a function of the swivel; none out of reach. Ask this once
     /// when many swivels of one tool pose are of interest. [`swivel`] defines the angle; for a left-handed person it is
-    /// that of the mirrored arm.
+    /// that of the mirrored arm, and "down" is along the trunk.
     pub fn swivel_circle(&self, x_bt: &Pose) -> Option<SwivelCircle> {
-        self.arm.swivel_circle(&self.on_working_side(*x_bt))
+        self.arm.swivel_circle(&self.on_working_side(self.x_bv.inverse() * x_bt))
     }
 
     /// The postures of both shoulder branches inside the joints' limits that put the tool's tip at `x_bt` with this
@@ -156,10 +172,8 @@ impl Human {
     /// The torques of the working arm's joints for the wrench that the hand exerts at the tool's tip: about the tip, in
     /// world axes.
     pub fn joint_torques(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench) -> JointTorques {
-        let to_body = x_wb.rotation.inverse();
-        let wrench_b = Wrench::new(to_body * wrench_w.force_n, to_body * wrench_w.moment_nm);
-        let (wrench_b, gravity_b) = (self.on_working_side(wrench_b), self.on_working_side(to_body * GRAVITY_W));
-        muscular::joint_torques(&self.arm, &self.body, self.tool_kg, q_rad, &wrench_b, &gravity_b)
+        let (wrench_v, gravity_v) = self.loads_v(x_wb, wrench_w);
+        muscular::joint_torques(&self.arm, &self.body, self.tool_kg, q_rad, &wrench_v, &gravity_v)
     }
 
     /// Torque over strength of each joint of the working arm; arguments as for [`Self::joint_torques`].
@@ -184,15 +198,47 @@ impl Human {
         Muscular::of(self.activations(q_rad, x_wb, wrench_w, direction))
     }
 
+    /// How the regularised muscular comfort changes with each angle of the arm while the body stays and the wrench keeps
+    /// its direction in the world, 1/rad; arguments as for [`Self::joint_torques`]. [`gradient`] states where it is
+    /// defined.
+    pub fn regularised_gradient(
+        &self,
+        q_rad: &ArmAngles,
+        x_wb: &Pose,
+        wrench_w: &Wrench,
+        direction: StrengthDirection,
+    ) -> [f64; 7] {
+        let (wrench_v, gravity_v) = self.loads_v(x_wb, wrench_w);
+        let load = gradient::Load { tool_kg: self.tool_kg, wrench_b: &wrench_v, gravity_b: &gravity_v };
+        gradient::regularised_gradient(&self.arm, &self.body, &self.strength, q_rad, &load, direction)
+    }
+
+    /// The RULA score of a posture; arguments as for [`Self::joint_torques`].
+    pub fn rula(&self, q_rad: &ArmAngles, wrench_w: &Wrench) -> RulaScore {
+        let load_n = (wrench_w.force_n - GRAVITY_W * self.tool_kg).norm();
+        rula::rula(&self.arm, &self.body, q_rad, load_n)
+    }
+
     /// The points spread over the body's surface, in the world.
     pub fn body_points_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> [Point3<f64>; BODY_POINTS] {
-        self.body.points(&self.arm.frames(q_rad), self.placed(x_wb))
+        let x_wv = x_wb * self.x_bv;
+        let (upper, legs) = (self.placed(&x_wv), self.placed(x_wb));
+        self.body.points(&self.arm.frames(q_rad), upper, legs)
     }
 
     /// The capsules of body and tool in the world: head first, then each part working side first, the tool last.
     pub fn capsules_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> [Capsule; CAPSULES] {
         let p_ht_m = &self.arm.x_ht.translation.vector;
-        self.body.capsules(&self.arm.frames(q_rad), p_ht_m, self.placed(x_wb))
+        let x_wv = x_wb * self.x_bv;
+        let (upper, legs) = (self.placed(&x_wv), self.placed(x_wb));
+        self.body.capsules(&self.arm.frames(q_rad), p_ht_m, upper, legs)
+    }
+
+    /// The wrench at the tool's tip and gravity as the right-handed, upright body feels them: in V axes.
+    fn loads_v(&self, x_wb: &Pose, wrench_w: &Wrench) -> (Wrench, Vector3<f64>) {
+        let to_upper = (x_wb.rotation * self.x_bv.rotation).inverse();
+        let wrench_v = Wrench::new(to_upper * wrench_w.force_n, to_upper * wrench_w.moment_nm);
+        (self.on_working_side(wrench_v), self.on_working_side(to_upper * GRAVITY_W))
     }
 
     /// Takes a point of the right-handed body to the world.

@@ -14,7 +14,7 @@ use crate::model::{scenario::StrengthDirection, wrench::Wrench};
 
 /// A resting co-contraction of 3.8 % in each of seven joints, squared and summed; it bounds the regularised comfort by
 /// 100 where gravity and load cancel.
-const RESTING: f64 = 0.01;
+pub(super) const RESTING: f64 = 0.01;
 
 /// Below this a torque or motion has no sense: it is rounding, N m.
 const NO_SENSE_NM: f64 = 1e-9;
@@ -56,25 +56,30 @@ impl JointTorques {
     /// Torque over strength of each joint. The strength is that of the sense of the motion that the wrench drives
     /// (`paper`) or of the whole torque (`torque`), and the smaller of both where there is none.
     pub fn activations(&self, q_rad: &ArmAngles, strength: &Strength, direction: StrengthDirection) -> [f64; 7] {
-        let total_nm = self.total_nm();
+        let (total_nm, senses) = (self.total_nm(), self.senses(q_rad, strength, direction));
+        std::array::from_fn(|joint| total_nm[joint].abs() / strength.torque_nm(joint, q_rad[joint], senses[joint]))
+    }
+
+    /// The sense whose strength counts in each joint.
+    pub(super) fn senses(&self, q_rad: &ArmAngles, strength: &Strength, direction: StrengthDirection) -> [Sense; 7] {
         let deciding_nm = match direction {
-            StrengthDirection::Paper => &self.operation_nm,
-            StrengthDirection::Torque => &total_nm,
+            StrengthDirection::Paper => self.operation_nm,
+            StrengthDirection::Torque => self.total_nm(),
         };
         std::array::from_fn(|joint| {
             let limit_nm = |sense| strength.torque_nm(joint, q_rad[joint], sense);
-            let available_nm = match deciding_nm[joint] {
-                torque if torque > NO_SENSE_NM => limit_nm(Sense::Positive),
-                torque if torque < -NO_SENSE_NM => limit_nm(Sense::Negative),
-                _ => limit_nm(Sense::Positive).min(limit_nm(Sense::Negative)),
-            };
-            total_nm[joint].abs() / available_nm
+            match deciding_nm[joint] {
+                torque if torque > NO_SENSE_NM => Sense::Positive,
+                torque if torque < -NO_SENSE_NM => Sense::Negative,
+                _ if limit_nm(Sense::Positive) < limit_nm(Sense::Negative) => Sense::Positive,
+                _ => Sense::Negative,
+            }
         })
     }
 }
 
 /// A load that the arm carries by its own weight: mass, kg, and centre of mass in B, m.
-type Weight = (f64, Vector3<f64>);
+pub(super) type Weight = (f64, Vector3<f64>);
 
 /// The torques of the joints for a wrench that the hand exerts at the tool's tip (about the tip, B axes) while gravity,
 /// `gravity_b` in m/s^2, pulls at the arm and at a tool of `tool_kg` in the palm.
@@ -107,7 +112,7 @@ pub fn joint_torques(
 }
 
 /// Upper arm, forearm, hand, tool.
-fn weights(body: &Body, tool_kg: f64, frames: &ArmFrames) -> [Weight; 4] {
+pub(super) fn weights(body: &Body, tool_kg: f64, frames: &ArmFrames) -> [Weight; 4] {
     let (upper_arm, forearm, hand) = (&body.upper_arm, &body.forearm, &body.hand);
     [
         (upper_arm.mass_kg, frames.p_bs_m - frames.r_bu.column(2) * upper_arm.com_m),

@@ -9,7 +9,8 @@ use crate::model::scenario::PeripersonalForm;
 /// How many points of the person are compared with one of the robot at a time: enough to fill vector registers.
 const LANES: usize = 8;
 
-/// The peripersonal metric, m. With `d(p)` the distance from a point of the person to the nearest of the robot:
+/// The peripersonal metric, m. With `d(p)` the distance from a point of the person to the nearest of the robot, or
+/// `saturation_m` when that is less:
 ///
 /// ```text
 /// min:      min d(p)
@@ -18,26 +19,64 @@ const LANES: usize = 8;
 /// ```
 ///
 /// Both sets in the same frame. Infinite when one of them is empty: then nothing comes near.
-pub fn peripersonal_m(form: PeripersonalForm, human_points: &[Point3<f64>], robot_points: &[Point3<f64>]) -> f64 {
-    if human_points.is_empty() || robot_points.is_empty() {
-        return f64::INFINITY;
+pub fn peripersonal_m(
+    form: PeripersonalForm,
+    saturation_m: Option<f64>,
+    human_points: &[Point3<f64>],
+    robot_points: &[Point3<f64>],
+) -> f64 {
+    let mut distances = Distances::new(saturation_m);
+    distances.add(human_points, robot_points);
+    distances.peripersonal_m(form)
+}
+
+/// What the metric needs of the distances from points of a person to a robot. Points may be added a few at a time: those
+/// of a body that stands still need to be looked at once for all postures of its arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distances {
+    most_m2: f64,
+    least_m2: f64,
+    sum_m: f64,
+    sum_m2: f64,
+    count: usize,
+    no_robot: bool,
+}
+
+impl Distances {
+    /// No points yet; no distance will count as more than `saturation_m`.
+    pub fn new(saturation_m: Option<f64>) -> Self {
+        let most_m2 = saturation_m.map_or(f64::INFINITY, |most_m| most_m * most_m);
+        Self { most_m2, least_m2: f64::INFINITY, sum_m: 0.0, sum_m2: 0.0, count: 0, no_robot: false }
     }
-    let (mut least, mut sum, mut sum_of_squares) = (f64::INFINITY, 0.0, 0.0);
-    for chunk in human_points.chunks(LANES) {
-        for &squared in &least_squared_distances(chunk, robot_points)[..chunk.len()] {
-            least = squared.min(least);
-            sum += squared.sqrt();
-            sum_of_squares += squared;
+
+    /// Adds points of the person; the robot's must be the same every time.
+    pub fn add(&mut self, human_points: &[Point3<f64>], robot_points: &[Point3<f64>]) {
+        self.no_robot = robot_points.is_empty();
+        self.count += human_points.len();
+        for chunk in human_points.chunks(LANES) {
+            for &squared in &least_squared_distances(chunk, robot_points)[..chunk.len()] {
+                let squared = squared.min(self.most_m2);
+                self.least_m2 = squared.min(self.least_m2);
+                self.sum_m += squared.sqrt();
+                self.sum_m2 += squared;
+            }
         }
     }
-    let n = human_points.len() as f64;
-    match form {
-        PeripersonalForm::Min => least.sqrt(),
-        PeripersonalForm::Mean => sum / n,
-        // Every point touches: all distances, and so any mean of them, are zero.
-        PeripersonalForm::Weighted if sum == 0.0 => 0.0,
-        // sum (1 - d / D) d = D - (sum d^2) / D
-        PeripersonalForm::Weighted => (sum - sum_of_squares / sum) / n,
+
+    /// The metric of all points that were added, as [`peripersonal_m`] defines it.
+    pub fn peripersonal_m(&self, form: PeripersonalForm) -> f64 {
+        if self.count == 0 || self.no_robot {
+            return f64::INFINITY;
+        }
+        let n = self.count as f64;
+        match form {
+            PeripersonalForm::Min => self.least_m2.sqrt(),
+            PeripersonalForm::Mean => self.sum_m / n,
+            // Every point touches: all distances, and so any mean of them, are zero.
+            PeripersonalForm::Weighted if self.sum_m == 0.0 => 0.0,
+            // sum (1 - d / D) d = D - (sum d^2) / D
+            PeripersonalForm::Weighted => (self.sum_m - self.sum_m2 / self.sum_m) / n,
+        }
     }
 }
 
@@ -73,9 +112,9 @@ mod tests {
         let robot = [Point3::origin(), Point3::new(10.0, 0.0, 0.0)];
         let human = [Point3::new(0.0, 1.0, 0.0), Point3::new(10.0, 0.0, -2.0), Point3::new(0.0, 0.0, 3.0)];
         // d = 1, 2, 3 and sum d = 6: weights 5/6, 4/6, 3/6; (5 + 8 + 9) / 6 / 3 = 11/9.
-        assert_eq!(peripersonal_m(PeripersonalForm::Min, &human, &robot), 1.0);
-        assert_eq!(peripersonal_m(PeripersonalForm::Mean, &human, &robot), 2.0);
-        assert!((peripersonal_m(PeripersonalForm::Weighted, &human, &robot) - 11.0 / 9.0).abs() < 1e-15);
+        assert_eq!(peripersonal_m(PeripersonalForm::Min, None, &human, &robot), 1.0);
+        assert_eq!(peripersonal_m(PeripersonalForm::Mean, None, &human, &robot), 2.0);
+        assert!((peripersonal_m(PeripersonalForm::Weighted, None, &human, &robot) - 11.0 / 9.0).abs() < 1e-15);
     }
 
     #[test]
@@ -92,7 +131,35 @@ mod tests {
         let expected = [d.iter().copied().fold(f64::INFINITY, f64::min), sum / n, weighted];
         for (form, value) in FORMS.into_iter().zip(expected) {
             // Sums of twenty numbers of order one in another order.
-            assert!((peripersonal_m(form, &human, &robot) - value).abs() < 1e-13, "{form:?}");
+            assert!((peripersonal_m(form, None, &human, &robot) - value).abs() < 1e-13, "{form:?}");
+        }
+    }
+
+    #[test]
+    fn beyond_the_saturation_farther_is_no_better() {
+        let robot = [Point3::origin()];
+        let human = [1.0, 2.0, 3.0].map(|x| Point3::new(x, 0.0, 0.0));
+        // d = 1, 2, 2 and sum d = 5: weights 4/5, 3/5, 3/5; (4 + 6 + 6) / 5 / 3 = 16/15.
+        let of = |form, saturation_m| peripersonal_m(form, Some(saturation_m), &human, &robot);
+        assert_eq!(of(PeripersonalForm::Mean, 2.0), 5.0 / 3.0);
+        assert!((of(PeripersonalForm::Weighted, 2.0) - 16.0 / 15.0).abs() < 1e-15);
+        assert_eq!(of(PeripersonalForm::Min, 0.5), 0.5);
+        for form in FORMS {
+            assert_eq!(of(form, 3.0), peripersonal_m(form, None, &human, &robot));
+        }
+    }
+
+    #[test]
+    fn points_may_come_a_few_at_a_time() {
+        let robot = [Point3::origin(), Point3::new(0.4, 0.1, -0.3)];
+        let human: Vec<_> = (0..20).map(f64::from).map(|i| Point3::new(0.1 * i, 1.0 - 0.05 * i, 0.3)).collect();
+        let mut distances = Distances::new(Some(1.2));
+        distances.add(&human[..7], &robot);
+        distances.add(&human[7..], &robot);
+        for form in FORMS {
+            let at_once = peripersonal_m(form, Some(1.2), &human, &robot);
+            // Twenty numbers of order one in another order.
+            assert!((distances.peripersonal_m(form) - at_once).abs() < 1e-14);
         }
     }
 
@@ -100,8 +167,8 @@ mod tests {
     fn touching_everywhere_is_no_comfort_and_no_robot_is_endless_comfort() {
         let points = [Point3::origin(); 5];
         for form in FORMS {
-            assert_eq!(peripersonal_m(form, &points, &points[..1]), 0.0);
-            assert_eq!(peripersonal_m(form, &points, &[]), f64::INFINITY);
+            assert_eq!(peripersonal_m(form, None, &points, &points[..1]), 0.0);
+            assert_eq!(peripersonal_m(form, None, &points, &[]), f64::INFINITY);
         }
     }
 }

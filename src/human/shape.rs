@@ -1,8 +1,8 @@
 //! The body in space: the capsules that stand for it in collisions and pictures, and the points that stand for it in the
 //! peripersonal metric.
 //!
-//! Right-handed, as all of the body; the caller's `to_w` places (and, for a left-handed person, mirrors) it. What may
-//! touch what is not decided here.
+//! Right-handed and upright, as all of the body; the caller's functions place (and, for a left-handed person, mirror) it,
+//! one what is above the hips, which may lean, and one the legs. What may touch what is not decided here.
 
 use std::sync::LazyLock;
 
@@ -12,6 +12,9 @@ use super::{arm::ArmFrames, body::Body};
 
 /// How many points stand for the body in the peripersonal metric (METHOD section 5).
 pub const BODY_POINTS: usize = 64;
+
+/// How many of the points, the first, do not move with the working arm.
+pub const STILL_POINTS: usize = 55;
 
 /// How many capsules stand for the person and the tool.
 pub const CAPSULES: usize = 14;
@@ -47,6 +50,14 @@ pub enum BodyPart {
     Shank(Side),
     /// The tool, from the palm to its tip.
     Tool,
+}
+
+impl BodyPart {
+    /// True for the working arm and the tool, which move when the body stands still.
+    pub fn moves_with_arm(self) -> bool {
+        use Side::Working;
+        matches!(self, Self::UpperArm(Working) | Self::Forearm(Working) | Self::Hand(Working) | Self::Tool)
+    }
 }
 
 /// A cylinder with round ends, in the world.
@@ -115,15 +126,22 @@ impl Body {
         &self,
         arm: &ArmFrames,
         p_ht_m: &Vector3<f64>,
-        to_w: impl Fn(&Vector3<f64>) -> Point3<f64>,
+        upper_to_w: impl Fn(&Vector3<f64>) -> Point3<f64>,
+        legs_to_w: impl Fn(&Vector3<f64>) -> Point3<f64>,
     ) -> [Capsule; CAPSULES] {
         use BodyPart::{Forearm, Hand, Head, Shank, Thigh, Tool, Trunk, UpperArm};
         use Side::{Idle, Working};
         let limb = |name, radius_m, p0: Vector3<f64>, p1: Vector3<f64>| Capsule {
             name,
-            p0_w: to_w(&p0),
-            p1_w: to_w(&p1),
+            p0_w: upper_to_w(&p0),
+            p1_w: upper_to_w(&p1),
             radius_m,
+        };
+        let leg_part = |name, y_m: f64, top_m, bottom_m| Capsule {
+            name,
+            p0_w: legs_to_w(&Vector3::new(0.0, y_m, top_m)),
+            p1_w: legs_to_w(&Vector3::new(0.0, y_m, bottom_m)),
+            radius_m: self.thickness.leg_radius_m,
         };
         let upright = |name, radius_m, y_m, top_m, bottom_m| {
             limb(name, radius_m, Vector3::new(0.0, y_m, top_m), Vector3::new(0.0, y_m, bottom_m))
@@ -146,11 +164,11 @@ impl Body {
             limb(Forearm(Idle), fore, elbow, wrist),
             limb(Hand(Working), hand, arm.p_bw_m, palm),
             limb(Hand(Idle), hand, wrist, fingers),
-            upright(Thigh(Working), leg, -leg_y, self.hip_m, self.knee_m),
-            upright(Thigh(Idle), leg, leg_y, self.hip_m, self.knee_m),
+            leg_part(Thigh(Working), -leg_y, self.hip_m, self.knee_m),
+            leg_part(Thigh(Idle), leg_y, self.hip_m, self.knee_m),
             // The round end of the shank stands on the floor.
-            upright(Shank(Working), leg, -leg_y, self.knee_m, leg),
-            upright(Shank(Idle), leg, leg_y, self.knee_m, leg),
+            leg_part(Shank(Working), -leg_y, self.knee_m, leg),
+            leg_part(Shank(Idle), leg_y, self.knee_m, leg),
             limb(Tool, TOOL_RADIUS_M, palm, arm.hand_point_b(p_ht_m)),
         ]
     }
@@ -159,7 +177,8 @@ impl Body {
     pub(super) fn points(
         &self,
         arm: &ArmFrames,
-        to_w: impl Fn(&Vector3<f64>) -> Point3<f64>,
+        upper_to_w: impl Fn(&Vector3<f64>) -> Point3<f64>,
+        legs_to_w: impl Fn(&Vector3<f64>) -> Point3<f64>,
     ) -> [Point3<f64>; BODY_POINTS] {
         use Side::{Idle, Working};
         let upright = Matrix3::identity();
@@ -175,7 +194,9 @@ impl Body {
                 Carrier::Forearm(Idle) => (&upright, elbow),
                 Carrier::Hand(Idle) => (&upright, wrist),
             };
-            *point_w = to_w(&(origin + rotation * position * self.height_m));
+            let p_b_m = origin + rotation * position * self.height_m;
+            let of_legs = *carrier == Carrier::Body && p_b_m.z < self.hip_m;
+            *point_w = if of_legs { legs_to_w(&p_b_m) } else { upper_to_w(&p_b_m) };
         }
         points_w
     }
@@ -241,6 +262,18 @@ mod tests {
             };
             let capsule = capsules.iter().find(|capsule| capsule.name == part).unwrap();
             assert!(distance_m(&point, capsule).abs() < 2.0 * ROUNDING * 1.75, "{part:?}");
+        }
+    }
+
+    #[test]
+    fn the_first_points_and_their_parts_stay_when_the_arm_moves() {
+        let (human, x_wb, raised) = (drill(), Pose::identity(), [1.0, 0.5, 0.3, 1.2, 0.4, 0.2, 0.1]);
+        let pairs = human.body_points_w(&x_wb, &[0.0; 7]).into_iter().zip(human.body_points_w(&x_wb, &raised));
+        for (index, (hanging, raised)) in pairs.enumerate() {
+            assert_eq!(hanging == raised, index < STILL_POINTS, "{index}");
+        }
+        for (hanging, raised) in human.capsules_w(&x_wb, &[0.0; 7]).iter().zip(human.capsules_w(&x_wb, &raised)) {
+            assert_eq!(*hanging != raised, raised.name.moves_with_arm(), "{:?}", raised.name);
         }
     }
 

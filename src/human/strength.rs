@@ -86,9 +86,24 @@ impl Strength {
             Sense::Negative => negative.at(q_rad),
         }
     }
+
+    /// How that torque changes with the joint's angle, N m/rad; zero outside the curve's range.
+    pub fn slope_nm_rad(&self, joint: usize, q_rad: f64, sense: Sense) -> f64 {
+        let [positive, negative] = &self.curves[joint];
+        match sense {
+            Sense::Positive => positive.slope(q_rad),
+            Sense::Negative => negative.slope(q_rad),
+        }
+    }
 }
 
 impl Curve {
+    fn slope(&self, q_rad: f64) -> f64 {
+        let [low, high] = self.range_rad;
+        let [_, c1, c2, c3] = self.coefficients;
+        if (low..=high).contains(&q_rad) { c1 + q_rad * (2.0 * c2 + q_rad * 3.0 * c3) } else { 0.0 }
+    }
+
     fn at(&self, q_rad: f64) -> f64 {
         let [low, high] = self.range_rad;
         let q = q_rad.clamp(low, high);

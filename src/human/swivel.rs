@@ -345,6 +345,24 @@ mod tests {
     }
 
     #[test]
+    fn every_posture_lies_in_a_returned_interval() {
+        let (arm, mut generator) = (arm(), generator(5));
+        for _ in 0..10_000 {
+            let q_rad = random_angles(&arm, &mut generator);
+            let swivel_rad = arm.swivel_rad(&q_rad);
+            let branch = if q_rad[1] <= FRAC_PI_2 { ShoulderBranch::Low } else { ShoulderBranch::High };
+            let intervals = arm.swivel_circle(&arm.tool_pose_b(&q_rad)).unwrap().intervals();
+            // The swivel of a nearly straight arm is good to 1e-16 / sin(q4) only, and so are the ends.
+            let slack_rad = 1e-9;
+            let covered = intervals.iter().filter(|interval| interval.branch == branch).any(|interval| {
+                let turn = (swivel_rad - interval.from_rad + slack_rad).rem_euclid(TAU);
+                turn <= interval.to_rad - interval.from_rad + 2.0 * slack_rad
+            });
+            assert!(covered, "{q_rad:?} at {swivel_rad}: {intervals:?}");
+        }
+    }
+
+    #[test]
     fn solutions_put_the_tool_where_it_was_asked() {
         let (arm, mut generator) = (arm(), generator(2));
         let mut found = 0;

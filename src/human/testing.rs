@@ -11,7 +11,7 @@ use crate::model::{
 
 /// The person of METHOD section 4.
 pub(super) fn average_man() -> Person {
-    Person { height_m: 1.75, mass_kg: 75.0, sex: Sex::Male, hand: Hand::Right, percentile: 50.0 }
+    Person { height_m: 1.75, mass_kg: 75.0, sex: Sex::Male, hand: Hand::Right, percentile: 50.0, lean_deg: 0.0 }
 }
 
 /// The average man with the default tool for this kind of operation.

@@ -120,8 +120,8 @@ proptest! {
         let robot = robot_points(&mut generator(7));
         let robot_moved: Vec<_> = robot.iter().map(|p| moved * p).collect();
         for form in [PeripersonalForm::Min, PeripersonalForm::Mean, PeripersonalForm::Weighted] {
-            let here = peripersonal_m(form, &human.body_points_w(&x_wb, &q_rad), &robot);
-            let there = peripersonal_m(form, &human.body_points_w(&x_wb_moved, &q_rad), &robot_moved);
+            let here = peripersonal_m(form, None, &human.body_points_w(&x_wb, &q_rad), &robot);
+            let there = peripersonal_m(form, None, &human.body_points_w(&x_wb_moved, &q_rad), &robot_moved);
             // Distances of order one from positions of order three.
             prop_assert!((here - there).abs() < 1e-13);
         }
@@ -153,6 +153,81 @@ fn the_shoulder_is_on_the_side_of_the_hand() {
     let left = worker(Hand::Left, OperationKind::Drill).x_bs();
     assert_abs_diff_eq!(right.translation.vector, Vector3::new(0.0, -0.22575, 1.4315), epsilon = 1e-12);
     assert_abs_diff_eq!(left.translation.vector, Vector3::new(0.0, 0.22575, 1.4315), epsilon = 1e-12);
+}
+
+/// The person who leans, with either hand.
+fn leaning(hand: Hand, lean_deg: f64) -> Human {
+    Human::new(&Person { hand, lean_deg, ..average_man() }, &default_tool(OperationKind::Drill)).unwrap()
+}
+
+#[test]
+fn leaning_brings_the_shoulder_forward_about_the_hips() {
+    let shoulder = leaning(Hand::Left, 15.0).x_bs();
+    // 1.4315 - 0.9275 = 0.504 m over the hips: forward by 0.504 sin 15, down to 0.9275 + 0.504 cos 15.
+    assert_abs_diff_eq!(shoulder.translation.vector, Vector3::new(0.130_445, 0.225_75, 1.414_327), epsilon = 1e-6);
+    assert_abs_diff_eq!(shoulder.rotation * Vector3::z(), Vector3::new(0.258_819, 0.0, 0.965_926), epsilon = 1e-6);
+}
+
+#[test]
+fn all_that_is_above_the_hips_leans_and_the_legs_stand() {
+    let (upright, leaning) = (worker(Hand::Right, OperationKind::Drill), leaning(Hand::Right, 10.0));
+    let (x_wb, q_rad) = (standing_pose_w(1.0, 0.2, 2.0, -0.9), [0.6, 0.3, 0.2, 1.2, 0.3, 0.1, 0.05]);
+    let lean_w = x_wb * leaning.body().x_bv() * x_wb.inverse();
+    for (up, lean) in upright.capsules_w(&x_wb, &q_rad).iter().zip(leaning.capsules_w(&x_wb, &q_rad)) {
+        let is_leg = matches!(up.name, BodyPart::Thigh(_) | BodyPart::Shank(_));
+        for (up, lean) in [(up.p0_w, lean.p0_w), (up.p1_w, lean.p1_w)] {
+            let expected = if is_leg { up } else { lean_w * up };
+            assert_abs_diff_eq!(lean, expected, epsilon = 1e-14);
+        }
+    }
+    let hips_w_m = -0.9 + upright.body().hip_m;
+    let mut moved = 0;
+    for (up, lean) in upright.body_points_w(&x_wb, &q_rad).iter().zip(leaning.body_points_w(&x_wb, &q_rad)) {
+        if (lean - up).norm() > 1e-12 {
+            assert_abs_diff_eq!(lean, lean_w * up, epsilon = 1e-14);
+            moved += 1;
+        } else {
+            assert!(up.z < hips_w_m);
+        }
+    }
+    assert!((32..60).contains(&moved), "{moved}");
+}
+
+#[test]
+fn a_leaning_person_reaches_where_the_angles_say_and_feels_gravity_in_the_world() {
+    for hand in [Hand::Right, Hand::Left] {
+        let (human, mut generator) = (leaning(hand, 12.0), generator(31));
+        let x_wb = standing_pose_w(1.0, 0.2, 2.0, -0.9);
+        for _ in 0..200 {
+            let q_rad = random_angles(human.arm(), &mut generator);
+            let x_bt = human.tool_pose_b(&q_rad);
+            for solution in human.arm_solutions(&x_bt, human.swivel_rad(&q_rad)) {
+                assert_abs_diff_eq!(human.tool_pose_b(&solution), x_bt, epsilon = 1e-12);
+            }
+            // The same arm on an upright body that is tipped as a whole.
+            let (upright, tipped) = (worker(hand, OperationKind::Drill), x_wb * human.body().x_bv());
+            let w = wrench([3.0, -7.0, 12.0, 0.3, 0.2, -0.5]);
+            let found = human.joint_torques(&q_rad, &x_wb, &w).total_nm();
+            for (found, expected) in found.iter().zip(upright.joint_torques(&q_rad, &tipped, &w).total_nm()) {
+                // Torques of up to 50 N m, rounded some ten times.
+                assert!((found - expected).abs() < 1e-12);
+            }
+        }
+    }
+    // The trunk leans by 15 degrees and the arm is flexed by as much: upper arm and forearm hang vertically, and carry nothing.
+    let lean_rad = 15_f64.to_radians();
+    let hanging = [lean_rad, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let torques = leaning(Hand::Right, 15.0).joint_torques(&hanging, &Pose::identity(), &Wrench::default());
+    assert!(torques.gravity_nm.iter().all(|torque| torque.abs() < 1e-13), "{torques:?}");
+}
+
+#[test]
+fn nobody_leans_backward_or_too_far() {
+    for lean_deg in [-1.0, 15.5, f64::NAN] {
+        let person = Person { lean_deg, ..average_man() };
+        let error = Human::new(&person, &default_tool(OperationKind::Drill)).unwrap_err();
+        assert!(error.to_string().contains("lean_deg"), "{error}");
+    }
 }
 
 #[test]

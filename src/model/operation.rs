@@ -74,6 +74,11 @@ impl Operation {
         Self { x_ot: self.x_ot * roll, ..*self }
     }
 
+    /// The wrench about the tool's tip in world axes, for an object at `x_wo`.
+    pub fn wrench_w(&self, x_wo: &Pose) -> Wrench {
+        Wrench::new(x_wo.rotation * self.wrench_o.force_n, x_wo.rotation * self.wrench_o.moment_nm)
+    }
+
     /// The wrench about the object's origin in O axes: `(f, m + p_OT x f)`.
     pub fn wrench_about_object(&self) -> Wrench {
         self.wrench_o.about(&self.x_ot.translation.vector)

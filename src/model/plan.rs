@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     frames::{Pose, PoseRecord, pose},
     operation::Operation,
-    scenario::{Hand, Person, PlannerKind, Scenario, Sex},
+    scenario::{Hand, Person, PlannerKind, Scenario, Sex, is_zero},
 };
 
 /// A hold of a board. `comfort`, `stability`, `human`, `planner` and `scenario` may be absent in a file that is read.
@@ -94,6 +94,9 @@ pub struct HumanPosture {
     pub hand: Hand,
     /// Strength percentile.
     pub percentile: f64,
+    /// How far the trunk leans forward about the hips, degrees; upright unless given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub lean_deg: f64,
     /// Pose of the body, on the floor between the feet.
     #[serde(with = "pose")]
     #[schemars(with = "PoseRecord")]
@@ -105,14 +108,14 @@ pub struct HumanPosture {
 impl HumanPosture {
     /// A person in a posture.
     pub fn new(person: &Person, x_wb: Pose, q_rad: [f64; 7]) -> Self {
-        let Person { height_m, mass_kg, sex, hand, percentile } = *person;
-        Self { height_m, mass_kg, sex, hand, percentile, x_wb, q_rad }
+        let Person { height_m, mass_kg, sex, hand, percentile, lean_deg } = *person;
+        Self { height_m, mass_kg, sex, hand, percentile, lean_deg, x_wb, q_rad }
     }
 
     /// The person without the posture.
     pub fn person(&self) -> Person {
-        let Self { height_m, mass_kg, sex, hand, percentile, .. } = *self;
-        Person { height_m, mass_kg, sex, hand, percentile }
+        let Self { height_m, mass_kg, sex, hand, percentile, lean_deg, .. } = *self;
+        Person { height_m, mass_kg, sex, hand, percentile, lean_deg }
     }
 }
 
@@ -126,10 +129,45 @@ pub struct Comfort {
     pub muscular_regularised: f64,
     /// The peripersonal metric, m.
     pub peripersonal_m: f64,
-    /// `weight_muscular muscular_regularised + weight_peripersonal peripersonal_m`.
+    /// The peripersonal metric times the number of body points: the sum in place of the mean, on the scale of the
+    /// paper's captions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peripersonal_scaled: Option<f64>,
+    /// `weight_muscular muscular_regularised + weight_peripersonal peripersonal_m`, of this posture; with
+    /// `comfort.person = "average"`, of `average`.
     pub objective: f64,
     /// Torque over strength of each joint of the working arm.
     pub activations: [f64; 7],
+    /// The mean over all of the person's answers to the hold; only with `comfort.person = "average"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub average: Option<AverageComfort>,
+    /// The posture's RULA score; reported, not optimised.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rula: Option<RulaScore>,
+}
+
+/// The mean comfort over the person's feasible answers on a uniform grid (METHOD section 3).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AverageComfort {
+    /// How many answers the grid has.
+    pub answers: u64,
+    /// Mean of `1 / (||alpha||^2 + 0.01)`.
+    pub muscular_regularised: f64,
+    /// Mean of the peripersonal metric, m.
+    pub peripersonal_m: f64,
+}
+
+/// The score of a posture by the Rapid Upper Limb Assessment (McAtamney & Corlett 1993).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RulaScore {
+    /// The grand score, from table C: 1 or 2 acceptable, 3 or 4 investigate further, 5 or 6 change soon, 7 change now.
+    pub score: u8,
+    /// Score C: arm and wrist with the load, from table A.
+    pub arm_and_wrist: u8,
+    /// Score D: neck, trunk and legs with the load, from table B.
+    pub neck_trunk_legs: u8,
 }
 
 /// The predicted stability (METHOD section 6).

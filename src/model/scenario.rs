@@ -114,6 +114,14 @@ pub struct Person {
     pub hand: Hand,
     /// Strength percentile, 0.1 to 99.9.
     pub percentile: f64,
+    /// How far the trunk leans forward about the hips, degrees; 0, upright, unless given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub lean_deg: f64,
+}
+
+/// True for what need not be written.
+pub(super) fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// The tool in the hand: mass and the tip's frame T in the right hand's frame H.
@@ -153,7 +161,8 @@ impl Board {
 pub enum PersonAnswer {
     /// The best feasible answer.
     Most,
-    /// The mean over all feasible answers of a uniform grid.
+    /// The mean over all feasible answers of a uniform grid. The search looks for holds with the best answer and ranks the
+    /// best few of them by the mean.
     Average,
 }
 
@@ -187,6 +196,10 @@ pub struct ComfortSettings {
     pub person: PersonAnswer,
     /// Form of the peripersonal metric.
     pub peripersonal: PeripersonalForm,
+    /// The distance beyond which the robot's being farther away is no more comfortable, m: every distance `d` of the
+    /// peripersonal metric is replaced by `min(d, saturation_m)`. As in the paper, none unless given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub saturation_m: Option<f64>,
     /// Which sign selects a strength.
     pub direction: StrengthDirection,
     /// Weight of the regularised muscular comfort.
@@ -201,6 +214,7 @@ impl Default for ComfortSettings {
         Self {
             person: PersonAnswer::Most,
             peripersonal: PeripersonalForm::Weighted,
+            saturation_m: None,
             direction: StrengthDirection::Paper,
             weight_muscular: 1.0,
             weight_peripersonal: 64.0,

@@ -7,11 +7,12 @@ use nalgebra::{Point3, Vector3};
 use super::{Candidate, Infeasible, Problem};
 use crate::{
     collision::{PersonPart, Scene},
-    human::{ArmAngles, Muscular, peripersonal_m},
+    comfort,
+    human::{ArmAngles, Muscular},
     model::{
         frames::Pose,
         grasp::EdgeGrasp,
-        plan::{ArmHold, Comfort, PlacedObject},
+        plan::{ArmHold, AverageComfort, Comfort, PlacedObject},
         scenario::{Limits, Scenario, StabilityKind},
         wrench::Wrench,
     },
@@ -100,12 +101,11 @@ impl Tally {
     }
 }
 
-/// The poses that follow from a candidate's posture and place, with the load on the person.
+/// The poses that follow from a candidate's posture and place.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed {
     pub x_wo: Pose,
     pub x_wb: Pose,
-    pub muscular: Muscular,
 }
 
 /// Places board and person, and tests what depends on the person and the board's pose alone.
@@ -119,8 +119,8 @@ pub fn place(problem: &Problem<'_>, candidate: &Candidate) -> Result<Placed, Rej
     if (x_wo.rotation * Vector3::z()).x < FACING_LIMIT_RAD.cos() {
         return Err(Rejection::Facing);
     }
-    let muscular = posture_comfort(problem, &candidate.q_h_rad).ok_or(Rejection::Strength)?;
-    Ok(Placed { x_wo, x_wb: candidate.x_wb(problem), muscular })
+    posture_comfort(problem, &candidate.q_h_rad).ok_or(Rejection::Strength)?;
+    Ok(Placed { x_wo, x_wb: candidate.x_wb(problem) })
 }
 
 /// The muscular comfort of a posture, if every joint is strong enough. It does not depend on where the person stands or
@@ -148,19 +148,32 @@ pub fn pads_on_board(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> 
 
 /// Both comforts and the objective of a candidate whose arms reach.
 pub fn comfort(problem: &Problem<'_>, candidate: &Candidate, placed: &Placed) -> Comfort {
-    let settings = problem.scenario.comfort;
-    let body = problem.human.body_points_w(&placed.x_wb, &candidate.q_h_rad);
     let poses = problem.robot.link_poses(&positions(problem, candidate));
-    let surface: Vec<_> = problem.robot.body_points.iter().map(|point| poses[point.link] * point.p_l).collect();
-    let peripersonal_m = peripersonal_m(settings.peripersonal, &body, &surface);
-    let Muscular { activations, printed, regularised } = placed.muscular;
-    Comfort {
-        muscular: printed,
-        muscular_regularised: regularised,
-        peripersonal_m,
-        objective: settings.weight_muscular * regularised + settings.weight_peripersonal * peripersonal_m,
-        activations,
-    }
+    let surface = comfort::robot_points_w(problem.robot, &poses);
+    let wrench_w = problem.scenario.operation.wrench_w(&placed.x_wo);
+    let settings = &problem.scenario.comfort;
+    comfort::of_posture(&problem.human, settings, &surface, &placed.x_wb, &candidate.q_h_rad, &wrench_w)
+}
+
+/// The mean comfort of the person's answers to a candidate's hold.
+pub fn average(problem: &Problem<'_>, candidate: &Candidate) -> Option<AverageComfort> {
+    let poses = problem.robot.link_poses(&positions(problem, candidate));
+    let hold = comfort::Hold {
+        human: &problem.human,
+        collision: &problem.collision,
+        settings: problem.scenario.comfort,
+        operation: problem.scenario.operation.rolled(candidate.roll_rad),
+        floor_z_m: problem.robot.floor_z_m,
+        robot_points_w: &comfort::robot_points_w(problem.robot, &poses),
+        scene: Scene {
+            link_poses: &poses,
+            holding: &problem.arms.iter().map(|arm| arm.index).collect::<Vec<_>>(),
+            board_size_m: problem.scenario.object.size_m,
+            x_wo: candidate.x_wo(problem),
+            person: &[],
+        },
+    };
+    comfort::average(&hold)
 }
 
 /// Positions of all joints of the robot.

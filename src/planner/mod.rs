@@ -4,10 +4,12 @@
 //! gravity does not change when the person turns on the spot. So the search starts from postures of the arm, which fix
 //! the board's pose relative to the person, then places the two of them before the robot, chooses the grasps, and asks
 //! the arms' inverse kinematics. Cheap tests come first and the stability program last. The best of many draws are
-//! refined by small random steps that must keep every constraint.
+//! refined by small random steps that must keep every constraint. With `comfort.person = "average"` the best of the holds
+//! found that way are ranked by the mean comfort of all answers to them.
 //!
 //! This module never sees a simulation's result; nothing here knows the clock.
 
+mod answer;
 mod assess;
 mod candidate;
 mod draw;
@@ -128,7 +130,8 @@ pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanErro
     let mut tally = Tally::default();
     let mut random = Pcg64::new(u128::from(scenario.planner.seed), 0);
     let drawn = draw::best_candidates(&mut problem, &mut random, &mut tally);
-    for found in refine::refine(&mut problem, drawn, &mut random, &mut tally) {
+    let refined = refine::refine(&mut problem, drawn, &mut random, &mut tally);
+    for found in answer::rank(&problem, refined) {
         let Some(plan) = assemble(&mut problem, &found, tally.candidates()) else {
             tally.remove(Rejection::Stability);
             continue;

@@ -8,11 +8,11 @@ use nalgebra::Vector3;
 
 use crate::{
     collision::{CollisionModel, PersonPart, Scene},
-    human::{Human, HumanError, peripersonal_m},
+    comfort,
+    human::{Human, HumanError},
     model::{
-        plan::{Comfort, HumanPosture, Plan},
-        scenario::{Scenario, StabilityKind, Tool},
-        wrench::Wrench,
+        plan::{AverageComfort, Comfort, HumanPosture, Plan},
+        scenario::{PersonAnswer, Scenario, StabilityKind, Tool},
     },
     robot::{ArmState, Chain, Robot},
     statics::{Hold, StabilityWorkspace},
@@ -114,33 +114,58 @@ fn link_poses(plan: &Plan, robot: &Robot) -> Vec<crate::model::frames::Pose> {
 fn figures(
     plan: &Plan,
     posture: &HumanPosture,
-    comfort: &Comfort,
+    written: &Comfort,
     scenario: &Scenario,
     robot: &Robot,
     human: &Human,
     flaws: &mut Vec<Flaw>,
 ) {
-    let settings = scenario.comfort;
-    let rotation = plan.object.x_wo.rotation;
-    let Wrench { force_n, moment_nm } = plan.operation.wrench_o;
-    let wrench_w = Wrench::new(rotation * force_n, rotation * moment_nm);
-    let muscular = human.muscular(&posture.q_rad, &posture.x_wb, &wrench_w, settings.direction);
-    let strongest = muscular.activations.iter().copied().fold(0.0, f64::max);
+    let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
+    let surface = comfort::robot_points_w(robot, &link_poses(plan, robot));
+    let mut found = comfort::of_posture(human, &scenario.comfort, &surface, &posture.x_wb, &posture.q_rad, &wrench_w);
+    let strongest = found.activations.iter().copied().fold(0.0, f64::max);
     expect(strongest <= 1.0, flaws, || format!("an activation is {strongest}, more than the person has"));
-    let poses = link_poses(plan, robot);
-    let surface: Vec<_> = robot.body_points.iter().map(|point| poses[point.link] * point.p_l).collect();
-    let body = human.body_points_w(&posture.x_wb, &posture.q_rad);
-    let peripersonal_m = peripersonal_m(settings.peripersonal, &body, &surface);
-    let objective = settings.weight_muscular * muscular.regularised + settings.weight_peripersonal * peripersonal_m;
-    let compared = [
-        ("muscular", comfort.muscular, muscular.printed),
-        ("muscular_regularised", comfort.muscular_regularised, muscular.regularised),
-        ("peripersonal_m", comfort.peripersonal_m, peripersonal_m),
-        ("objective", comfort.objective, objective),
+    if scenario.comfort.person == PersonAnswer::Average {
+        match average(plan, scenario, robot, human) {
+            Some(average) => comfort::rate_by_average(&mut found, average, &scenario.comfort),
+            None => flaws.push(Flaw("the person has no answer on the grid of the average".into())),
+        }
+    }
+    let mut compared = vec![
+        ("muscular", written.muscular, found.muscular),
+        ("muscular_regularised", written.muscular_regularised, found.muscular_regularised),
+        ("peripersonal_m", written.peripersonal_m, found.peripersonal_m),
+        ("objective", written.objective, found.objective),
     ];
+    if let (Some(written), Some(found)) = (written.average, found.average) {
+        let AverageComfort { muscular_regularised, peripersonal_m, .. } = found;
+        compared.push(("average.muscular_regularised", written.muscular_regularised, muscular_regularised));
+        compared.push(("average.peripersonal_m", written.peripersonal_m, peripersonal_m));
+    }
     for (name, written, found) in compared {
         expect(same(written, found), flaws, || format!("comfort.{name} is {written} in the plan and {found} in fact"));
     }
+}
+
+/// The mean comfort of the person's answers to the plan's hold.
+fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<AverageComfort> {
+    let poses = link_poses(plan, robot);
+    let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
+    comfort::average(&comfort::Hold {
+        human,
+        collision: &CollisionModel::new(robot),
+        settings: scenario.comfort,
+        operation: plan.operation,
+        floor_z_m: robot.floor_z_m,
+        robot_points_w: &comfort::robot_points_w(robot, &poses),
+        scene: Scene {
+            link_poses: &poses,
+            holding: &holding,
+            board_size_m: plan.object.size_m,
+            x_wo: plan.object.x_wo,
+            person: &[],
+        },
+    })
 }
 
 /// The first two bodies of a plan that touch, or come closer to the person than METHOD section 3 allows; the person is

@@ -4,6 +4,7 @@
 //! look at a clock.
 
 pub mod console;
+pub mod curve;
 pub mod file;
 pub mod json;
 pub mod junit;

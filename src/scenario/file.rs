@@ -84,11 +84,13 @@ pub struct HumanSection {
     pub hand: Hand,
     /// Strength percentile, 0.1 to 99.9.
     pub percentile: f64,
+    /// How far the trunk leans forward about the hips, degrees, 0 to 15; upright unless given.
+    pub lean_deg: f64,
 }
 
 impl Default for HumanSection {
     fn default() -> Self {
-        Self { height_m: None, mass_kg: None, sex: Sex::Male, hand: Hand::Right, percentile: 50.0 }
+        Self { height_m: None, mass_kg: None, sex: Sex::Male, hand: Hand::Right, percentile: 50.0, lean_deg: 0.0 }
     }
 }
 

@@ -42,17 +42,24 @@ pub struct LoadedScenario {
 /// # Errors
 /// When the file, the robot or the plan that it names cannot be read, or any value is not what the format asks for.
 pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
-    let text = error::read_text(path)?;
-    if let Ok(probe) = toml::from_str::<check::FormatProbe>(&text) {
-        check::Checker::toml(path, &text).format(probe.format)?;
+    load_text(path, &error::read_text(path)?)
+}
+
+/// Checks and completes the text of a scenario file; files that it names are relative to `path`'s folder.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
+    if let Ok(probe) = toml::from_str::<check::FormatProbe>(text) {
+        check::Checker::toml(path, text).format(probe.format)?;
     }
-    let file = file::parse(path, &text)?;
-    let (scenario, robot) = resolve::resolve(path, &text, &file)?;
+    let file = file::parse(path, text)?;
+    let (scenario, robot) = resolve::resolve(path, text, &file)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let plan = match &scenario.planner.plan {
         Some(plan) => {
             let plan = read_plan(&folder.join(plan), Some(&robot))?.0;
-            resolve::plan_answers(path, &text, &scenario, &plan)?;
+            resolve::plan_answers(path, text, &scenario, &plan)?;
             Some(plan)
         }
         None => None,

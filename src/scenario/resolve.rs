@@ -11,7 +11,7 @@ use super::{
     load_robot, material, robot_figures,
 };
 use crate::{
-    human::tools::default_tool,
+    human::{body::MAX_LEAN_DEG, tools::default_tool},
     model::{
         FORMAT,
         frames::{Pose, rotation_from_xyzw},
@@ -78,6 +78,7 @@ fn typical_person(section: &HumanSection) -> Person {
         sex: section.sex,
         hand: section.hand,
         percentile: section.percentile,
+        lean_deg: section.lean_deg,
     }
 }
 
@@ -86,7 +87,8 @@ pub fn check_person(check: &Checker<'_>, person: &Person) -> Result<(), InputErr
     check.within("human.height_m", person.height_m, 1.2, 2.3, "m")?;
     check.within("human.mass_kg", person.mass_kg, 30.0, 250.0, "kg")?;
     // Outside these the normal distribution of strength would reach zero torque.
-    check.within("human.percentile", person.percentile, 0.1, 99.9, "%")
+    check.within("human.percentile", person.percentile, 0.1, 99.9, "%")?;
+    check.within("human.lean_deg", person.lean_deg, 0.0, MAX_LEAN_DEG, "degrees")
 }
 
 fn check_tool(check: &Checker<'_>, tool: &Tool) -> Result<(), InputError> {
@@ -157,6 +159,9 @@ fn grip(check: &Checker<'_>, grip: &Grip, robot: &Robot) -> Result<(), InputErro
 }
 
 fn comfort(check: &Checker<'_>, comfort: &ComfortSettings) -> Result<(), InputError> {
+    if let Some(saturation_m) = comfort.saturation_m {
+        check.positive("comfort.saturation_m", saturation_m, "m")?;
+    }
     check.not_negative("comfort.weight_muscular", comfort.weight_muscular, "a weight")?;
     check.not_negative("comfort.weight_peripersonal", comfort.weight_peripersonal, "a weight in 1/m")
 }

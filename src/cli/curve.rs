@@ -1,0 +1,70 @@
+//! `benchdog curve`: how comfortable and uncomfortable a person's solutions are along a circle that is cut.
+
+use std::path::Path;
+
+use super::{
+    args::CurveArgs,
+    exit::{CliError, Exit},
+    output,
+};
+use crate::{
+    collision::CollisionModel,
+    comfort::curve::{Curve, Cut, POINTS, muscular_curve},
+    human::Human,
+    model::operation::OperationKind,
+    report, scenario,
+};
+
+/// The cut of METHOD section 2: everything that it leaves out is the default.
+const PAPERS_CUT: &str = r#"
+format = 1
+name = "muscular-curve"
+[operation]
+kind = "cut"
+point_m = [0.12, 0.0]
+force_n = 30.0
+direction_o = [0.0, 1.0, 0.0]
+"#;
+
+/// Writes the curve as CSV and as a picture.
+pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
+    let loaded = match &args.scenario {
+        Some(path) => scenario::load(path)?,
+        None => scenario::load_text(Path::new("muscular-curve"), PAPERS_CUT)?,
+    };
+    let scenario = &loaded.scenario;
+    let p_ot_m = scenario.operation.x_ot.translation.vector;
+    let radius_m = libm::hypot(p_ot_m.x, p_ot_m.y);
+    if scenario.operation.kind != OperationKind::Cut || radius_m == 0.0 {
+        let found = format!("{}: found an operation that cuts no circle", loaded.path.display());
+        return Err(CliError::Usage(format!("{found}, expected a cut beside the middle of the board")));
+    }
+    let curve = muscular_curve(&Cut {
+        human: &Human::new(&scenario.human, &scenario.tool)?,
+        collision: &CollisionModel::new(&loaded.robot),
+        settings: scenario.comfort,
+        board_size_m: scenario.object.size_m,
+        radius_m,
+        force_n: scenario.operation.wrench_o.force_n.norm(),
+        floor_z_m: loaded.robot.floor_z_m,
+    });
+    report::file::write_whole(&args.out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
+    report::file::write_whole(&args.out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
+    output::print(&summary(&curve, &args.out))?;
+    Ok(Exit::Met)
+}
+
+fn summary(curve: &Curve, out: &Path) -> String {
+    let free = curve.points.iter().filter(|point| point.free.is_some()).count();
+    let fixed = curve.points.iter().filter(|point| point.fixed.is_some()).count();
+    let place = curve.x_wb_fixed.map_or_else(String::new, |x_wb| {
+        let p_wb_m = x_wb.translation.vector;
+        let heading_deg = x_wb.rotation.euler_angles().2.to_degrees();
+        format!(", at x {:.2} m, y {:.2} m, heading {heading_deg:.0} degrees", p_wb_m.x, p_wb_m.y)
+    });
+    format!(
+        "{free} of {POINTS} points can be cut standing anywhere, {fixed} from one place{place}\n\
+         written: {0}/muscular_curve.csv, {0}/muscular_curve.svg\n",
+        out.display()
+    )
+}

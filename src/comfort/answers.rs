@@ -1,0 +1,200 @@
+//! The person's feasible answers to a hold, on a uniform grid.
+//!
+//! An answer is feasible when the arm's inverse kinematics has a solution within the joints' limits, no joint needs more
+//! than its strength, and nobody comes too close to anything (METHOD section 3). Cheap tests come first: where the wrist
+//! is out of the shoulder's reach no heading, roll or swivel is looked at; the exact ranges of the swivel leave out what
+//! no joint allows; and what does not move with the arm is tested once for all postures of one standing place.
+
+use std::{cell::OnceCell, f64::consts::TAU};
+
+use nalgebra::Point3;
+
+use super::{Hold, objective};
+use crate::{
+    collision::{PersonPart, Scene},
+    human::{
+        ArmAngles, Distances, Muscular, STILL_POINTS, ShoulderBranch, SwivelCircle, SwivelInterval, standing_pose_w,
+    },
+    model::{frames::Pose, wrench::Wrench},
+};
+
+/// Step of the standing place along x_W and y_W, m.
+pub(super) const PLACE_STEP_M: f64 = 0.05;
+/// Step of the heading, rad: 10 degrees.
+pub(super) const HEADING_STEP_RAD: f64 = TAU / HEADINGS as f64;
+const HEADINGS: i32 = 36;
+/// Step of the tool's roll, where it is free, rad: 30 degrees.
+pub(super) const ROLL_STEP_RAD: f64 = TAU / ROLLS as f64;
+const ROLLS: i32 = 12;
+/// Step of the arm's swivel, rad: 5 degrees.
+pub(super) const SWIVEL_STEP_RAD: f64 = TAU / 72.0;
+
+/// What the person is free to choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Choice {
+    pub place_w_m: [f64; 2],
+    pub heading_rad: f64,
+    pub roll_rad: f64,
+    pub swivel_rad: f64,
+    pub branch: ShoulderBranch,
+}
+
+/// A feasible answer of the person to a hold. On the grid the standing place is a multiple of 5 cm along x_W and y_W, the
+/// heading of 10 degrees, the roll (where it is free) of 30 degrees and the swivel of 5 degrees, for either branch of the
+/// shoulder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    pub(super) choice: Choice,
+    /// Pose of the body.
+    pub x_wb: Pose,
+    /// Angles of the working arm, rad.
+    pub q_rad: ArmAngles,
+    /// Muscular comfort.
+    pub muscular: Muscular,
+    /// Peripersonal comfort, m.
+    pub peripersonal_m: f64,
+    /// The weighted sum of both.
+    pub objective: f64,
+}
+
+impl Answer {
+    /// The tool's roll from the operation's own, rad.
+    pub fn roll_rad(&self) -> f64 {
+        self.choice.roll_rad
+    }
+}
+
+/// A place of the grid to stand: multiples of the steps in x, y and heading.
+pub(super) type GridPlace = [i32; 3];
+
+/// The tool's tip at one roll.
+struct RolledTool {
+    roll_rad: f64,
+    x_wt: Pose,
+    /// Where the wrist must be, m.
+    p_ww: Point3<f64>,
+}
+
+impl RolledTool {
+    fn new(hold: &Hold<'_>, roll_rad: f64) -> Self {
+        let x_wt = hold.scene.x_wo * hold.operation.rolled(roll_rad).x_ot;
+        let wrist = x_wt * hold.human.x_ht().inverse();
+        Self { roll_rad, x_wt, p_ww: wrist.translation.vector.into() }
+    }
+
+    fn all(hold: &Hold<'_>) -> Vec<Self> {
+        let rolls = if hold.operation.kind.roll_is_free() { ROLLS } else { 1 };
+        (0..rolls).map(|k| Self::new(hold, f64::from(k) * ROLL_STEP_RAD)).collect()
+    }
+}
+
+/// Calls `visitor` with every feasible answer of the grid, always in the same order.
+pub(super) fn visit(hold: &Hold<'_>, mut visitor: impl FnMut(GridPlace, &Answer)) {
+    let tools = RolledTool::all(hold);
+    let reach_m = hold.human.reach_m();
+    for k in 0..HEADINGS {
+        let heading_rad = f64::from(k) * HEADING_STEP_RAD;
+        let shoulder = standing_pose_w(0.0, 0.0, heading_rad, hold.floor_z_m) * hold.human.x_bs();
+        let p_shoulder_m = shoulder.translation.vector;
+        let [xs, ys] = [0, 1].map(|axis| {
+            let wrists = || tools.iter().map(|tool| tool.p_ww[axis] - p_shoulder_m[axis]);
+            let low_m = wrists().fold(f64::INFINITY, f64::min) - reach_m;
+            let high_m = wrists().fold(f64::NEG_INFINITY, f64::max) + reach_m;
+            (low_m / PLACE_STEP_M).ceil() as i32..=(high_m / PLACE_STEP_M).floor() as i32
+        });
+        for (i, j) in xs.flat_map(|i| ys.clone().map(move |j| (i, j))) {
+            let place_w_m = [i, j].map(|step| f64::from(step) * PLACE_STEP_M);
+            let p_ws = Point3::new(place_w_m[0], place_w_m[1], 0.0) + p_shoulder_m;
+            let stance = Stance::new(hold, place_w_m, heading_rad);
+            for tool in tools.iter().filter(|tool| (tool.p_ww - p_ws).norm() <= reach_m) {
+                stance.visit(tool, |answer| visitor([i, j, k], answer));
+            }
+        }
+    }
+}
+
+/// A choice's answer, if it is feasible.
+pub(super) fn answer(hold: &Hold<'_>, choice: &Choice) -> Option<Answer> {
+    let stance = Stance::new(hold, choice.place_w_m, choice.heading_rad);
+    let tool = RolledTool::new(hold, choice.roll_rad);
+    let circle = stance.circle(&tool)?;
+    stance.answer(&circle, *choice)
+}
+
+/// A person who stands somewhere.
+struct Stance<'a> {
+    hold: &'a Hold<'a>,
+    place_w_m: [f64; 2],
+    heading_rad: f64,
+    x_wb: Pose,
+    wrench_w: Wrench,
+    /// The robot's distances from what does not move with the arm; none when that is in the way.
+    still: OnceCell<Option<Distances>>,
+}
+
+impl<'a> Stance<'a> {
+    fn new(hold: &'a Hold<'a>, place_w_m: [f64; 2], heading_rad: f64) -> Self {
+        let [x_m, y_m] = place_w_m;
+        let x_wb = standing_pose_w(x_m, y_m, heading_rad, hold.floor_z_m);
+        let wrench_w = hold.operation.wrench_w(&hold.scene.x_wo);
+        Self { hold, place_w_m, heading_rad, x_wb, wrench_w, still: OnceCell::new() }
+    }
+
+    fn circle(&self, tool: &RolledTool) -> Option<SwivelCircle> {
+        self.hold.human.swivel_circle(&(self.x_wb.inverse() * tool.x_wt))
+    }
+
+    /// Calls `visitor` with the feasible answers from here with one roll of the tool.
+    fn visit(&self, tool: &RolledTool, mut visitor: impl FnMut(&Answer)) {
+        let Some(circle) = self.circle(tool) else { return };
+        for SwivelInterval { branch, from_rad, to_rad } in circle.intervals() {
+            let first = (from_rad / SWIVEL_STEP_RAD).ceil() as i32;
+            // Both ends of a whole circle are the same angle.
+            let whole = to_rad - from_rad >= TAU;
+            let last = (to_rad / SWIVEL_STEP_RAD).floor() as i32 - i32::from(whole);
+            for swivel_rad in (first..=last).map(|k| f64::from(k) * SWIVEL_STEP_RAD) {
+                let Self { place_w_m, heading_rad, .. } = *self;
+                let choice = Choice { place_w_m, heading_rad, roll_rad: tool.roll_rad, swivel_rad, branch };
+                if let Some(answer) = self.answer(&circle, choice) {
+                    visitor(&answer);
+                }
+            }
+        }
+    }
+
+    /// The answer with this swivel, if it is feasible.
+    fn answer(&self, circle: &SwivelCircle, choice: Choice) -> Option<Answer> {
+        let Hold { human, settings, robot_points_w, .. } = *self.hold;
+        let q_rad = circle.solution(choice.swivel_rad, choice.branch)?;
+        let muscular = human.muscular(&q_rad, &self.x_wb, &self.wrench_w, settings.direction);
+        if muscular.activations.iter().any(|&activation| activation > 1.0) {
+            return None;
+        }
+        let mut distances = (*self.still.get_or_init(|| self.still(&q_rad)))?;
+        if self.in_the_way(&q_rad, true) {
+            return None;
+        }
+        distances.add(&human.body_points_w(&self.x_wb, &q_rad)[STILL_POINTS..], robot_points_w);
+        let peripersonal_m = distances.peripersonal_m(settings.peripersonal);
+        let objective = objective(&settings, muscular.regularised, peripersonal_m);
+        Some(Answer { choice, x_wb: self.x_wb, q_rad, muscular, peripersonal_m, objective })
+    }
+
+    fn still(&self, q_rad: &ArmAngles) -> Option<Distances> {
+        if self.in_the_way(q_rad, false) {
+            return None;
+        }
+        let mut distances = Distances::new(self.hold.settings.saturation_m);
+        distances.add(&self.hold.human.body_points_w(&self.x_wb, q_rad)[..STILL_POINTS], self.hold.robot_points_w);
+        Some(distances)
+    }
+
+    /// True when the working arm and the tool, or else all the rest of the body, touch or come too close.
+    fn in_the_way(&self, q_rad: &ArmAngles, arm: bool) -> bool {
+        let capsules = self.hold.human.capsules_w(&self.x_wb, q_rad);
+        let parts: Vec<_> =
+            capsules.into_iter().filter(|part| part.name.moves_with_arm() == arm).map(PersonPart::from).collect();
+        let scene = Scene { person: &parts, ..self.hold.scene };
+        self.hold.collision.first_violation_of_person(&scene).is_some()
+    }
+}

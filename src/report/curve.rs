@@ -1,0 +1,175 @@
+//! The muscular curve as a table for programs and a plot for readers.
+
+use std::fmt::Write as _;
+
+use crate::comfort::curve::{Curve, CurvePoint, POINTS, Span};
+
+/// How the person stands, as the files name it, with the colour of its bars and their offset from a point's tick, px.
+struct Series {
+    name: &'static str,
+    legend: &'static str,
+    colour: &'static str,
+    offset_px: f64,
+    span: fn(&CurvePoint) -> Option<Span>,
+}
+
+/// Two colours that the colour-blind tell apart.
+const SERIES: [Series; 2] = [
+    Series {
+        name: "free",
+        legend: "standing wherever it is best or worst",
+        colour: "#0072b2",
+        offset_px: -7.0,
+        span: |point| point.free,
+    },
+    Series {
+        name: "fixed",
+        legend: "standing in one place for all points",
+        colour: "#d55e00",
+        offset_px: 7.0,
+        span: |point| point.fixed,
+    },
+];
+
+/// The curve as CSV: a row a point and way of standing; empty figures where the person has no solution.
+pub fn csv(curve: &Curve) -> String {
+    let mut text = String::from(
+        "point,angle_deg,standing,reachable,worst_regularised,best_regularised,worst_printed,best_printed\n",
+    );
+    for (index, point) in curve.points.iter().enumerate() {
+        for series in &SERIES {
+            let figures = (series.span)(point).map_or_else(
+                || "false,,,,".to_owned(),
+                |Span { worst, best }| {
+                    let [a, b, c, d] = [worst.regularised, best.regularised, worst.printed, best.printed];
+                    format!("true,{a:.4},{b:.4},{c:.4},{d:.4}")
+                },
+            );
+            let angle_deg = point.angle_rad.to_degrees();
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "{},{angle_deg:.1},{},{figures}", index + 1, series.name);
+        }
+    }
+    text
+}
+
+/// The plot's area inside the picture, px: left, right, top, bottom.
+const AREA_PX: [f64; 4] = [64.0, 784.0, 64.0, 360.0];
+
+/// The curve as a picture: a bar from the worst to the best comfort for each point and way of standing, a cross where the
+/// person has no solution.
+pub fn svg(curve: &Curve) -> String {
+    let [left, right, top, bottom] = AREA_PX;
+    let highest = curve.points.iter().flat_map(|point| [point.free, point.fixed]).flatten();
+    let highest = highest.map(|span| span.best.regularised).fold(0.0, f64::max);
+    let step = grid_step(highest);
+    let steps = (highest / step).ceil().max(1.0);
+    let y_px = |comfort: f64| bottom - (bottom - top) * comfort / (steps * step);
+    let x_px = |index: usize| left + (right - left) * (index as f64 + 0.5) / POINTS as f64;
+    let mut body = String::new();
+    for k in 0..=steps as u32 {
+        let comfort = step * f64::from(k);
+        let y = y_px(comfort);
+        line(&mut body, [left, y, right, y], "#dddddd", 1.0);
+        label(&mut body, left - 8.0, y + 4.0, "end", &format!("{comfort}"));
+    }
+    for (index, point) in curve.points.iter().enumerate() {
+        label(&mut body, x_px(index), bottom + 18.0, "middle", &format!("{}", index + 1));
+        for series in &SERIES {
+            let x = x_px(index) + series.offset_px;
+            match (series.span)(point) {
+                Some(Span { worst, best }) => {
+                    bar(&mut body, x, y_px(best.regularised), y_px(worst.regularised), series.colour);
+                }
+                None => cross(&mut body, x, bottom - 6.0, series.colour),
+            }
+        }
+    }
+    legend(&mut body);
+    label(&mut body, (left + right) / 2.0, bottom + 40.0, "middle", "cutting point, counter-clockwise from the right");
+    let title = "Muscular comfort 1 / (sum of squared activations + 0.01), from the worst to the best solution";
+    label(&mut body, left, 22.0, "start", title);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 410\" width=\"800\" height=\"410\" \
+         font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n\
+         <rect width=\"800\" height=\"410\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+    )
+}
+
+/// A round distance of grid lines: at most eight of them.
+fn grid_step(highest: f64) -> f64 {
+    [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| highest <= 8.0 * step).unwrap_or(20.0)
+}
+
+fn legend(body: &mut String) {
+    let [left, ..] = AREA_PX;
+    for (index, series) in SERIES.iter().enumerate() {
+        let x = left + 8.0 + 260.0 * index as f64;
+        line(body, [x, 42.0, x + 18.0, 42.0], series.colour, 5.0);
+        label(body, x + 24.0, 46.0, "start", series.legend);
+    }
+    cross(body, left + 536.0, 42.0, "#222222");
+    label(body, left + 548.0, 46.0, "start", "no solution");
+}
+
+// Writing to a string does not fail, so the results below say nothing.
+
+fn line(body: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, width_px: f64) {
+    let _ = writeln!(
+        body,
+        "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{colour}\" \
+         stroke-width=\"{width_px}\"/>"
+    );
+}
+
+fn label(body: &mut String, x: f64, y: f64, anchor: &str, text: &str) {
+    let _ = writeln!(body, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
+}
+
+/// A bar with both ends marked, at least a pixel high.
+fn bar(body: &mut String, x: f64, top: f64, bottom: f64, colour: &str) {
+    let height = (bottom - top).max(1.0);
+    let x = x - 4.5;
+    let _ = writeln!(body, "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"9\" height=\"{height:.1}\" fill=\"{colour}\"/>");
+}
+
+fn cross(body: &mut String, x: f64, y: f64, colour: &str) {
+    line(body, [x - 4.0, y - 4.0, x + 4.0, y + 4.0], colour, 2.0);
+    line(body, [x - 4.0, y + 4.0, x + 4.0, y - 4.0], colour, 2.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Isometry3;
+
+    use super::*;
+    use crate::human::Muscular;
+
+    fn curve() -> Curve {
+        let span = Span { worst: Muscular::of([0.5; 7]), best: Muscular::of([0.1; 7]) };
+        let mut points = [CurvePoint { angle_rad: 0.0, free: Some(span), fixed: Some(span) }; POINTS];
+        points[3] = CurvePoint { angle_rad: std::f64::consts::FRAC_PI_2, free: Some(span), fixed: None };
+        Curve { x_wo: Isometry3::identity(), x_wb_fixed: None, points }
+    }
+
+    #[test]
+    fn the_table_has_a_row_a_point_and_way_of_standing() {
+        let text = csv(&curve());
+        assert_eq!(text.lines().count(), 1 + 2 * POINTS);
+        // 1 / 1.75 and 1 / 0.07, and with 0.01 more below.
+        assert!(text.contains("\n1,0.0,free,true,0.5682,12.5000,0.5714,14.2857\n"), "{text}");
+        assert!(text.contains("\n4,90.0,fixed,false,,,,\n"), "{text}");
+        let columns = |row: &str| row.split(',').count();
+        assert!(text.lines().all(|row| columns(row) == 8));
+    }
+
+    #[test]
+    fn the_picture_has_a_bar_for_every_span_and_a_cross_where_there_is_none() {
+        let text = svg(&curve());
+        // The background and 31 bars; two strokes of the cross and two of the legend's.
+        assert_eq!(text.matches("<rect").count(), 1 + 2 * POINTS - 1);
+        assert_eq!(text.matches("stroke-width=\"2\"").count(), 4);
+        // 12.5 on a scale up to 14 in steps of 2, over 296 px from 360 up.
+        assert!(text.contains(&format!("y=\"{:.1}\"", 360.0 - 296.0 * 12.5 / 14.0)), "{text}");
+    }
+}
