@@ -103,10 +103,13 @@ fn a_closed_reader_is_no_error() {
     assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The plan that the scenarios use, changed; its verdict in a simulation of its own.
-fn verdict_on_changed_plan(change: impl FnOnce(&mut Value)) -> (Value, Option<i32>) {
+const CUT: &str = include_str!("../scenarios/plans/cut-rim.json");
+const LEVER: &str = include_str!("../scenarios/plans/long-lever.json");
+
+/// A plan that the scenarios use, changed; its verdict in a simulation of its own.
+fn verdict_on_changed_plan(plan: &str, change: impl FnOnce(&mut Value)) -> (Value, Option<i32>) {
     let folder = tempfile::tempdir().unwrap();
-    let mut plan: Value = serde_json::from_str(include_str!("../scenarios/plans/cut-rim.json")).unwrap();
+    let mut plan: Value = serde_json::from_str(plan).unwrap();
     change(&mut plan);
     let path = folder.path().join("plan.json");
     fs::write(&path, plan.to_string()).unwrap();
@@ -118,16 +121,21 @@ fn verdict_on_changed_plan(change: impl FnOnce(&mut Value)) -> (Value, Option<i3
 
 #[test]
 fn a_plan_with_a_person_in_the_robot_touches() {
-    let (verdict, exit) =
-        verdict_on_changed_plan(|plan| plan["human"]["x_wb"]["translation_m"] = serde_json::json!([0.0, 0.0, -0.9242]));
+    let (verdict, exit) = verdict_on_changed_plan(CUT, |plan| {
+        plan["human"]["x_wb"]["translation_m"] = serde_json::json!([0.0, 0.0, -0.9242])
+    });
     assert_eq!((verdict["verdict"].as_str(), exit), (Some("touches"), Some(1)));
     assert!(verdict["reason"].as_str().unwrap().contains("expected more than"), "{verdict:#}");
 }
 
 #[test]
 fn a_board_too_heavy_for_its_grip_drops_before_the_load() {
-    // Four pads of 30 N with a friction of 0.6 hold 72 N: 7.3 kg.
-    let (verdict, exit) = verdict_on_changed_plan(|plan| plan["object"]["mass_kg"] = 40.0.into());
+    // Four pads of 0.1 N with a friction of 0.6 hold 0.24 N; the plank weighs 38 N.
+    let (verdict, exit) = verdict_on_changed_plan(LEVER, |plan| {
+        for arm in plan["arms"].as_array_mut().unwrap() {
+            arm["grip_force_n"] = 0.1.into();
+        }
+    });
     assert_eq!((verdict["verdict"].as_str(), exit), (Some("drops"), Some(1)), "{verdict:#}");
     assert_eq!(verdict["first_failure"]["load_factor"], 0.0);
 }

@@ -241,8 +241,8 @@ fn both_arms_hold_one_board() {
     for combination in Combinations::new(&ranked).filter(|pair| pair.q_rad[0][1] < pair.q_rad[1][1]).take(50) {
         assert!(combination.cost >= last);
         last = combination.cost;
-        for arm in 0..2 {
-            assert_solves(&chains()[arm], &(x_wo * grasps[arm]), combination.q_rad[arm]);
+        for ((chain, x_og), q_rad) in chains().iter().zip(&grasps).zip(&combination.q_rad) {
+            assert_solves(chain, &(x_wo * x_og), q_rad);
         }
     }
     assert!(last > 0.0);

@@ -117,9 +117,7 @@ fn pad_open_channels(trace: &Trace, judged: &[Sample]) -> Vec<Channel> {
 
 /// How long no pad of any hand has touched the board at each sample, ms.
 fn contact_lost_channel(judged: &[Sample]) -> Channel {
-    let touches_nothing =
-        |sample: &Sample| sample.arms.iter().flat_map(|arm| &arm.pads).all(|pad| pad.normal_force_n <= 0.0);
-    Channel { what: String::new(), values: duration_ms(judged, touches_nothing) }
+    Channel { what: String::new(), values: duration_ms(judged, |sample| !sample.is_touched()) }
 }
 
 /// How long a condition has lasted at each sample, ms: 0 where it does not hold. A sample's forces are those of the

@@ -71,7 +71,7 @@ impl Judgement {
 
 /// Judges a simulated hold.
 ///
-/// The reference is the last sample of settling. What is judged reaches from there to the end of the load; the release
+/// The reference is the last sample of settling; a board lost before that drops. What is judged reaches from there to the end of the load; the release
 /// is not. A value at its limit keeps it. The earliest crossing names the verdict; of several at the same sample, the
 /// loss of the board goes before the contacts (pad, slip, rotation), and these before torque, deflection and creep.
 pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
@@ -102,17 +102,23 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     }
 }
 
-/// Index of the reference: the last sample of settling, or the first of a trace that never settled.
+/// Index of the reference: the last sample of settling, or the first of a trace that never settled. A board that is lost
+/// while settling never meets the load: then it is the first sample in which no pad touches any more.
 fn reference(trace: &Trace) -> usize {
-    trace.samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0)
+    let settled = trace.samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0);
+    if trace.samples.iter().any(|sample| sample.phase.is_loaded()) {
+        return settled;
+    }
+    let last_touch = trace.samples.iter().rposition(Sample::is_touched).map_or(0, |last| last + 1);
+    settled.min(last_touch)
 }
 
-/// The samples from the reference to the end of the load. A board that is lost while settling never meets the load: then
-/// it is the reference alone, in which no pad touches.
+/// The samples from the reference to the end of the load; to the end of the trace when the board was lost before the
+/// load; none when the load never acted for another reason.
 fn judged(trace: &Trace, reference: usize) -> &[Sample] {
     let end = trace.samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
-    let lost = trace.samples[reference].arms.iter().flat_map(|arm| &arm.pads).all(|pad| pad.normal_force_n == 0.0);
-    let end = end.unwrap_or(if lost { reference + 1 } else { reference });
+    let lost = !trace.samples[reference].is_touched();
+    let end = end.unwrap_or(if lost { trace.samples.len() } else { reference });
     &trace.samples[reference..end.max(reference)]
 }
 

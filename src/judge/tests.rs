@@ -147,6 +147,27 @@ fn a_board_that_was_never_held_drops_at_the_reference() {
 }
 
 #[test]
+fn a_board_lost_while_settling_drops_though_the_load_never_acted() {
+    let lost_at = SETTLE - 20;
+    let mut trace =
+        changed(lost_at, |s| s.arms.iter_mut().flat_map(|arm| &mut arm.pads).for_each(|pad| pad.normal_force_n = 0.0));
+    // The simulation ends soon after a loss.
+    trace.samples.truncate(SETTLE - 5);
+    assert_eq!(outcome(&trace), (VerdictKind::Drops, Some(lost_at)));
+    // The first sample without a touch, and all after it: fifteen steps of 2 ms.
+    let judgement = judge(&trace, &limits());
+    let lost = judgement.checks.iter().find(|check| check.name == CheckKind::ContactLost).unwrap();
+    assert_eq!(lost.value, 30.0);
+}
+
+#[test]
+fn a_trace_that_ends_while_settling_with_the_board_held_gives_no_verdict() {
+    let mut trace = still();
+    trace.samples.truncate(SETTLE - 5);
+    assert_eq!(judge(&trace, &limits()).verdict, VerdictKind::NoVerdict);
+}
+
+#[test]
 fn a_value_at_its_limit_passes() {
     let limits = Limits { slip_mm: 0.25, deflection_mm: 4.0, torque_ratio: 0.5, ..limits() };
     let mut trace = still();

@@ -78,6 +78,13 @@ pub struct Sample {
     pub arms: Vec<ArmSample>,
 }
 
+impl Sample {
+    /// True when some pad presses on the board.
+    pub fn is_touched(&self) -> bool {
+        self.arms.iter().flat_map(|arm| &arm.pads).any(|pad| pad.normal_force_n > 0.0)
+    }
+}
+
 /// The state of one arm after one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmSample {

@@ -64,7 +64,7 @@ use crate::{
     model::{
         plan::Plan,
         scenario::SimulationSettings,
-        trace::{ArmTrace, Sample, Trace},
+        trace::{ArmTrace, Trace},
     },
     robot::Robot,
 };
@@ -105,19 +105,14 @@ pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &Simulation
         let sample = &mut trace.samples[step];
         (sample.time_s, sample.phase) = (time_s, phase);
         scene.observe(sample);
-        untouched_s = if is_touched(sample) { 0.0 } else { untouched_s + settings.timestep_s };
+        // Before the first step there are no forces yet.
+        untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + settings.timestep_s };
         if untouched_s > LOST_AFTER_S {
             trace.samples.truncate(step + 1);
             break;
         }
     }
     Ok(trace)
-}
-
-/// True when some pad presses on the board; also before the first step, which has no forces yet.
-fn is_touched(sample: &Sample) -> bool {
-    let mut pads = sample.arms.iter().flat_map(|arm| &arm.pads);
-    sample.time_s == 0.0 || pads.any(|pad| pad.normal_force_n > 0.0)
 }
 
 /// A trace with room for every sample, so that the steps allocate nothing of ours.
