@@ -43,11 +43,12 @@ pub(super) fn markdown(plan: &Plan, verdict: &Verdict) -> String {
 }
 
 fn colours(text: &mut String, plan: &Plan) {
-    let hand = |index: usize| plan.arms.get(index).map_or("no", |arm| arm.name.as_str());
     let scale_mm = ARROW_M_PER_N * 1e3;
     push(text, format_args!("\n**Colours**"));
-    push(text, format_args!("- blue: {} hand", hand(0)));
-    push(text, format_args!("- orange: {} hand", hand(1)));
+    // As many as the palette has for hands, in its order; further arms have the same colours again.
+    for (index, arm) in plan.arms.iter().enumerate() {
+        push(text, format_args!("- {}: {} hand", ["blue", "orange"][index % 2], arm.name));
+    }
     push(text, format_args!("- yellow: board"));
     push(text, format_args!("- violet: tool and load"));
     push(text, format_args!("- green: person"));

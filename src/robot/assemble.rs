@@ -282,7 +282,13 @@ impl Context<'_> {
 
     fn body_points(&self, robot: &Robot, description: &Description) -> Result<Vec<BodyPoint>, RobotError> {
         let mut points = Vec::new();
-        for entry in &description.body_points {
+        let entries = description.body_points.get_ref();
+        if entries.is_empty() {
+            let problem =
+                "body_points: found none, expected at least one: the distance to the person is measured to them";
+            return Err(self.source.error(description.body_points.span(), problem));
+        }
+        for entry in entries {
             let p_m = *entry.p_m.get_ref();
             if !p_m.iter().all(|v| v.is_finite()) {
                 return Err(self.error(&entry.p_m, "p_m", "a number that is not finite", "m"));

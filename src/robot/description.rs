@@ -90,8 +90,7 @@ pub(super) struct Description {
     pub arms: Spanned<Vec<ArmEntry>>,
     #[serde(default)]
     pub allowed_collisions: Vec<Spanned<[String; 2]>>,
-    #[serde(default)]
-    pub body_points: Vec<PointEntry>,
+    pub body_points: Spanned<Vec<PointEntry>>,
 }
 
 /// An arm, as written.

@@ -9,7 +9,7 @@
 //!   the arm's own weight fed forward, and the effort limit by moving the point where the spring rests.
 //! - Grippers: two fingers coupled to open alike, each pushed with a constant force that the palm feels too.
 //! - The board, a free body under gravity and the tool's wrench. Pads and board touch; nothing else does. Joint limits
-//!   of the arms are not modelled: a plan keeps away from them, and servos give way by milliradians.
+//!   of the arms are not modelled: a plan's angles are inside them, and servos give way by milliradians.
 //!
 //! # The pads
 //! The engine joins two flat boxes in four corners, which resist turning by their distance from the centre. What
