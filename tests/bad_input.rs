@@ -348,3 +348,21 @@ fn a_scenario_inside_a_plan_that_makes_no_sense() {
     );
     assert_refused(&output, &message);
 }
+
+#[test]
+fn a_trunk_that_leans_too_far() {
+    assert_scenario_refused(
+        "[grip]",
+        "[human]\nlean_deg = 40.0\n\n[grip]",
+        "bad.toml:13: human.lean_deg: found 40, expected a number from 0 to 15 (degrees)",
+    );
+}
+
+#[test]
+fn a_saturation_at_no_distance() {
+    assert_scenario_refused(
+        "[grip]",
+        "[comfort]\nsaturation_m = 0.0\n\n[grip]",
+        "bad.toml:13: comfort.saturation_m: found 0, expected a positive number (m)",
+    );
+}

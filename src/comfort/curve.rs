@@ -5,6 +5,12 @@
 //! where its board was, nor whether its person could step aside. So each point is looked at twice: with every standing
 //! place and heading of the grid of [`super::Answer`] (`free`), and from one place and heading for all points (`fixed`),
 //! the one from which the most points can be cut, and among those the one with the largest sum of best comforts.
+//!
+//! Like the paper's figure, the result (`benchdog curve`) has a band from worst to best at each point, lower and narrower
+//! next to the points that the wrist cannot serve, and closes where the circle does: 16 and 1 are alike. Unlike it, three
+//! neighbouring points have no solution, not two (1, 15 and 16, standing anywhere), and eight have none from one place: the
+//! knife's angle in the hand and the wrist's range are ours (METHOD section 4), the paper states neither, and a turn of
+//! either moves the gap around the circle.
 
 use std::{collections::BTreeMap, f64::consts::TAU};
 
