@@ -9,7 +9,7 @@ const SCENARIOS: [&str; 2] = ["scenarios/quickstart.toml", "scenarios/cut-rim.to
 fn run(out: &Path, jobs: &str) {
     let status = Command::new(env!("CARGO_BIN_EXE_benchdog"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(["run", "--record", "never", "--jobs", jobs, "--out"])
+        .args(["run", "--jobs", jobs, "--out"])
         .arg(out)
         .args(SCENARIOS)
         .output()
@@ -38,6 +38,11 @@ fn one_thread_and_two_give_the_same_bytes() {
         let [one, two] = [one, two].map(|folder| fs::read_to_string(folder.join("verdict.json")).unwrap());
         assert!(one.contains("\"fingerprint\""));
         assert_eq!(one, two);
+        #[cfg(feature = "recording")]
+        {
+            let [one, two] = folders.each_ref().map(|folder| folder.path().join(name).join("recording.rrd"));
+            assert!(fs::read(one).unwrap() == fs::read(two).unwrap(), "{name}: the recordings differ");
+        }
     }
 }
 
