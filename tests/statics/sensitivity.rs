@@ -12,12 +12,15 @@ use crate::fixtures::{baxter_holds, random_hold, solved, strong_hand};
 /// curvature by about a thousandth of itself.
 const STEP: f64 = 1e-3;
 
+/// Multiplies one limit of a hold.
+type Change = Box<dyn Fn(&mut Hold, f64)>;
+
 /// A derivative by name, and the limit that it is by.
 struct Derivative {
     name: String,
     found: f64,
     limit: f64,
-    scale: Box<dyn Fn(&mut Hold, f64)>,
+    scale: Change,
 }
 
 fn derivatives(hold: &Hold) -> Vec<Derivative> {
