@@ -58,7 +58,7 @@ impl std::fmt::Display for CannotHold {
 impl Hold {
     /// A reason why this hold cannot stand a load factor; none means that it may or may not. A necessary test of two
     /// microseconds: what it rejects, [`StabilityWorkspace::load_factor`](super::StabilityWorkspace::load_factor)
-    /// rejects.
+    /// rejects, but for a board that is too heavy by itself and held by a larger load that lifts it.
     pub fn cannot_hold(&self, load_factor: f64) -> Option<CannotHold> {
         let outer = self.weight + self.load.scaled(load_factor);
         // Once for all twists: most of the test's time otherwise.
@@ -68,7 +68,7 @@ impl Hold {
             let back = Twist { linear: -twist.linear, angular: -twist.angular };
             let demand_j = twist.work(&outer);
             let capacity_j: f64 =
-                self.hands.iter().zip(&radii_m).map(|(hand, radii_m)| work_of_pads(hand, radii_m, &back)).sum();
+                self.hands.iter().zip(&radii_m).map(|(hand, radii_m)| work_of_hand(hand, radii_m, &back)).sum();
             let is_lost = demand_j > capacity_j + ROUNDING_MARGIN * demand_j.abs();
             is_lost.then_some(CannotHold { motion, demand_j, capacity_j })
         };
@@ -94,7 +94,7 @@ fn rigid_motions(hold: &Hold, outer: &Wrench) -> Vec<(LostMotion, Twist)> {
     motions
 }
 
-fn work_of_pads(hand: &HandModel, radii_m: &[f64; 2], twist: &Twist) -> f64 {
+fn work_of_hand(hand: &HandModel, radii_m: &[f64; 2], twist: &Twist) -> f64 {
     if let Some(limits) = &hand.wrench_limits {
         return work_of_measured(limits, &twist.at(&hand.grasp_point_o));
     }

@@ -11,7 +11,7 @@ use crate::model::{frames::Pose, wrench::Wrench};
 /// The most hands that a hold may have.
 const MAX_HANDS: usize = 4;
 
-/// One pad on the object (METHOD section 6).
+/// One pad on the object, by default a soft finger with a rectangular patch (METHOD section 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PadModel {
     /// Which of the hand's pads it is, such as `upper`.

@@ -2,8 +2,8 @@
 //!
 //! # Which forces may answer a variation
 //! [`InternalForces::Adapt`]: for every variation some distribution of forces exists. The programs share nothing but
-//! lambda, and the load factors that one of them holds are an interval from 0, since it is convex and holds the weight
-//! alone. So the largest common load factor is the smallest of theirs, exactly, and each is solved for itself.
+//! lambda, and the load factors that one of them holds are an interval from 0, since it is convex and the weight alone
+//! is required to be held. So the largest common load factor is the smallest of theirs, exactly, and each is solved for itself.
 //!
 //! [`InternalForces::Fixed`]: position-controlled arms do not know which variation it is. With what they press against
 //! each other they have to serve all of them, and the difference between two loads is shared by their stiffness: hand
@@ -92,6 +92,9 @@ pub(super) fn solve(
     hold.check()?;
     check(variations)?;
     let holds: Vec<_> = variations.iter().map(|variation| varied(hold, variation)).collect();
+    if let Some(outcome) = weight_not_held(workspace, &holds, variations)? {
+        return Ok(outcome);
+    }
     let adapted = smallest(workspace, &holds)?;
     match (&adapted, internal_forces) {
         (RobustOutcome::Solved(_), InternalForces::Fixed) if hold.hands.len() > 1 => Ok(with_fixed(hold, &holds)),
@@ -120,6 +123,24 @@ fn varied(hold: &Hold, variation: &Variation) -> Hold {
     let mut varied = Hold { load: variation.load, ..hold.clone() };
     varied.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= variation.friction_ratio);
     varied
+}
+
+/// What becomes of a board that its hands cannot carry at the lowest friction: a load that lifts it may be held where
+/// less of it is not, and the load factors held are then no interval from 0.
+fn weight_not_held(
+    workspace: &mut StabilityWorkspace,
+    holds: &[Hold],
+    variations: &[Variation],
+) -> Result<Option<RobustOutcome>, HoldError> {
+    let friction = |variation: &usize| variations[*variation].friction_ratio;
+    let lowest = (0..holds.len()).min_by(|left, right| friction(left).total_cmp(&friction(right)));
+    let Some(variation) = lowest else { return Err(HoldError::NoVariations) };
+    let idle = Hold { load: Wrench::default(), ..holds[variation].clone() };
+    Ok(match workspace.load_factor(&idle)? {
+        LoadFactorOutcome::Solved(_) => None,
+        LoadFactorOutcome::GravityInfeasible { .. } => Some(RobustOutcome::GravityInfeasible { variation }),
+        LoadFactorOutcome::Unknown { status } => Some(RobustOutcome::Unknown { status }),
+    })
 }
 
 /// The minimum over holds that share nothing but the load factor; the forces of each are those at its own.

@@ -213,7 +213,10 @@ proptest! {
             LoadFactorOutcome::Unknown { status } => prop_assert!(false, "the solver stopped: {status}"),
         }
         let value = found.load_factor().unwrap_or(-1.0);
-        for asked in [0.0, 1.0, 3.0] {
+        // A load that lifts a board too heavy to be held is held where less of it is not.
+        let idle = Hold { load: Wrench::default(), ..hold.clone() };
+        let is_carried = workspace.load_factor(&idle).unwrap().load_factor().is_some();
+        for asked in [0.0, 1.0, 3.0].into_iter().filter(|_| is_carried) {
             if let Some(reason) = hold.cannot_hold(asked) {
                 prop_assert!(value < asked + TOLERANCE, "{reason}, yet {value} of {asked}");
             }

@@ -51,9 +51,12 @@ fn cases() -> Vec<(Hold, Vec<Variation>)> {
         (hold, variations)
     });
     let mut carries_all = |(hold, variations): &(Hold, Vec<Variation>)| {
-        variations
-            .iter()
-            .all(|v| workspace.load_factor(&varied(hold, v)).unwrap().load_factor().is_some_and(|l| l > 0.05))
+        let mut held =
+            |hold: &Hold, least| workspace.load_factor(hold).unwrap().load_factor().is_some_and(|found| found > least);
+        variations.iter().map(|variation| varied(hold, variation)).all(|hold| {
+            let idle = Hold { load: Wrench::default(), ..hold.clone() };
+            held(&hold, 0.05) && held(&idle, 0.0)
+        })
     };
     let cases: Vec<_> = all.filter(|case| carries_all(case)).collect();
     assert!(cases.len() >= 12, "only {} cases", cases.len());
@@ -181,6 +184,12 @@ fn a_variation_that_drops_the_board_is_named() {
         let found = workspace.robust_load_factor(&hold, &[friction(1.0), friction(0.2)], internal_forces).unwrap();
         assert_eq!(found, RobustOutcome::GravityInfeasible { variation: 1 });
     }
+    // A load that lifts a board that is too heavy by itself.
+    let heavy = two_strong_hands(Wrench::from_force(Vector3::new(0.0, -80.0, 0.0)), Wrench::from_force(Vector3::y()));
+    let lifting = [Variation { load: heavy.load, friction_ratio: 1.0 }];
+    assert!(workspace.load_factor(&heavy).unwrap().load_factor().is_some_and(|found| found > 99.0));
+    let found = workspace.robust_load_factor(&heavy, &lifting, InternalForces::Adapt).unwrap();
+    assert_eq!(found, RobustOutcome::GravityInfeasible { variation: 0 });
     let message = |variations: &[Variation]| {
         StabilityWorkspace::new().robust_load_factor(&hold, variations, InternalForces::Adapt).unwrap_err().to_string()
     };
