@@ -5,13 +5,15 @@
 //! duality of the load program with a dual vector made from `y`; a few twists that loads tend to drive are tried.
 //!
 //! Only the pads are asked: the largest work of a hand is `2 F max_c (v_n + mu |(v_t1, v_t2, e w_n)| + b |w_t1| +
-//! a |w_t2|)`, with `(v, w)` the twist at pad c in pad axes. Torque limits are left to the program: twists that they
+//! a |w_t2|)`, with `(v, w)` the twist at pad c in pad axes; of a pad of points the largest `v_n + mu |v_t|` of its
+//! points, of measured limits `sum D_i |y_i|` or `|D y|`. Torque limits are left to the program: twists that they
 //! reject and the pads do not are too rare to look for here.
 
 use nalgebra::Vector3;
 
 use super::{
     compliance::Twist,
+    contact::{LimitShape, PadKind, WrenchLimits},
     hold::{HandModel, Hold, PadModel},
 };
 use crate::model::wrench::Wrench;
@@ -56,13 +58,17 @@ impl std::fmt::Display for CannotHold {
 impl Hold {
     /// A reason why this hold cannot stand a load factor; none means that it may or may not. A necessary test of two
     /// microseconds: what it rejects, [`StabilityWorkspace::load_factor`](super::StabilityWorkspace::load_factor)
-    /// rejects.
+    /// rejects, but for a board that is too heavy by itself and held by a larger load that lifts it.
     pub fn cannot_hold(&self, load_factor: f64) -> Option<CannotHold> {
         let outer = self.weight + self.load.scaled(load_factor);
+        // Once for all twists: most of the test's time otherwise.
+        let radii_m: Vec<_> =
+            self.hands.iter().map(|hand| hand.pads.each_ref().map(PadModel::torsion_radius_m)).collect();
         let lost = |(motion, twist): (LostMotion, Twist)| {
             let back = Twist { linear: -twist.linear, angular: -twist.angular };
             let demand_j = twist.work(&outer);
-            let capacity_j: f64 = self.hands.iter().map(|hand| work_of_pads(hand, &back)).sum();
+            let capacity_j: f64 =
+                self.hands.iter().zip(&radii_m).map(|(hand, radii_m)| work_of_hand(hand, radii_m, &back)).sum();
             let is_lost = demand_j > capacity_j + ROUNDING_MARGIN * demand_j.abs();
             is_lost.then_some(CannotHold { motion, demand_j, capacity_j })
         };
@@ -88,17 +94,47 @@ fn rigid_motions(hold: &Hold, outer: &Wrench) -> Vec<(LostMotion, Twist)> {
     motions
 }
 
-fn work_of_pads(hand: &HandModel, twist: &Twist) -> f64 {
-    let largest = hand.pads.iter().map(|pad| work_per_normal_force(pad, twist)).fold(f64::NEG_INFINITY, f64::max);
+fn work_of_hand(hand: &HandModel, radii_m: &[f64; 2], twist: &Twist) -> f64 {
+    if let Some(limits) = &hand.wrench_limits {
+        return work_of_measured(limits, &twist.at(&hand.grasp_point_o));
+    }
+    let largest = hand
+        .pads
+        .iter()
+        .zip(radii_m)
+        .map(|(pad, radius_m)| work_per_normal_force(pad, *radius_m, twist))
+        .fold(f64::NEG_INFINITY, f64::max);
     2.0 * hand.grip_force_n * largest
 }
 
-/// The most work of a pad per newton of normal force, m.
-fn work_per_normal_force(pad: &PadModel, twist: &Twist) -> f64 {
+/// The most work of a pad per newton of normal force, m, for the torsion radius of its patch.
+fn work_per_normal_force(pad: &PadModel, radius_m: f64, twist: &Twist) -> f64 {
     let at_pad = twist.at(&pad.x_op.translation.vector);
     let v = pad.x_op.rotation.inverse() * at_pad.linear;
     let w = pad.x_op.rotation.inverse() * at_pad.angular;
-    let [a, b] = pad.half_sides_m;
-    let friction = v.x.hypot(v.y).hypot(pad.torsion_radius_m() * w.z);
-    v.z + pad.friction * friction + b * w.x.abs() + a * w.y.abs()
+    match &pad.kind {
+        PadKind::SoftFinger => {
+            let [a, b] = pad.half_sides_m;
+            let friction = v.x.hypot(v.y).hypot(radius_m * w.z);
+            v.z + pad.friction * friction + b * w.x.abs() + a * w.y.abs()
+        }
+        PadKind::Points(points) => {
+            let of_point = |&[x, y]: &[f64; 2]| {
+                let at_point = v + w.cross(&Vector3::new(x, y, 0.0));
+                at_point.z + pad.friction * at_point.x.hypot(at_point.y)
+            };
+            points.iter().map(of_point).fold(f64::NEG_INFINITY, f64::max)
+        }
+    }
+}
+
+/// The most work of measured limits on a twist of the grasp point, J.
+fn work_of_measured(limits: &WrenchLimits, twist: &Twist) -> f64 {
+    let back = limits.rotation_og.inverse();
+    let twist_g = Twist { linear: back * twist.linear, angular: back * twist.angular };
+    let work = twist_g.to_vector().component_mul(&limits.most.to_vector());
+    match limits.shape {
+        LimitShape::Box => work.abs().sum(),
+        LimitShape::Ellipsoid => work.norm(),
+    }
 }

@@ -4,11 +4,13 @@
 //! `q'x = -lambda` that is `lambda <= b'z - r'x`, and every variable is bounded by the grip: `fn <= 2 F`, the others
 //! by friction and the pad's size. So any `z` gives a bound, and a good one a tight bound.
 
+use clarabel::solver::SupportedConeT;
 use nalgebra::Vector6;
 
 use super::{
     hold::{HandModel, Hold, HoldError},
-    program::{FORCE_UNIT_N, Layout, MAX_LOAD_FACTOR, Program, ProgramKind, wrench_units},
+    layout::{HandLayout, Layout},
+    program::{FORCE_UNIT_N, MAX_LOAD_FACTOR, Program, ProgramKind, wrench_units},
 };
 
 /// A dual vector of a hold's load program, with or without torque limits, in the program's scaled rows.
@@ -56,7 +58,7 @@ impl DualVector {
         if self.z.len() != program.b.len() {
             return f64::INFINITY;
         }
-        let z = self.in_dual_cone(&program.layout, hold.hands.len());
+        let z = self.in_dual_cone(&program.layout);
         let largest = largest_variables(hold, program);
         let value: f64 = program.b.iter().zip(&z).map(|(b, z)| b * z).sum();
         let residual = |column: usize| {
@@ -66,44 +68,81 @@ impl DualVector {
         value + (0..q.len()).map(|column| residual(column).abs() * largest[column]).sum::<f64>()
     }
 
-    fn in_dual_cone(&self, layout: &Layout, hands: usize) -> Vec<f64> {
+    fn in_dual_cone(&self, layout: &Layout) -> Vec<f64> {
         let mut z = self.z.clone();
-        let first_cone = layout.friction_rows(0, 0);
-        z[layout.load_rows()..first_cone].iter_mut().for_each(|value| *value = value.max(0.0));
-        for cone in 0..2 * hands {
-            let rows = &mut z[first_cone + 4 * cone..first_cone + 4 * cone + 4];
-            rows[0] = rows[0].max(rows[1].hypot(rows[2]).hypot(rows[3]));
+        let mut rest = z.as_mut_slice();
+        for cone in layout.cones() {
+            match cone {
+                SupportedConeT::NonnegativeConeT(rows) => {
+                    split_off(&mut rest, rows).iter_mut().for_each(|value| *value = value.max(0.0));
+                }
+                SupportedConeT::SecondOrderConeT(rows) => {
+                    let rows = split_off(&mut rest, rows);
+                    rows[0] = rows[0].max(rows[1..].iter().fold(0.0, |norm: f64, value| norm.hypot(*value)));
+                }
+                // The dual of an equality is free; there are no other cones.
+                SupportedConeT::ZeroConeT(rows) => _ = split_off(&mut rest, rows),
+                _ => {}
+            }
         }
         z
     }
 }
 
+/// The first entries of what is left, which is then left without them.
+fn split_off<'a>(rest: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
+    let (first, others) = std::mem::take(rest).split_at_mut(count);
+    *rest = others;
+    first
+}
+
 /// The largest size of each scaled variable at any feasible point.
 fn largest_variables(hold: &Hold, program: &Program) -> Vec<f64> {
     let mut largest = Vec::with_capacity(program.q.len());
-    for hand in &hold.hands {
+    for (hand, place) in hold.hands.iter().zip(program.layout.hands()) {
         let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-        for pad in &hand.pads {
+        for pad in place.pads().into_iter().flat_map(|_| &hand.pads) {
             let friction = pad.friction * normal;
-            largest.extend([friction, friction, normal, normal, normal, friction]);
+            let [a, b] = pad.half_sides_m;
+            let [about_x, about_y, about_z] = pad.levers_m();
+            let torsion = friction * (about_z / pad.torsion_radius_m());
+            largest.extend([friction, friction, normal, normal * (about_x / b), normal * (about_y / a), torsion]);
         }
         largest.extend(largest_wrench(hand).iter());
+    }
+    for (hand, place) in hold.hands.iter().zip(program.layout.hands()) {
+        largest.extend(largest_point_forces(hand, place));
     }
     largest.push(MAX_LOAD_FACTOR * program.load_scale);
     largest
 }
 
+/// A point of a pad carries no more than the whole grip.
+fn largest_point_forces(hand: &HandModel, place: &HandLayout) -> impl Iterator<Item = f64> {
+    let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
+    let pads = hand.pads.iter().zip(place.pads().into_iter().flatten());
+    pads.flat_map(move |(pad, place)| {
+        let friction = pad.friction * normal;
+        let count = place.points.map_or(0, |points| points.count);
+        std::iter::repeat_n([friction, friction, normal], count).flatten()
+    })
+}
+
 /// Bounds of the components of a hand's scaled wrench: each pad's force is at most `(1 + mu) 2 F`, and its moment about
-/// the grasp point that times the distance, plus its own.
+/// the grasp point that times the distance, plus its own; measured limits bound what they limit.
 fn largest_wrench(hand: &HandModel) -> Vector6<f64> {
-    let normal_n = 2.0 * hand.grip_force_n;
     let (mut force_n, mut moment_nm) = (0.0, 0.0);
-    for pad in &hand.pads {
-        let pad_force_n = normal_n * (1.0 + pad.friction);
-        let [a, b] = pad.half_sides_m;
-        let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
-        force_n += pad_force_n;
-        moment_nm += pad_force_n * lever_m + normal_n * (a + b + pad.friction * pad.torsion_radius_m());
+    if let Some(limits) = &hand.wrench_limits {
+        (force_n, moment_nm) = (limits.most.force_n.norm(), limits.most.moment_nm.norm());
+    } else {
+        let normal_n = 2.0 * hand.grip_force_n;
+        for pad in &hand.pads {
+            let pad_force_n = normal_n * (1.0 + pad.friction);
+            let [about_x, about_y, about_z] = pad.levers_m();
+            let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
+            force_n += pad_force_n;
+            moment_nm += pad_force_n * lever_m + normal_n * (about_x + about_y + pad.friction * about_z);
+        }
     }
     Vector6::new(force_n, force_n, force_n, moment_nm, moment_nm, moment_nm).component_div(&wrench_units())
 }

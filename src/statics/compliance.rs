@@ -1,7 +1,7 @@
 //! How far the arms give way: small twists, each arm's compliance, and the hold as if the hands were welded to the
 //! board.
 
-use nalgebra::{Cholesky, Const, Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Cholesky, Const, DVector, Dyn, Matrix3, Matrix6, Vector3, Vector6};
 
 use super::hold::{HandModel, Hold};
 use crate::model::wrench::Wrench;
@@ -50,14 +50,29 @@ impl std::ops::Sub for Twist {
 }
 
 impl HandModel {
-    /// Compliance of the arm at the grasp point, `C = J K_q^-1 J'`, 6 x 6, O axes: the hand gives way by `C w` under a
-    /// wrench `w` on it (m/N, rad/(N m)).
+    /// Compliance of the arm at the grasp point, `C = J (K_q + dg/dq)^-1 J'`, 6 x 6, O axes: the hand gives way by `C w`
+    /// under a wrench `w` on it (m/N, rad/(N m)). Not a number when the joints' springs do not hold the arm itself, which
+    /// [`Hold::check`] refuses.
     pub fn compliance(&self) -> Matrix6<f64> {
-        let mut scaled = self.jacobian_o.clone();
-        for (mut column, stiffness) in scaled.column_iter_mut().zip(self.stiffness_nm_rad.iter()) {
-            column /= *stiffness;
+        let Some(factor) = self.spring_factor() else { return Matrix6::repeat(f64::NAN) };
+        // L^-1 J': symmetric to the last bit.
+        let mut half = self.jacobian_o.transpose();
+        factor.l_dirty().solve_lower_triangular_mut(&mut half);
+        Matrix6::from_iterator(half.tr_mul(&half).iter().copied())
+    }
+
+    /// The joints' displacement, rad, under torques on them, N m: `(K_q + dg/dq)^-1 tau`.
+    pub(super) fn joint_give_rad(&self, torque_nm: &DVector<f64>) -> DVector<f64> {
+        self.spring_factor().map_or_else(|| torque_nm * f64::NAN, |factor| factor.solve(torque_nm))
+    }
+
+    /// The factor of `K_q + dg/dq`; none unless it is positive definite.
+    pub(super) fn spring_factor(&self) -> Option<Cholesky<f64, Dyn>> {
+        let mut stiffness = self.gravity_stiffness_nm_rad.clone();
+        for (joint, stiffness_nm_rad) in self.stiffness_nm_rad.iter().enumerate() {
+            stiffness[(joint, joint)] += stiffness_nm_rad;
         }
-        Matrix6::from_iterator((scaled * self.jacobian_o.transpose()).iter().copied())
+        stiffness.cholesky()
     }
 }
 
@@ -72,7 +87,7 @@ pub struct WeldedHold {
 }
 
 impl WeldedHold {
-    /// `K_O = sum_i Ad_i' (J_i K_q^-1 J_i')^-1 Ad_i` about the tool tip (METHOD section 6), `Ad_i` taking the board's
+    /// `K_O = sum_i Ad_i' C_i^-1 Ad_i` about the tool tip (METHOD section 6), `Ad_i` taking the board's
     /// twist at the tool tip to that at the grasp point. None when an arm has a direction in which its joints' springs
     /// do not give way at all (fewer than six joints, or a singular posture): its stiffness there is not finite.
     pub fn new(hold: &Hold) -> Option<Self> {

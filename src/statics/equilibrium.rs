@@ -2,11 +2,13 @@
 //!
 //! The arms' joints are springs about their commanded angles, the pads are rigid-plastic: of all pad wrenches that
 //! balance the object within the pads' limits, those are found that minimise the complementary energy
-//! `sum_i 1/2 u_i' K_q^-1 u_i`, `u_i = J_i' w_i`, `w_i` the hand's wrench on the object. The arms' own gravity is
-//! compensated by their controllers and is no part of `u`; the torque is `g + u`.
+//! `sum_i 1/2 u_i' K_i^-1 u_i`, `u_i = J_i' w_i`, `w_i` the hand's wrench on the object, `K_i = K_q + dg/dq`. The arms'
+//! own gravity `g` is compensated by their controllers at the commanded angles and is no part of `u`; away from them it
+//! changes by `dg/dq`, a few per cent of the control's stiffness (METHOD section 6 leaves it out). The joints move by
+//! `-K_i^-1 u`, and the motors' torque is `g + K_q K_i^-1 u`.
 //!
 //! # Signs
-//! The object pushes the hand with `-w_i`, so the hand gives way by `-C_i w_i`, `C_i = J_i K_q^-1 J_i'`. For a hand
+//! The object pushes the hand with `-w_i`, so the hand gives way by `-C_i w_i`, `C_i = J_i K_i^-1 J_i'`. For a hand
 //! within its pads' limits the first-order condition is `C_i w_i + Ad_i y = 0`, `y` the multiplier of the balance
 //! `sum w_i + weight + lambda load = 0`: so `y` is the board's displacement `d`, in the direction of the load. A hand at
 //! its limits slips: the board moves on it by `Ad_i d + C_i w_i`. (METHOD section 6 writes the same with the wrench on
@@ -23,6 +25,7 @@ use nalgebra::{DVector, Vector3};
 use super::{
     compliance::Twist,
     hold::{HandModel, Hold},
+    layout::Layout,
     load_factor::{balance_twist, joint_torque},
     program::{FORCE_UNIT_N, HandEnergy, RawSolution, pad_wrenches, wrench_units},
 };
@@ -44,7 +47,7 @@ pub struct Equilibrium {
     /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes. How a hand's wrench is shared
     /// between its pads is not determined by the arms.
     pub pad_wrenches_p: Vec<[Wrench; 2]>,
-    /// Torques of each arm's joints, `g + u`, N m.
+    /// Torques of each arm's motors, N m.
     pub joint_torque_nm: Vec<DVector<f64>>,
     /// Displacement of the board, stated for O's origin.
     pub board: Twist,
@@ -138,23 +141,23 @@ pub(super) fn hand_energy(hand: &HandModel) -> HandEnergy {
 }
 
 /// Reads clarabel's answer to an equilibrium program.
-pub(super) fn interpret(hold: &Hold, load_factor: f64, raw: &RawSolution<'_>) -> EquilibriumOutcome {
+pub(super) fn interpret(hold: &Hold, layout: &Layout, load_factor: f64, raw: &RawSolution<'_>) -> EquilibriumOutcome {
     match raw.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => {}
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => return EquilibriumOutcome::None,
         status => return EquilibriumOutcome::Unknown { status: format!("{status:?}") },
     }
+    let places = layout.hands();
     let pad_wrenches_p: Vec<_> =
-        hold.hands.iter().enumerate().map(|(number, hand)| pad_wrenches(hand, number, raw.x)).collect();
+        hold.hands.iter().zip(places).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
     let mut joint_torque_nm = Vec::with_capacity(hold.hands.len());
     let mut hands = Vec::with_capacity(hold.hands.len());
     for (hand, pads) in hold.hands.iter().zip(&pad_wrenches_p) {
         let torque = joint_torque(hand, pads);
-        let spring_nm = &torque - &hand.gravity_torque_nm;
-        let give_rad = spring_nm.component_div(&hand.stiffness_nm_rad);
-        let moved = &hand.jacobian_o * give_rad;
+        let give_rad = hand.joint_give_rad(&(&torque - &hand.gravity_torque_nm));
+        let moved = &hand.jacobian_o * &give_rad;
         hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
-        joint_torque_nm.push(torque);
+        joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * give_rad);
     }
     let energy_unit_j = FORCE_UNIT_N * DISPLACEMENT_UNIT_M;
     let board = balance_twist(raw.z, energy_unit_j);

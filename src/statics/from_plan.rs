@@ -1,8 +1,9 @@
 //! A [`Hold`] from a plan: the one place of this module that knows what a robot is.
 
-use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{DMatrix, Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 use super::{
+    contact::PadKind,
     hold::{HandModel, Hold, HoldError, PadModel},
     patch::clip_to_rectangle,
 };
@@ -93,14 +94,33 @@ impl HandModel {
             name: name.clone(),
             joints,
             pads: [first?, second?],
+            wrench_limits: None,
             grip_force_n: plan_arm.grip_force_n,
             grasp_point_o: (plan_arm.x_og * nalgebra::Point3::from(grasp_point_g)).coords,
             jacobian_o: jacobian_o(chain, plan_arm, object, &grasp_point_g),
             gravity_torque_nm: chain.gravity_torque_nm(&plan_arm.q_rad),
             effort_nm: chain.effort_nm().to_vec().into(),
             stiffness_nm_rad: arm.stiffness_nm_rad.clone().into(),
+            gravity_stiffness_nm_rad: gravity_stiffness_nm_rad(chain, &plan_arm.q_rad),
         })
     }
+}
+
+/// `dg/dq` by central differences, symmetric as the second derivative of a potential is. A step of 1 mrad leaves 1e-7 of
+/// its size (`sin x - x`), and rounding less.
+fn gravity_stiffness_nm_rad(chain: &Chain, q_rad: &[f64]) -> DMatrix<f64> {
+    const STEP_RAD: f64 = 1e-3;
+    let mut q = q_rad.to_vec();
+    let mut gradient = DMatrix::zeros(q.len(), q.len());
+    for joint in 0..q.len() {
+        q[joint] = q_rad[joint] + STEP_RAD;
+        let forth = chain.gravity_torque_nm(&q);
+        q[joint] = q_rad[joint] - STEP_RAD;
+        let back = chain.gravity_torque_nm(&q);
+        q[joint] = q_rad[joint];
+        gradient.set_column(joint, &((forth - back) / (2.0 * STEP_RAD)));
+    }
+    (&gradient + gradient.transpose()) / 2.0
 }
 
 /// The Jacobian of the grasp point in O axes, from that of G's origin in W axes.
@@ -150,7 +170,13 @@ fn pad_model(
     let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
         .ok_or_else(|| HoldError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
     let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
-    Ok(PadModel { name: name.into(), x_op: Pose::from_parts(place_o.into(), rotation), half_sides_m, friction })
+    Ok(PadModel {
+        name: name.into(),
+        x_op: Pose::from_parts(place_o.into(), rotation),
+        half_sides_m,
+        friction,
+        kind: PadKind::SoftFinger,
+    })
 }
 
 /// R_OP: z_P the normal into the board, x_P along x_G as far as it lies in the face.

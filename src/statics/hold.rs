@@ -1,14 +1,17 @@
 //! A hold as plain geometry: what the programs of this module are built from.
 
-use nalgebra::{DVector, Matrix3, Matrix6xX, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Vector3};
 
-use super::patch::mean_distance_from_centre_m;
+use super::{
+    contact::{PadKind, WrenchLimits},
+    patch::mean_distance_from_centre_m,
+};
 use crate::model::{frames::Pose, wrench::Wrench};
 
 /// The most hands that a hold may have.
 const MAX_HANDS: usize = 4;
 
-/// One pad on the object: a soft finger with a rectangular patch (METHOD section 6).
+/// One pad on the object, by default a soft finger with a rectangular patch (METHOD section 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PadModel {
     /// Which of the hand's pads it is, such as `upper`.
@@ -19,12 +22,24 @@ pub struct PadModel {
     pub half_sides_m: [f64; 2],
     /// Coulomb friction between pad and object.
     pub friction: f64,
+    /// How friction and pressure are limited.
+    pub kind: PadKind,
 }
 
 impl PadModel {
     /// The lever arm of the patch's torsional friction, m: the mean distance of the patch from its centre.
     pub fn torsion_radius_m(&self) -> f64 {
         mean_distance_from_centre_m(self.half_sides_m)
+    }
+
+    /// The largest lever of a normal force about x_P and y_P, and of a tangential one about z_P, m.
+    pub(super) fn levers_m(&self) -> [f64; 3] {
+        match &self.kind {
+            PadKind::SoftFinger => [self.half_sides_m[1], self.half_sides_m[0], self.torsion_radius_m()],
+            PadKind::Points(points) => points.iter().fold([0.0; 3], |[about_x, about_y, about_z], [x, y]| {
+                [f64::max(about_x, y.abs()), f64::max(about_y, x.abs()), f64::max(about_z, x.hypot(*y))]
+            }),
+        }
     }
 
     /// R_OP.
@@ -47,6 +62,8 @@ pub struct HandModel {
     pub joints: Vec<String>,
     /// Its two pads.
     pub pads: [PadModel; 2],
+    /// What the gripper was measured to hold; when given, the pads' own limits and the grip force do not count.
+    pub wrench_limits: Option<WrenchLimits>,
     /// Force F with which each finger is pushed, N; the fingers are coupled, so the two normal forces add up to 2 F.
     pub grip_force_n: f64,
     /// The point between the pads about which the hand's wrench is taken, in O, m.
@@ -60,6 +77,9 @@ pub struct HandModel {
     pub effort_nm: DVector<f64>,
     /// Stiffness of each joint's position control, n, N m/rad.
     pub stiffness_nm_rad: DVector<f64>,
+    /// `dg/dq`, n x n, N m/rad: how the torque that gravity asks for changes with the angles. The control compensates
+    /// gravity at the planned angles, so this adds to its stiffness, or takes from it.
+    pub gravity_stiffness_nm_rad: DMatrix<f64>,
 }
 
 impl HandModel {
@@ -140,6 +160,20 @@ pub enum HoldError {
         /// The robot's.
         expected: Vec<String>,
     },
+    /// A pad without a point to touch with.
+    #[error("{hand} {pad} pad: found no points, expected at least one")]
+    NoPoints {
+        /// The hand.
+        hand: String,
+        /// The pad.
+        pad: String,
+    },
+    /// No variations of a load to stand.
+    #[error("found no variations, expected at least one")]
+    NoVariations,
+    /// Springs that give way under the arm's own weight without end.
+    #[error("{0} hand: the joints' springs are too soft for the arm's own weight")]
+    TooSoft(String),
     /// A pad that does not touch the object's face.
     #[error("{hand} {pad} pad: no part of it lies on the board")]
     PadOffBoard {
@@ -190,6 +224,8 @@ fn check_hand(hand: &HandModel) -> Result<(), HoldError> {
         ("gravity torque", hand.gravity_torque_nm.len()),
         ("effort", hand.effort_nm.len()),
         ("stiffness", hand.stiffness_nm_rad.len()),
+        ("gravity stiffness (rows)", hand.gravity_stiffness_nm_rad.nrows()),
+        ("gravity stiffness (columns)", hand.gravity_stiffness_nm_rad.ncols()),
     ];
     if let Some((what, found)) = lengths.into_iter().find(|(_, found)| *found != expected) {
         return Err(HoldError::JointCount { hand: hand.name.clone(), what, found, expected });
@@ -198,6 +234,7 @@ fn check_hand(hand: &HandModel) -> Result<(), HoldError> {
     let finite = [
         ("jacobian", hand.jacobian_o.iter().all(|v| v.is_finite())),
         ("gravity torque", hand.gravity_torque_nm.iter().all(|v| v.is_finite())),
+        ("gravity stiffness", hand.gravity_stiffness_nm_rad.iter().all(|v| v.is_finite())),
         ("grasp point", hand.grasp_point_o.iter().all(|v| v.is_finite())),
     ];
     if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {
@@ -210,6 +247,15 @@ fn check_hand(hand: &HandModel) -> Result<(), HoldError> {
     positive("grip force", hand.grip_force_n)?;
     hand.effort_nm.iter().try_for_each(|&effort| positive("effort", effort))?;
     hand.stiffness_nm_rad.iter().try_for_each(|&stiffness| positive("stiffness", stiffness))?;
+    if let Some(limits) = &hand.wrench_limits {
+        limits.most.to_vector().iter().try_for_each(|&most| positive("wrench limit", most))?;
+        if !limits.rotation_og.coords.iter().all(|v| v.is_finite()) {
+            return Err(HoldError::NotFinite { place: place(), what: "rotation of wrench limits" });
+        }
+    }
+    if expected > 0 && hand.spring_factor().is_none() {
+        return Err(HoldError::TooSoft(hand.name.clone()));
+    }
     hand.pads.iter().try_for_each(|pad| check_pad(hand, pad))
 }
 
@@ -225,5 +271,13 @@ fn check_pad(hand: &HandModel, pad: &PadModel) -> Result<(), HoldError> {
     if !(pad.friction.is_finite() && pad.friction >= 0.0) {
         return Err(HoldError::Value { place: place(), what: "friction", found: pad.friction, expected: "0 or more" });
     }
-    Ok(())
+    match &pad.kind {
+        PadKind::Points(points) if points.is_empty() => {
+            Err(HoldError::NoPoints { hand: hand.name.clone(), pad: pad.name.clone() })
+        }
+        PadKind::Points(points) if !points.iter().flatten().all(|v| v.is_finite()) => {
+            Err(HoldError::NotFinite { place: place(), what: "point" })
+        }
+        _ => Ok(()),
+    }
 }

@@ -6,8 +6,10 @@ use nalgebra::{DVector, Vector3};
 use super::{
     certificate::DualVector,
     compliance::Twist,
-    hold::{HandModel, Hold},
-    program::{FORCE_UNIT_N, LENGTH_UNIT_M, Layout, Program, RawSolution, pad_wrenches},
+    hold::{HandModel, Hold, PadModel},
+    layout::{Contact, HandLayout, MEASURED_CONE, PadLayout, PointLayout},
+    program::{FORCE_UNIT_N, LENGTH_UNIT_M, POINT_VARIABLES, Program, RawSolution, pad_wrenches},
+    sensitivity::{self, Sensitivity},
 };
 use crate::model::wrench::Wrench;
 
@@ -20,7 +22,7 @@ const OPEN_PAD_RATIO: f64 = 0.05;
 /// Terms below this share of the largest are not named. A limit that does not bind has a multiplier at the solver's
 /// tolerance, 1e-8: the threshold is far above that, and is there for the reader, who wants to know what to
 /// strengthen: a limit below it would bring less than a twentieth of what the first one brings.
-const NAMED_SHARE: f64 = 0.05;
+pub(super) const NAMED_SHARE: f64 = 0.05;
 
 /// The solution of the load program.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,10 +34,14 @@ pub struct LoadFactor {
     ///
     /// Each limit's term is `d lambda* / d ln(limit)`, what a relative increase of the limit brings: for the sliding,
     /// torsion and tilt parts of a pad's limits their share of `z's`, for a joint `tau_max (z+ + z-)`. A pad that is
-    /// left with less than 5 % of its grip force is limited by the grip. Named are the terms of at least a twentieth
+    /// left with less than 5 % of its grip force is limited by the grip. For measured limits, such as
+    /// `left hand: measured limits`, it is what larger limits would bring. Named are the terms of at least a twentieth
     /// of the largest.
     pub binding: Vec<String>,
-    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes.
+    /// What a stronger grip, rougher pads or stronger joints would bring.
+    pub sensitivity: Sensitivity,
+    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes; halves of the hand's wrench when
+    /// it has measured limits.
     pub pad_wrenches_p: Vec<[Wrench; 2]>,
     /// Torques of each arm's joints, `g + J' w`, N m.
     pub joint_torque_nm: Vec<DVector<f64>>,
@@ -116,11 +122,12 @@ pub(super) fn interpret(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -
     };
     let lambda = raw.x[raw.x.len() - 1] / program.load_scale;
     let pad_wrenches_p: Vec<_> =
-        hold.hands.iter().enumerate().map(|(number, hand)| pad_wrenches(hand, number, raw.x)).collect();
+        hold.hands.iter().zip(program.layout.hands()).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
     let joint_torque_nm = hold.hands.iter().zip(&pad_wrenches_p).map(|(hand, pads)| joint_torque(hand, pads)).collect();
     LoadFactorOutcome::Solved(LoadFactor {
         load_factor: (lambda - margin).clamp(0.0, super::MAX_LOAD_FACTOR),
         binding: binding(hold, program, raw),
+        sensitivity: sensitivity::of(hold, program, raw),
         pad_wrenches_p,
         joint_torque_nm,
         dual_twist: balance_twist(raw.z, 1.0),
@@ -145,15 +152,16 @@ fn binding(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Vec<String>
     let layout = &program.layout;
     let cap = raw.z[layout.load_rows() + 1];
     let mut terms: Vec<(f64, String)> = Vec::new();
-    for (hand_number, hand) in hold.hands.iter().enumerate() {
-        for (pad_number, pad) in hand.pads.iter().enumerate() {
-            let of_pad = pad_terms(hold, program, raw, hand_number, pad_number);
+    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+        for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
+            let of_pad = pad_terms(hand, pad, pad_place, raw);
             terms.extend(
                 of_pad.map(|(term, limit)| (term, format!("{} {} pad: {}", hand.name, pad.name, limit.name()))),
             );
         }
+        terms.extend(measured_term(place, raw).map(|term| (term, format!("{} hand: measured limits", hand.name))));
         if layout.has_torque_rows() {
-            let row = layout.torque_rows(hand_number);
+            let row = place.torque_rows;
             // The rows are divided by the limit, so the multipliers are the terms.
             let of_joint = |joint: usize| raw.z[row + joint] + raw.z[row + hand.dof() + joint];
             terms.extend(
@@ -172,25 +180,57 @@ fn binding(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Vec<String>
     terms.into_iter().map(|(_, name)| name).collect()
 }
 
+/// `d lambda* / d ln(D)` of a hand's measured limits: `b'z` of their rows, which are divided by D.
+fn measured_term(place: &HandLayout, raw: &RawSolution<'_>) -> Option<f64> {
+    match place.contact {
+        Contact::Pads(_) => None,
+        Contact::Box { rows } => Some(raw.z[rows..rows + 12].iter().sum()),
+        Contact::Ellipsoid { rows } => {
+            let cone = rows..rows + MEASURED_CONE;
+            Some(-raw.z[cone.clone()].iter().zip(&raw.s[cone]).skip(1).map(|(z, s)| z * s).sum::<f64>())
+        }
+    }
+}
+
 /// `d lambda* / d ln(limit)` of a pad's four limits.
-fn pad_terms(hold: &Hold, program: &Program, raw: &RawSolution<'_>, hand: usize, pad: usize) -> [(f64, PadLimit); 4] {
-    let layout = &program.layout;
-    let model = &hold.hands[hand].pads[pad];
-    let normal = raw.x[Layout::pad_variables(hand, pad) + 2];
-    let pressure = layout.pressure_rows(hand, pad);
-    let tilt: f64 = raw.z[pressure..pressure + 4].iter().sum();
-    let cone = layout.friction_rows(hand, pad);
-    let grip = hold.hands[hand].grip_force_n / FORCE_UNIT_N;
+fn pad_terms(hand: &HandModel, pad: &PadModel, place: &PadLayout, raw: &RawSolution<'_>) -> [(f64, PadLimit); 4] {
+    let normal = raw.x[place.variables + 2];
+    let grip = hand.grip_force_n / FORCE_UNIT_N;
     if normal < OPEN_PAD_RATIO * grip {
-        let pull = grip * (model.friction * raw.z[cone] + tilt);
+        let pull = grip * pull_multiplier(pad, place, raw);
         return [(pull, PadLimit::Grip), (0.0, PadLimit::Friction), (0.0, PadLimit::Torsion), (0.0, PadLimit::Tilt)];
     }
-    // mu fn z_0 = -z_t . s_t at the optimum: the friction cone's term, split into its sliding and its turning part.
-    let share = |row: usize| -raw.z[cone + row] * raw.s[cone + row];
-    [
-        (share(1) + share(2), PadLimit::Friction),
-        (share(3), PadLimit::Torsion),
-        (normal * tilt, PadLimit::Tilt),
-        (0.0, PadLimit::Grip),
-    ]
+    let [friction, torsion, tilt] =
+        place.points.map_or_else(|| soft_terms(place, raw), |points| point_terms(pad, place, &points, raw));
+    [(friction, PadLimit::Friction), (torsion, PadLimit::Torsion), (tilt, PadLimit::Tilt), (0.0, PadLimit::Grip)]
+}
+
+/// What a pad that is pulled off would gain from each unit of normal force.
+fn pull_multiplier(pad: &PadModel, place: &PadLayout, raw: &RawSolution<'_>) -> f64 {
+    let (count, cone_rows) = place.points.map_or((1, 0), |points| (points.count, POINT_VARIABLES));
+    let friction = (0..count).map(|cone| raw.z[place.friction_rows + cone * cone_rows]).fold(0.0, f64::max);
+    let pressure = &raw.z[place.pressure_rows..place.pressure_rows + place.points.map_or(4, |points| points.count)];
+    pad.friction * friction + pressure.iter().sum::<f64>()
+}
+
+/// Sliding, torsion and tilt of a soft finger. `mu fn z_0 = -z_t . s_t` at the optimum is the friction cone's term,
+/// split into its sliding and its turning part.
+fn soft_terms(place: &PadLayout, raw: &RawSolution<'_>) -> [f64; 3] {
+    let share = |row: usize| -raw.z[place.friction_rows + row] * raw.s[place.friction_rows + row];
+    let tilt: f64 = raw.z[place.pressure_rows..place.pressure_rows + 4].iter().sum();
+    [share(1) + share(2), share(3), raw.x[place.variables + 2] * tilt]
+}
+
+/// The same of a pad of points. The multipliers of the rows that sum up its moments are the pad's virtual rotation, and
+/// rotation times moment is what a larger pattern of points would bring: about the normal by its levers of friction,
+/// which the friction cones' terms contain, about the other axes by those of pressure.
+fn point_terms(pad: &PadModel, place: &PadLayout, points: &PointLayout, raw: &RawSolution<'_>) -> [f64; 3] {
+    let of_point = |point: usize| {
+        let normal = raw.x[points.variables + POINT_VARIABLES * point + 2];
+        pad.friction * normal * raw.z[place.friction_rows + POINT_VARIABLES * point]
+    };
+    let friction: f64 = (0..points.count).map(of_point).sum();
+    let of_moment = |row: usize| raw.z[points.sum_rows + row] * raw.x[place.variables + row];
+    let torsion = of_moment(5).clamp(0.0, friction);
+    [friction - torsion, torsion, (of_moment(3) + of_moment(4)).max(0.0)]
 }

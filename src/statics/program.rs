@@ -2,17 +2,24 @@
 //!
 //! Variables: for each hand, for each of its pads, `(ft1, ft2, fn, mt1, mt2, mn)` in pad axes about the pad's centre;
 //! then the hand's wrench about its grasp point, which torque rows and energy are written in, half as wide as they
-//! would be in the pads' variables; last, in the load program, the load factor. Rows, in the order of the cones:
+//! would be in the pads' variables; then the forces `(ft1, ft2, fn)` at the points of pads of that kind; last, in the
+//! load program, the load factor. A hand with measured limits has no variables but its wrench. Rows, in the order of
+//! the cones:
 //!
 //! | rows | cone | what |
 //! |---|---|---|
 //! | 6 | zero | balance of the object: sum of the hands' wrenches + lambda load = -weight |
 //! | 6 a hand | zero | the hand's wrench is the sum of its pads' |
 //! | 1 a hand | zero | `fn_1 + fn_2 = 2 F` |
+//! | 6 a pad of points | zero | the pad's wrench is the sum of its points' forces |
 //! | 2 (load program) | nonnegative | `0 <= lambda <= 100` |
 //! | 4 a pad | nonnegative | centre of pressure: `|mt1| <= b fn`, `|mt2| <= a fn`; `fn >= 0` follows |
+//! | 1 a point | nonnegative | its normal force, for a pad of points in place of the centre of pressure |
+//! | 12 a hand with a measured box | nonnegative | `|w_i| <= D_i` in place of everything of its pads and its grip |
 //! | 2 n a hand (with torque limits) | nonnegative | `J' w <= tau_max - tau_g`, `-J' w <= tau_max + tau_g` |
 //! | 4 a pad | second order | friction: `(mu fn, ft1, ft2, mn / e)` |
+//! | 3 a point | second order | friction: `(mu fn, ft1, ft2)`, in its place |
+//! | 7 a hand with a measured ellipsoid | second order | `(1, D^-1 w)` in place of everything of its pads and its grip |
 //!
 //! Scales: forces in units of 10 N, moments of 10 N x 0.2 m in hands' wrenches and balance; a pad's own moments by its half sides
 //! and torsion radius, so that every pad's rows look alike; torque rows by the joint's limit; lambda by the load's size.
@@ -21,14 +28,15 @@
 
 use clarabel::{
     algebra::CscMatrix,
-    solver::{
-        DefaultSettings, DefaultSolver, IPSolver, SolverStatus,
-        SupportedConeT::{self, NonnegativeConeT, SecondOrderConeT, ZeroConeT},
-    },
+    solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT},
 };
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use super::hold::{HandModel, Hold, PadModel};
+use super::{
+    contact::PadKind,
+    hold::{HandModel, Hold, PadModel},
+    layout::{Contact, HandLayout, Layout, MEASURED_CONE, PadLayout, PointLayout},
+};
 use crate::model::wrench::Wrench;
 
 /// The load factor is searched for up to this.
@@ -46,8 +54,8 @@ const SOLVER_TOLERANCE: f64 = 1e-7;
 /// Variables of one pad.
 pub(super) const PAD_VARIABLES: usize = 6;
 
-/// Variables of one hand: its pads' and its wrench.
-pub(super) const HAND_VARIABLES: usize = 2 * PAD_VARIABLES + 6;
+/// Variables of one point of a pad, and rows of its cone.
+pub(super) const POINT_VARIABLES: usize = 3;
 
 /// What a program contains beside the balance, the grip and the pads' limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,106 +68,25 @@ pub(super) enum ProgramKind {
     Equilibrium,
 }
 
-/// Where which row is.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Layout {
-    kind: ProgramKind,
-    /// Joints of each hand.
-    dofs: Vec<usize>,
-}
-
-impl Layout {
-    pub(super) fn new(hold: &Hold, kind: ProgramKind) -> Self {
-        Self { kind, dofs: hold.hands.iter().map(HandModel::dof).collect() }
-    }
-
-    pub(super) fn kind(&self) -> ProgramKind {
-        self.kind
-    }
-
-    fn hands(&self) -> usize {
-        self.dofs.len()
-    }
-
-    fn has_load_factor(&self) -> bool {
-        self.kind != ProgramKind::Equilibrium
-    }
-
-    pub(super) fn has_torque_rows(&self) -> bool {
-        self.kind == ProgramKind::Load
-    }
-
-    pub(super) fn variables(&self) -> usize {
-        HAND_VARIABLES * self.hands() + usize::from(self.has_load_factor())
-    }
-
-    /// First variable of a pad.
-    pub(super) fn pad_variables(hand: usize, pad: usize) -> usize {
-        HAND_VARIABLES * hand + PAD_VARIABLES * pad
-    }
-
-    /// First of the six rows that say what a hand's wrench is.
-    fn wrench_rows(&self, hand: usize) -> usize {
-        6 + 6 * hand
-    }
-
-    pub(super) fn grip_row(&self, hand: usize) -> usize {
-        self.wrench_rows(self.hands()) + hand
-    }
-
-    /// The row `-lambda <= 0`; the next one is `lambda <= 100`.
-    pub(super) fn load_rows(&self) -> usize {
-        self.grip_row(self.hands())
-    }
-
-    /// First of the four rows of a pad's centre of pressure: `+mt1, -mt1, +mt2, -mt2`.
-    pub(super) fn pressure_rows(&self, hand: usize, pad: usize) -> usize {
-        self.load_rows() + if self.has_load_factor() { 2 } else { 0 } + 4 * (2 * hand + pad)
-    }
-
-    /// First of the 2 n torque rows of a hand: n of `+J'w`, then n of `-J'w`.
-    pub(super) fn torque_rows(&self, hand: usize) -> usize {
-        let before: usize = if self.has_torque_rows() { self.dofs[..hand].iter().map(|n| 2 * n).sum() } else { 0 };
-        self.pressure_rows(self.hands(), 0) + before
-    }
-
-    /// First of the four rows of a pad's friction cone.
-    pub(super) fn friction_rows(&self, hand: usize, pad: usize) -> usize {
-        self.torque_rows(self.hands()) + 4 * (2 * hand + pad)
-    }
-
-    pub(super) fn rows(&self) -> usize {
-        self.friction_rows(self.hands(), 0)
-    }
-
-    fn cones(&self) -> Vec<SupportedConeT<f64>> {
-        let equalities = self.load_rows();
-        let inequalities = self.friction_rows(0, 0) - equalities;
-        let mut cones = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
-        cones.extend(std::iter::repeat_n(SecondOrderConeT(4), 2 * self.hands()));
-        cones
-    }
-}
-
 /// A sparse matrix in the making, column by column.
 #[derive(Clone, Debug, Default)]
-struct Columns {
+pub(super) struct Columns {
     starts: Vec<usize>,
     rows: Vec<usize>,
     values: Vec<f64>,
 }
 
 impl Columns {
-    fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         self.starts.push(self.rows.len());
     }
 
-    fn push(&mut self, row: usize, value: f64) {
+    pub(super) fn push(&mut self, row: usize, value: f64) {
         self.rows.push(row);
         self.values.push(value);
     }
 
-    fn into_matrix(mut self, rows: usize) -> CscMatrix<f64> {
+    pub(super) fn into_matrix(mut self, rows: usize) -> CscMatrix<f64> {
         let columns = self.starts.len();
         self.starts.push(self.rows.len());
         CscMatrix::new(rows, columns, self.starts, self.rows, self.values)
@@ -204,17 +131,21 @@ impl Program {
     pub(super) fn equilibrium(hold: &Hold, energies: &[HandEnergy], lambda: f64) -> Self {
         let layout = Layout::new(hold, ProgramKind::Equilibrium);
         let mut p = Columns::default();
-        for (hand, energy) in energies.iter().enumerate() {
-            let first = HAND_VARIABLES * hand;
-            for variable in first..first + 2 * PAD_VARIABLES {
+        for (hand, energy) in layout.hands().iter().zip(energies) {
+            for variable in hand.first_variable..hand.wrench_variables {
                 p.begin();
                 p.push(variable, energy.pads);
             }
-            let wrench = first + 2 * PAD_VARIABLES;
             for column in 0..6 {
                 p.begin();
-                (0..=column).for_each(|row| p.push(wrench + row, energy.arm[(row, column)]));
+                (0..=column).for_each(|row| p.push(hand.wrench_variables + row, energy.arm[(row, column)]));
             }
+        }
+        let wrench_variables = layout.hands().last().map_or(0, |hand| hand.wrench_variables + 6);
+        for variable in wrench_variables..layout.variables() {
+            p.begin();
+            // A point gives way as a pad does.
+            p.push(variable, energies[0].pads);
         }
         let a = hand_columns(hold, &layout).into_matrix(layout.rows());
         let q = vec![0.0; layout.variables()];
@@ -265,35 +196,41 @@ pub(super) fn wrench_units() -> Vector6<f64> {
 /// The columns of all hands' variables.
 fn hand_columns(hold: &Hold, layout: &Layout) -> Columns {
     let mut columns = Columns::default();
-    for (hand_number, hand) in hold.hands.iter().enumerate() {
-        for (pad_number, pad) in hand.pads.iter().enumerate() {
-            let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
-            push_pad(&mut columns, layout, (hand_number, pad_number), pad, &lever_o);
+    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+        for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
+            push_pad(&mut columns, hand, place, pad, pad_place);
         }
-        push_wrench(&mut columns, layout, hand_number, hand);
+        push_wrench(&mut columns, layout, hand, place);
+    }
+    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+        for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
+            if let (PadKind::Points(points), Some(point_place)) = (&pad.kind, &pad_place.points) {
+                push_points(&mut columns, pad, points, pad_place, point_place);
+            }
+        }
     }
     columns
 }
 
-fn push_pad(
-    columns: &mut Columns,
-    layout: &Layout,
-    (hand, number): (usize, usize),
-    pad: &PadModel,
-    lever_o: &Vector3<f64>,
-) {
-    let (map, units) = (pad_map(pad, lever_o), wrench_units());
-    let (wrench, pressure) = (layout.wrench_rows(hand), layout.pressure_rows(hand, number));
-    let friction = layout.friction_rows(hand, number);
+fn push_pad(columns: &mut Columns, hand: &HandModel, hand_place: &HandLayout, pad: &PadModel, place: &PadLayout) {
+    let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
+    let (map, units) = (pad_map(pad, &lever_o), wrench_units());
+    let (pressure, friction) = (place.pressure_rows, place.friction_rows);
     for variable in 0..PAD_VARIABLES {
         columns.begin();
         // A moment has no force: those entries are zero by structure.
         let first = if variable < 3 { 0 } else { 3 };
-        (first..6).for_each(|row| columns.push(wrench + row, map[(row, variable)] / units[row]));
+        (first..6).for_each(|row| columns.push(hand_place.wrench_rows + row, map[(row, variable)] / units[row]));
+        if variable == 2 {
+            columns.push(hand_place.grip_row, 1.0);
+        }
+        if let Some(points) = &place.points {
+            columns.push(points.sum_rows + variable, 1.0);
+            continue;
+        }
         match variable {
             0 | 1 => columns.push(friction + 1 + variable, -1.0),
             2 => {
-                columns.push(layout.grip_row(hand), 1.0);
                 (0..4).for_each(|row| columns.push(pressure + row, -1.0));
                 columns.push(friction, -pad.friction);
             }
@@ -306,7 +243,30 @@ fn push_pad(
     }
 }
 
-fn push_wrench(columns: &mut Columns, layout: &Layout, number: usize, hand: &HandModel) {
+/// The forces at a pad's points: their part of the pad's wrench, their sign and their friction.
+fn push_points(columns: &mut Columns, pad: &PadModel, points: &[[f64; 2]], place: &PadLayout, sums: &PointLayout) {
+    let [a, b] = pad.half_sides_m;
+    let sum = sums.sum_rows;
+    for (number, [x, y]) in points.iter().enumerate() {
+        let cone = place.friction_rows + POINT_VARIABLES * number;
+        columns.begin();
+        columns.push(sum, -1.0);
+        columns.push(sum + 5, y / pad.torsion_radius_m());
+        columns.push(cone + 1, -1.0);
+        columns.begin();
+        columns.push(sum + 1, -1.0);
+        columns.push(sum + 5, -x / pad.torsion_radius_m());
+        columns.push(cone + 2, -1.0);
+        columns.begin();
+        columns.push(sum + 2, -1.0);
+        columns.push(sum + 3, -y / b);
+        columns.push(sum + 4, x / a);
+        columns.push(place.pressure_rows + number, -1.0);
+        columns.push(cone, -pad.friction);
+    }
+}
+
+fn push_wrench(columns: &mut Columns, layout: &Layout, hand: &HandModel, place: &HandLayout) {
     let units = wrench_units();
     // The wrench about O: the moment gains p x f.
     let lever = hand.grasp_point_o.cross_matrix() / LENGTH_UNIT_M;
@@ -316,12 +276,25 @@ fn push_wrench(columns: &mut Columns, layout: &Layout, number: usize, hand: &Han
         if component < 3 {
             (0..3).filter(|&row| row != component).for_each(|row| columns.push(3 + row, lever[(row, component)]));
         }
-        columns.push(layout.wrench_rows(number) + component, -1.0);
+        let mut unit = Vector6::zeros();
+        unit[component] = units[component];
+        let ratios = hand.wrench_limits.as_ref().map(|limits| limits.ratios(&Wrench::from(<[f64; 6]>::from(unit))));
+        match place.contact {
+            Contact::Pads(_) => columns.push(place.wrench_rows + component, -1.0),
+            Contact::Box { rows } => ratios.iter().for_each(|ratios| {
+                (0..6).for_each(|row| columns.push(rows + row, ratios[row]));
+                (0..6).for_each(|row| columns.push(rows + 6 + row, -ratios[row]));
+            }),
+            Contact::Ellipsoid { .. } => {}
+        }
         if layout.has_torque_rows() {
-            let (first, dof) = (layout.torque_rows(number), hand.dof());
+            let (first, dof) = (place.torque_rows, hand.dof());
             let torque = |joint: usize| hand.jacobian_o[(component, joint)] * units[component] / hand.effort_nm[joint];
             (0..dof).for_each(|joint| columns.push(first + joint, torque(joint)));
             (0..dof).for_each(|joint| columns.push(first + dof + joint, -torque(joint)));
+        }
+        if let (Contact::Ellipsoid { rows }, Some(ratios)) = (place.contact, ratios) {
+            (1..MEASURED_CONE).for_each(|row| columns.push(rows + row, -ratios[row - 1]));
         }
     }
 }
@@ -331,10 +304,14 @@ fn limits(hold: &Hold, layout: &Layout, lambda: f64) -> Vec<f64> {
     let mut b = vec![0.0; layout.rows()];
     let outer = scaled(&(hold.weight + hold.load.scaled(lambda)));
     (0..6).for_each(|row| b[row] = -outer[row]);
-    for (number, hand) in hold.hands.iter().enumerate() {
-        b[layout.grip_row(number)] = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
+    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+        match place.contact {
+            Contact::Pads(_) => b[place.grip_row] = 2.0 * hand.grip_force_n / FORCE_UNIT_N,
+            Contact::Box { rows } => b[rows..rows + 12].fill(1.0),
+            Contact::Ellipsoid { rows } => b[rows] = 1.0,
+        }
         if layout.has_torque_rows() {
-            let row = layout.torque_rows(number);
+            let row = place.torque_rows;
             for joint in 0..hand.dof() {
                 let ratio = hand.gravity_torque_nm[joint] / hand.effort_nm[joint];
                 b[row + joint] = 1.0 - ratio;
@@ -345,14 +322,30 @@ fn limits(hold: &Hold, layout: &Layout, lambda: f64) -> Vec<f64> {
     b
 }
 
-/// The pads' wrenches of one hand, each about its centre in pad axes, from the variables.
-pub(super) fn pad_wrenches(hand: &HandModel, hand_number: usize, x: &[f64]) -> [Wrench; 2] {
-    [0, 1].map(|pad| {
-        let first = Layout::pad_variables(hand_number, pad);
+/// The pads' wrenches of one hand, each about its centre in pad axes, from the variables. A hand with measured limits
+/// does not know its pads: each is given half of its wrench.
+pub(super) fn pad_wrenches(hand: &HandModel, place: &HandLayout, x: &[f64]) -> [Wrench; 2] {
+    let Some(pads) = place.pads() else {
+        let whole = hand_wrench(place, x);
+        return [0, 1].map(|pad: usize| {
+            let x_op = &hand.pads[pad].x_op;
+            let Wrench { force_n, moment_nm } =
+                whole.scaled(0.5).about(&(hand.grasp_point_o - x_op.translation.vector));
+            Wrench::new(x_op.rotation.inverse() * force_n, x_op.rotation.inverse() * moment_nm)
+        });
+    };
+    [0, 1].map(|pad: usize| {
+        let first = pads[pad].variables;
         let values = Vector6::from_column_slice(&x[first..first + PAD_VARIABLES]);
         let [fx, fy, fz, mx, my, mz] = values.component_mul(&pad_units(&hand.pads[pad])).into();
         Wrench::from([fx, fy, fz, mx, my, mz])
     })
+}
+
+/// The wrench of a hand on the object about its grasp point, O axes.
+pub(super) fn hand_wrench(place: &HandLayout, x: &[f64]) -> Wrench {
+    let values = Vector6::from_column_slice(&x[place.wrench_variables..place.wrench_variables + 6]);
+    Wrench::from(<[f64; 6]>::from(values.component_mul(&wrench_units())))
 }
 
 /// A clarabel solver that is kept as long as programs have the same layout, so that memory, ordering and symbolic
@@ -379,20 +372,37 @@ impl ReusedSolver {
             .as_mut()
             .is_some_and(|(known, solver)| known == layout && solver.update_data(p, q, a, b).is_ok());
         if !reusable {
-            let solver = DefaultSolver::new(p, q, a, b, &layout.cones(), settings(false)).ok()?;
+            let solver = new_solver(p, q, a, b, &layout.cones())?;
             self.solver = Some((layout.clone(), solver));
         }
         let (_, solver) = self.solver.as_mut()?;
-        solver.solve();
-        if !is_conclusive(solver.solution.status) {
-            // Settings that may change between solves: neither call can fail.
-            solver.update_settings(settings(true)).ok()?;
-            solver.solve();
-            solver.update_settings(settings(false)).ok()?;
-        }
+        solve_with_care(solver)?;
         let solution = &solver.solution;
         Some(RawSolution { status: solution.status, x: &solution.x, z: &solution.z, s: &solution.s })
     }
+}
+
+/// A solver for a program; none when clarabel refuses the data.
+pub(super) fn new_solver(
+    p: &CscMatrix<f64>,
+    q: &[f64],
+    a: &CscMatrix<f64>,
+    b: &[f64],
+    cones: &[SupportedConeT<f64>],
+) -> Option<DefaultSolver<f64>> {
+    DefaultSolver::new(p, q, a, b, cones, settings(false)).ok()
+}
+
+/// Solves, and again with refinement when that ends without a conclusion.
+pub(super) fn solve_with_care(solver: &mut DefaultSolver<f64>) -> Option<()> {
+    solver.solve();
+    if !is_conclusive(solver.solution.status) {
+        // Settings that may change between solves: neither call can fail.
+        solver.update_settings(settings(true)).ok()?;
+        solver.solve();
+        solver.update_settings(settings(false)).ok()?;
+    }
+    Some(())
 }
 
 fn is_conclusive(status: SolverStatus) -> bool {

@@ -6,6 +6,7 @@ use super::{
     hold::{Hold, HoldError},
     load_factor::{self, LoadFactorOutcome},
     program::{HandEnergy, Program, ProgramKind, ReusedSolver},
+    robust::{self, InternalForces, RobustOutcome, Variation},
 };
 use crate::model::scenario::Limits;
 
@@ -81,6 +82,19 @@ impl StabilityWorkspace {
         Ok(compliant_load::search(self, hold, limits))
     }
 
+    /// The load factor that stands every one of several variations of load and friction; see [`RobustOutcome`].
+    ///
+    /// # Errors
+    /// When the hold or a variation is broken, or there is none.
+    pub fn robust_load_factor(
+        &mut self,
+        hold: &Hold,
+        variations: &[Variation],
+        internal_forces: InternalForces,
+    ) -> Result<RobustOutcome, HoldError> {
+        robust::solve(self, hold, variations, internal_forces)
+    }
+
     pub(super) fn solve_equilibrium(
         &mut self,
         hold: &Hold,
@@ -89,7 +103,7 @@ impl StabilityWorkspace {
     ) -> EquilibriumOutcome {
         let program = Program::equilibrium(hold, energies, load_factor);
         match self.equilibrium.solve(&program) {
-            Some(raw) => equilibrium::interpret(hold, load_factor, &raw),
+            Some(raw) => equilibrium::interpret(hold, &program.layout, load_factor, &raw),
             None => EquilibriumOutcome::Unknown { status: "data refused".into() },
         }
     }

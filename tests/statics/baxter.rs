@@ -65,6 +65,27 @@ fn the_jacobian_is_the_grasp_points_velocity_in_the_board() {
 }
 
 #[test]
+fn gravity_stiffens_an_arm_as_its_weight_does() {
+    // The potential of the weights, by second differences: `U(q + s) - 2 U(q) + U(q - s)` along random directions.
+    let (robot, plans) = baxter_holds(2, 5);
+    let (arms, object, operation) = &plans[1];
+    let hold = Hold::from_plan(&robot, arms, object, operation, 0.6).unwrap();
+    for (number, (hand, arm)) in hold.hands.iter().zip(arms).enumerate() {
+        let chain = Chain::new(&robot, number, robot.arms[number].gripper.travel_for_gap_m(0, 0.03));
+        let potential_j = |q: &[f64]| -GRAVITY_W.dot(&chain.mass_and_moment_w(q).1);
+        for direction in [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, -0.5, 0.0, 0.3, 0.0], [0.4; 7]] {
+            const STEP: f64 = 1e-3;
+            let moved = |by: f64| -> Vec<f64> { arm.q_rad.iter().zip(direction).map(|(q, d)| q + by * d).collect() };
+            let difference = potential_j(&moved(STEP)) - 2.0 * potential_j(&arm.q_rad) + potential_j(&moved(-STEP));
+            let direction = nalgebra::DVector::from_row_slice(&direction);
+            let found = (direction.transpose() * &hand.gravity_stiffness_nm_rad * &direction)[0];
+            // Rounding of some 100 J over the step's square, and truncation of 1e-6 of some 50 N m/rad.
+            approx::assert_abs_diff_eq!(found, difference / (STEP * STEP), epsilon = 1e-3);
+        }
+    }
+}
+
+#[test]
 fn a_pad_that_overhangs_the_edge_counts_with_what_is_on_the_board() {
     let (robot, plans) = baxter_holds(1, 3);
     let (arms, object, operation) = &plans[0];

@@ -7,7 +7,7 @@ use benchdog::{
     model::wrench::Wrench,
     statics::{HandModel, Hold, LoadFactorOutcome, StabilityWorkspace, mean_distance_from_centre_m},
 };
-use nalgebra::{DVector, Matrix6xX, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix6xX, Vector3};
 
 use crate::fixtures::{HALF_SIDES_M, solved, strong_hand, two_strong_hands};
 
@@ -116,6 +116,7 @@ fn planar_arm(lengths_m: [f64; 2], effort_nm: [f64; 2], gravity_nm: [f64; 2]) ->
     hand.effort_nm = DVector::from_row_slice(&effort_nm);
     hand.gravity_torque_nm = DVector::from_row_slice(&gravity_nm);
     hand.stiffness_nm_rad = DVector::from_element(2, 100.0);
+    hand.gravity_stiffness_nm_rad = DMatrix::zeros(2, 2);
     hand
 }
 

@@ -4,7 +4,7 @@ use benchdog::{
     model::{scenario::Limits, wrench::Wrench},
     statics::{CompliantResponse, Crossing, Hold, LoadFactorOutcome, ResponseOutcome, StabilityWorkspace, WeldedHold},
 };
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use crate::fixtures::{limits, random_hold, strong_hand, two_strong_hands};
 
@@ -274,6 +274,7 @@ fn springs_that_cannot_give_way_have_no_welded_stiffness() {
         for values in [&mut hand.gravity_torque_nm, &mut hand.effort_nm, &mut hand.stiffness_nm_rad] {
             *values = values.rows(0, 2).into_owned();
         }
+        hand.gravity_stiffness_nm_rad = DMatrix::zeros(2, 2);
     }
     assert!(WeldedHold::new(&hold).is_none());
     // The equilibrium does without: both first joints are springs of 1000 N/m along x.

@@ -12,9 +12,9 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::{Chain, InverseKinematics, Robot},
-    statics::{HandModel, Hold, LoadFactor, LoadFactorOutcome, PadModel, StabilityWorkspace},
+    statics::{HandModel, Hold, LoadFactor, LoadFactorOutcome, PadKind, PadModel, StabilityWorkspace},
 };
-use nalgebra::{DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -46,17 +46,20 @@ pub fn strong_hand(
         x_op: facing(p + axis * (side * thickness_m / 2.0), -axis * side, x),
         half_sides_m: HALF_SIDES_M,
         friction,
+        kind: PadKind::SoftFinger,
     };
     HandModel {
         name: name.into(),
         joints: (0..6).map(|joint| format!("{name}_{joint}")).collect(),
         pads: [pad("upper", 1.0), pad("lower", -1.0)],
+        wrench_limits: None,
         grip_force_n: grip_n,
         grasp_point_o: p,
         jacobian_o: Matrix6xX::identity(6),
         gravity_torque_nm: DVector::zeros(6),
         effort_nm: DVector::from_element(6, 1e4),
         stiffness_nm_rad: DVector::from_element(6, 1e3),
+        gravity_stiffness_nm_rad: DMatrix::zeros(6, 6),
     }
 }
 
@@ -80,6 +83,7 @@ pub fn random_hold(seed: u64, hands: usize) -> Hold {
             let mut hand = strong_hand(&format!("hand{number}"), p, Vector3::z(), vector(1.0), 30.0, 0.6, 0.03);
             hand.joints = (0..7).map(|joint| format!("hand{number}_{joint}")).collect();
             hand.jacobian_o = Matrix6xX::zeros(7);
+            hand.gravity_stiffness_nm_rad = DMatrix::zeros(7, 7);
             for joint in 0..7 {
                 let axis = vector(1.0).normalize();
                 // Joints at arm's length, the last ones near the hand.
@@ -124,6 +128,9 @@ pub fn moved(hold: &Hold, x: &Pose) -> Hold {
             column.fixed_rows_mut::<3>(0).copy_from(&linear);
             column.fixed_rows_mut::<3>(3).copy_from(&angular);
         }
+        if let Some(limits) = &mut hand.wrench_limits {
+            limits.rotation_og = x.rotation * limits.rotation_og;
+        }
     }
     moved.weight = hold.weight.moved(x);
     moved.load = hold.load.moved(x);
@@ -139,6 +146,7 @@ pub fn stronger(hold: &Hold, factor: f64) -> Hold {
         hand.gravity_torque_nm *= factor;
         hand.effort_nm *= factor;
         hand.stiffness_nm_rad *= factor;
+        hand.gravity_stiffness_nm_rad *= factor;
     }
     stronger.weight = hold.weight.scaled(factor);
     stronger.load = hold.load.scaled(factor);

@@ -3,6 +3,9 @@
 mod baxter;
 mod closed_forms;
 mod compliance;
+mod contact;
 mod fixtures;
 mod independent;
 mod properties;
+mod robust;
+mod sensitivity;
