@@ -4,6 +4,7 @@
 //! are sorted out by spheres about links and about primitives. This module knows geometry and the distances that must be
 //! kept (METHOD section 3); it does not know why a pose was chosen.
 
+mod near;
 mod person;
 mod shapes;
 
@@ -11,6 +12,7 @@ use nalgebra::Point3;
 use parry3d_f64::glamx::DVec3;
 
 use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
+pub use near::{Carrier, Near};
 use shapes::{Measure, Piece, Placed, place_all, point_w, sphere_about};
 
 /// A scene to be checked, in W.

@@ -1,6 +1,6 @@
 //! Primitives as parry knows them. Its poses are glam's: they are converted here and nowhere else.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use parry3d_f64::{
     glamx::{DQuat, DVec3},
     math::Pose as ParryPose,
@@ -28,6 +28,16 @@ pub enum Measure {
     Distance,
     /// The distance, or the depth of the overlap as a negative number.
     SignedDistance,
+}
+
+/// Where two primitives come closest.
+pub struct Closest {
+    /// The points of the first and of the second, W, m.
+    pub p_w: [Point3<f64>; 2],
+    /// From the first towards the second.
+    pub normal_w: Vector3<f64>,
+    /// Their distance along the normal, negative when they overlap, m.
+    pub distance_m: f64,
 }
 
 /// A primitive in the world.
@@ -154,6 +164,21 @@ impl Placed<'_> {
         }
         let contact = query::contact(&self.pose, &**self.shape, &other.pose, &**other.shape, 0.0);
         contact.ok().flatten().map_or(0.0, |contact| contact.dist.min(0.0))
+    }
+
+    /// Where two primitives come closest, if that is within `within_m`: see [`Closest`].
+    pub fn closest(&self, other: &Placed<'_>, within_m: f64) -> Option<Closest> {
+        let reach_m = self.radius_m + other.radius_m + within_m;
+        if (self.pose.translation - other.pose.translation).length_squared() > reach_m * reach_m {
+            return None;
+        }
+        let found = query::contact(&self.pose, &**self.shape, &other.pose, &**other.shape, within_m);
+        let point = |p: DVec3| Point3::new(p.x, p.y, p.z);
+        found.ok().flatten().map(|found| Closest {
+            p_w: [point(found.point1), point(found.point2)],
+            normal_w: Vector3::new(found.normal1.x, found.normal1.y, found.normal1.z),
+            distance_m: found.dist,
+        })
     }
 
     /// Distance between two primitives, m; zero when they overlap.

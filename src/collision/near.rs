@@ -1,0 +1,96 @@
+//! Pairs of bodies that come near each other, with the points where: what a search needs to keep them apart as it moves.
+
+use nalgebra::{Point3, Vector3};
+
+use super::{
+    CollisionModel, Scene,
+    shapes::{Piece, Placed},
+};
+use crate::model::frames::Pose;
+
+/// A body that a point belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Carrier {
+    /// A link of the robot, by its index.
+    Link(usize),
+    /// The board.
+    Board,
+    /// A part of the person, by its index in the scene.
+    Person(usize),
+}
+
+/// Two primitives that come near each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// The two bodies, and the number of the primitive in each.
+    pub carriers: [(Carrier, usize); 2],
+    /// The point of each that is closest to the other, W, m.
+    pub p_w: [Point3<f64>; 2],
+    /// From the first to the second, a unit vector in W.
+    pub normal_w: Vector3<f64>,
+    /// How much farther apart than they must be, m: negative when a rule is broken.
+    pub margin_m: f64,
+}
+
+/// A body with its primitives where they are.
+struct Body<'a> {
+    carrier: Carrier,
+    pieces: Vec<Placed<'a>>,
+}
+
+impl CollisionModel {
+    /// Every pair of primitives that is less than `within_m` farther apart than it must be: the rules are those of
+    /// [`CollisionModel::first_violation`]. `scene` must be finite.
+    pub fn near(&self, scene: &Scene<'_>, within_m: f64) -> Vec<Near> {
+        let links = self.links.iter().zip(scene.link_poses).enumerate();
+        let links: Vec<_> = links
+            .map(|(link, (shapes, x_wl))| Body {
+                carrier: Carrier::Link(link),
+                pieces: shapes.pieces.iter().map(|piece| piece.placed(x_wl)).collect(),
+            })
+            .collect();
+        let board_piece = Piece::cuboid(scene.board_size_m);
+        let board = Body { carrier: Carrier::Board, pieces: vec![board_piece.placed(&scene.x_wo)] };
+        let capsules: Vec<_> =
+            scene.person.iter().map(|part| Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m)).collect();
+        let mut found = Vec::new();
+        for &[a, b] in &self.self_pairs {
+            let centres_m = (self.centre_w(scene, a) - self.centre_w(scene, b)).norm();
+            if centres_m <= self.links[a].radius_m + self.links[b].radius_m + within_m {
+                pairs(&links[a], &links[b], 0.0, within_m, &mut found);
+            }
+        }
+        for link in (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
+            pairs(&links[link], &board, 0.0, within_m, &mut found);
+        }
+        for (index, (part, capsule)) in scene.person.iter().zip(&capsules).enumerate() {
+            let body = Body { carrier: Carrier::Person(index), pieces: vec![capsule.placed(&Pose::identity())] };
+            if let Some(clearance_m) = part.board_clearance_m {
+                pairs(&board, &body, clearance_m, within_m, &mut found);
+            }
+            for link in &links {
+                pairs(link, &body, part.robot_clearance_m, within_m, &mut found);
+            }
+        }
+        found
+    }
+
+    fn centre_w(&self, scene: &Scene<'_>, link: usize) -> Point3<f64> {
+        scene.link_poses[link] * self.links[link].centre_l
+    }
+}
+
+fn pairs(a: &Body<'_>, b: &Body<'_>, required_m: f64, within_m: f64, found: &mut Vec<Near>) {
+    for (i, piece) in a.pieces.iter().enumerate() {
+        for (j, other) in b.pieces.iter().enumerate() {
+            if let Some(closest) = piece.closest(other, required_m + within_m) {
+                found.push(Near {
+                    carriers: [(a.carrier, i), (b.carrier, j)],
+                    p_w: closest.p_w,
+                    normal_w: closest.normal_w,
+                    margin_m: closest.distance_m - required_m,
+                });
+            }
+        }
+    }
+}
