@@ -82,6 +82,11 @@ impl CompliantResponse {
         (ratio > 1.0).then_some(crossing)
     }
 
+    /// The largest ratio of a torque, deflection or slip to its limit.
+    pub fn utilisation(&self, hold: &Hold, limits: &Limits) -> f64 {
+        self.worst(hold, limits).0
+    }
+
     /// The largest ratio of a value to its limit, and the crossing that it would be.
     fn worst(&self, hold: &Hold, limits: &Limits) -> (f64, Crossing) {
         let (hand, joint, torque) = self.equilibrium.largest_torque_ratio(hold);

@@ -56,6 +56,20 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
+    /// The equilibrium with these pads' wrenches and displacement of the board; the rest follows.
+    pub(super) fn of_pads(hold: &Hold, load_factor: f64, pad_wrenches_p: Vec<[Wrench; 2]>, board: Twist) -> Self {
+        let mut joint_torque_nm = Vec::with_capacity(hold.hands.len());
+        let mut hands = Vec::with_capacity(hold.hands.len());
+        for (hand, pads) in hold.hands.iter().zip(&pad_wrenches_p) {
+            let torque = joint_torque(hand, pads);
+            let give_rad = hand.joint_give_rad(&(&torque - &hand.gravity_torque_nm));
+            let moved = &hand.jacobian_o * &give_rad;
+            hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
+            joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * give_rad);
+        }
+        Self { load_factor, pad_wrenches_p, joint_torque_nm, board, hands }
+    }
+
     /// Displacement of the board relative to a hand, stated for the grasp point: `Ad d + C w`.
     fn slip(&self, hold: &Hold, hand: usize) -> Twist {
         self.board.at(&hold.hands[hand].grasp_point_o) - self.hands[hand]
@@ -150,16 +164,6 @@ pub(super) fn interpret(hold: &Hold, layout: &Layout, load_factor: f64, raw: &Ra
     let places = layout.hands();
     let pad_wrenches_p: Vec<_> =
         hold.hands.iter().zip(places).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
-    let mut joint_torque_nm = Vec::with_capacity(hold.hands.len());
-    let mut hands = Vec::with_capacity(hold.hands.len());
-    for (hand, pads) in hold.hands.iter().zip(&pad_wrenches_p) {
-        let torque = joint_torque(hand, pads);
-        let give_rad = hand.joint_give_rad(&(&torque - &hand.gravity_torque_nm));
-        let moved = &hand.jacobian_o * &give_rad;
-        hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
-        joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * give_rad);
-    }
-    let energy_unit_j = FORCE_UNIT_N * DISPLACEMENT_UNIT_M;
-    let board = balance_twist(raw.z, energy_unit_j);
-    EquilibriumOutcome::Found(Equilibrium { load_factor, pad_wrenches_p, joint_torque_nm, board, hands })
+    let board = balance_twist(raw.z, FORCE_UNIT_N * DISPLACEMENT_UNIT_M);
+    EquilibriumOutcome::Found(Equilibrium::of_pads(hold, load_factor, pad_wrenches_p, board))
 }

@@ -51,6 +51,7 @@ mod certificate;
 mod compliance;
 mod compliant_load;
 mod contact;
+mod elastic;
 mod equilibrium;
 mod from_plan;
 mod hold;

@@ -7,34 +7,44 @@ use crate::model::{
 };
 
 impl StabilityWorkspace {
-    /// True when a hold keeps `limits` in the sense of `kind` (METHOD section 3): the load factor of the cone program at
-    /// least `limits.load_factor`; for compliant stability also an equilibrium within the limits of torque, deflection
-    /// and slip at that load, and within those of deflection at load 1. The cheapest test comes first.
+    /// True when a hold keeps `limits` in the sense of `kind`: its [`StabilityWorkspace::utilisation`] is at most 1.
     ///
     /// # Errors
     /// When the hold is broken.
     pub fn stands(&mut self, hold: &Hold, limits: &Limits, kind: StabilityKind) -> Result<bool, HoldError> {
+        Ok(self.utilisation(hold, limits, kind)? <= 1.0)
+    }
+
+    /// The share that a hold uses of what `limits` allow it in the sense of `kind` (METHOD section 3), at most 1 when it
+    /// stands and infinite when no equilibrium exists:
+    ///
+    /// - paper: `limits.load_factor` over the load factor of the cone program;
+    /// - compliant: the largest ratio of torque, deflection and slip to their limits in the equilibrium at that load
+    ///   factor, and of the deflection at load 1. An equilibrium within the torque limits is a point of the cone program,
+    ///   whose load factor is therefore no less; only where `limits.torque_ratio` allows more than those it is asked too.
+    ///
+    /// # Errors
+    /// When the hold is broken.
+    pub fn utilisation(&mut self, hold: &Hold, limits: &Limits, kind: StabilityKind) -> Result<f64, HoldError> {
         let least = limits.load_factor;
         if hold.cannot_hold(least).is_some() {
-            return Ok(false);
+            return Ok(f64::INFINITY);
         }
-        if self.load_factor(hold)?.load_factor().is_none_or(|load_factor| load_factor < least) {
-            return Ok(false);
+        let mut utilisation = 0.0;
+        if kind == StabilityKind::Paper || limits.torque_ratio > 1.0 {
+            let Some(load_factor) = self.load_factor(hold)?.load_factor() else { return Ok(f64::INFINITY) };
+            utilisation = if least == 0.0 { 0.0 } else { least / load_factor };
         }
         if kind == StabilityKind::Paper {
-            return Ok(true);
+            return Ok(utilisation);
         }
-        let keeps_all = match self.response(hold, least)? {
-            ResponseOutcome::Found(response) => response.crossing(hold, limits).is_none(),
-            ResponseOutcome::NoEquilibrium { .. } | ResponseOutcome::Unknown { .. } => false,
-        };
-        if !keeps_all || least >= 1.0 {
-            return Ok(keeps_all);
+        let ResponseOutcome::Found(response) = self.response(hold, least)? else { return Ok(f64::INFINITY) };
+        utilisation = response.utilisation(hold, limits).max(utilisation);
+        if least < 1.0 {
+            let ResponseOutcome::Found(response) = self.response(hold, 1.0)? else { return Ok(f64::INFINITY) };
+            utilisation = utilisation.max(response.deflection_mm() / limits.deflection_mm);
         }
-        Ok(match self.response(hold, 1.0)? {
-            ResponseOutcome::Found(response) => response.deflection_mm() <= limits.deflection_mm,
-            ResponseOutcome::NoEquilibrium { .. } | ResponseOutcome::Unknown { .. } => false,
-        })
+        Ok(utilisation)
     }
 
     /// The figures of a plan; none when the hold has no load factor or no compliant equilibrium at load 1.

@@ -1,7 +1,9 @@
 //! Solvers that are kept between holds.
 
 use super::{
+    compliance::WeldedHold,
     compliant_load::{self, CompliantLoadFactor},
+    elastic,
     equilibrium::{self, CompliantResponse, EquilibriumOutcome, ResponseOutcome, hand_energy},
     hold::{Hold, HoldError},
     load_factor::{self, LoadFactorOutcome},
@@ -59,10 +61,18 @@ impl StabilityWorkspace {
     /// When the hold is broken.
     pub fn response(&mut self, hold: &Hold, load_factor: f64) -> Result<ResponseOutcome, HoldError> {
         hold.check()?;
-        let energies = hand_energies(hold);
+        let welded = WeldedHold::new(hold);
+        let mut energies = None;
+        let mut equilibrium_at = |lambda: f64| {
+            if let Some(found) = welded.as_ref().and_then(|welded| elastic::equilibrium(hold, welded, lambda)) {
+                return EquilibriumOutcome::Found(found);
+            }
+            let energies = energies.get_or_insert_with(|| hand_energies(hold));
+            self.solve_equilibrium(hold, energies, lambda)
+        };
         let mut equilibria = Vec::with_capacity(2);
         for lambda in [0.0, load_factor] {
-            match self.solve_equilibrium(hold, &energies, lambda) {
+            match equilibrium_at(lambda) {
                 EquilibriumOutcome::Found(found) => equilibria.push(found),
                 EquilibriumOutcome::None => return Ok(ResponseOutcome::NoEquilibrium { load_factor: lambda }),
                 EquilibriumOutcome::Unknown { status } => return Ok(ResponseOutcome::Unknown { status }),
