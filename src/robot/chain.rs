@@ -111,6 +111,35 @@ impl Chain {
         self.joints.iter().zip(q_rad).map(turn).collect()
     }
 
+    /// The first joint's axis in W, which never moves: a point on it and its direction.
+    pub fn first_axis_w(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let joint = &self.joints[0];
+        (joint.x_pj.translation.vector, joint.x_pj.rotation * joint.axis_j.into_inner())
+    }
+
+    /// The last joint's axis in W when G is at `x_wg`, whatever that joint's angle: its origin and its direction.
+    pub fn last_axis_w(&self, x_wg: &Pose) -> (Vector3<f64>, Vector3<f64>) {
+        let x_wl = x_wg * self.x_lg.inverse();
+        let axis_l = self.joints.last().map_or(Vector3::z(), |joint| joint.axis_j.into_inner());
+        (x_wl.translation.vector, x_wl.rotation * axis_l)
+    }
+
+    /// The angle of the last joint that turns G as closely to `x_wg` as that joint alone can, the others being at
+    /// `q_rad`, within a turn of zero, rad.
+    pub fn last_angle_towards(&self, q_rad: &[f64], x_wg: &Pose) -> f64 {
+        let Some(joint) = self.joints.last() else { return 0.0 };
+        let mut q_rad = q_rad.to_vec();
+        if let Some(last) = q_rad.last_mut() {
+            *last = 0.0;
+        }
+        let turn = self.gripper_pose(&q_rad).rotation * self.x_lg.rotation.inverse();
+        let wanted = turn.inverse() * x_wg.rotation * self.x_lg.rotation.inverse();
+        // The part of the rotation about the axis: its angle is that of the quaternion's projection on it.
+        let along = wanted.vector().dot(&joint.axis_j);
+        let angle_rad = 2.0 * along.atan2(wanted.scalar());
+        angle_rad.sin().atan2(angle_rad.cos())
+    }
+
     /// The Jacobian of G, 6 x dof: rows 0 to 2 the velocity of G's origin (m/s), rows 3 to 5 the angular velocity
     /// (rad/s), both in W axes, for joint rates in rad/s.
     pub fn jacobian_w(&self, q_rad: &[f64]) -> Matrix6xX<f64> {

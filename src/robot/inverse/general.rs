@@ -40,6 +40,11 @@ impl General {
     ///
     /// Minimises `|p_t - p|^2 + |log(R_t R')|^2` (m, rad) with steps `J' (J J' + mu I)^-1 e`.
     pub fn solve_from(&self, target: &Pose, seed: &[f64]) -> Solution {
+        self.solve_within(target, seed, MAX_STEPS)
+    }
+
+    /// As [`General::solve_from`], giving up after so many steps.
+    pub fn solve_within(&self, target: &Pose, seed: &[f64], max_steps: usize) -> Solution {
         if seed.len() != self.chain.dof() || !seed.iter().all(|q| q.is_finite()) || !is_finite(target) {
             return Solution::Malformed;
         }
@@ -48,13 +53,13 @@ impl General {
         if distance_m > reach_m {
             return Solution::OutOfReach { distance_m, reach_m };
         }
-        self.search(target, seed)
+        self.search(target, seed, max_steps)
     }
 
-    fn search(&self, target: &Pose, seed: &[f64]) -> Solution {
+    fn search(&self, target: &Pose, seed: &[f64], max_steps: usize) -> Solution {
         let mut here = State::new(&self.chain, target, self.clamped(seed.to_vec()));
         let mut damping = DAMPING;
-        for _ in 0..MAX_STEPS {
+        for _ in 0..max_steps {
             if here.residual <= TARGET_RESIDUAL {
                 return Solution::Found(here.q_rad);
             }

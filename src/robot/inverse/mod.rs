@@ -25,6 +25,9 @@ pub const RESIDUAL_TOLERANCE: f64 = 1e-9;
 /// Two solutions nearer than this in every joint are one, rad.
 const SAME_SOLUTION_RAD: f64 = 1e-6;
 
+/// Steps that a search from a near seed may take.
+const NEAR_STEPS: usize = 12;
+
 /// Slices, and then starts, that are tried when no solution is found near a seed.
 const FALLBACK_SLICES: usize = 32;
 const FALLBACK_STARTS: usize = 60;
@@ -82,6 +85,11 @@ impl InverseKinematics {
     /// target is near the seed's pose. Fast, and no more than that: the search may end at a limit.
     pub fn local(&self, target: &Pose, seed: &[f64]) -> Solution {
         self.general().solve_from(target, seed)
+    }
+
+    /// As [`InverseKinematics::local`], for a seed that is known to be near: what does not converge soon is given up.
+    pub fn near(&self, target: &Pose, seed: &[f64]) -> Solution {
+        self.general().solve_within(target, seed, NEAR_STEPS)
     }
 
     /// The solution of [`InverseKinematics::local`]; failing that the nearest to `seed` of what all other means find,
