@@ -5,6 +5,7 @@ mod args;
 mod curve;
 mod exit;
 mod finish;
+mod maps;
 mod output;
 mod pipeline;
 mod plan;

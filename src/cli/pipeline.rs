@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, time::Instant};
 
-use super::{exit::CliError, versions::versions};
+use super::{exit::CliError, maps::Maps, versions::versions};
 use crate::{
     judge::{Judgement, judge},
     model::{
@@ -34,11 +34,11 @@ pub struct Run {
 ///
 /// # Errors
 /// When the person or the tool is none, or the simulation cannot be built from the plan.
-pub fn run_scenario(loaded: &LoadedScenario) -> Result<Run, CliError> {
+pub fn run_scenario(loaded: &LoadedScenario, maps: &Maps) -> Result<Run, CliError> {
     let scenario = &loaded.scenario;
     let plan = match &loaded.plan {
         Some(plan) => plan.clone(),
-        None => match timed_plan(scenario, &loaded.robot)? {
+        None => match timed_plan(scenario, &loaded.robot, maps)? {
             PlanOutcome::Found(plan) => *plan,
             PlanOutcome::Infeasible(why) => {
                 let verdict = without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
@@ -70,15 +70,18 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
 ///
 /// # Errors
 /// When the scenario's person or tool is none.
-pub fn timed_plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, CliError> {
-    let start = Instant::now();
-    let mut outcome = planner::plan(scenario, robot)?;
-    if let PlanOutcome::Found(plan) = &mut outcome
-        && let Some(record) = &mut plan.planner
-    {
-        record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);
-    }
-    Ok(outcome)
+pub fn timed_plan(scenario: &Scenario, robot: &Robot, maps: &Maps) -> Result<PlanOutcome, CliError> {
+    maps.with(robot, scenario.object.size_m, |map, map_ms| {
+        let start = Instant::now();
+        let mut outcome = planner::plan_on(scenario, map)?;
+        if let PlanOutcome::Found(plan) = &mut outcome
+            && let Some(record) = &mut plan.planner
+        {
+            record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);
+            record.map_ms = Some(map_ms);
+        }
+        Ok(outcome)
+    })
 }
 
 /// The verdict on a scenario that has nothing to simulate.

@@ -3,6 +3,7 @@
 use super::{
     args::PlanArgs,
     exit::{CliError, Exit},
+    maps::Maps,
     output, pipeline,
 };
 use crate::{model::verdict::VerdictKind, planner::PlanOutcome, report, scenario};
@@ -20,7 +21,7 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
         loaded.scenario.planner.seed = seed;
     }
     let infeasible_expected = loaded.scenario.expect.verdict == VerdictKind::Infeasible;
-    match pipeline::timed_plan(&loaded.scenario, &loaded.robot)? {
+    match pipeline::timed_plan(&loaded.scenario, &loaded.robot, &Maps::default())? {
         PlanOutcome::Found(plan) => {
             let text = report::json::plan(&plan);
             match &args.output {

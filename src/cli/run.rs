@@ -14,6 +14,7 @@ use super::{
     args::RunArgs,
     exit::{CliError, Exit},
     finish::{Ended, finish, report},
+    maps::Maps,
     pipeline,
 };
 use crate::scenario::{self, LoadedScenario};
@@ -21,10 +22,11 @@ use crate::scenario::{self, LoadedScenario};
 /// Runs scenarios: all are read and checked before the first is planned.
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let scenarios = load_all(args)?;
+    let maps = Maps::default();
     let jobs = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
     let ended = in_parallel(jobs, &scenarios, |loaded| {
         Ended::catch(&loaded.scenario.name, || {
-            let run = pipeline::run_scenario(loaded)?;
+            let run = pipeline::run_scenario(loaded, &maps)?;
             finish(run, &loaded.scenario, &loaded.robot, &args.report)
         })
     });

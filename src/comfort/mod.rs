@@ -83,6 +83,15 @@ fn objective(settings: &ComfortSettings, muscular_regularised: f64, peripersonal
     settings.weight_muscular * muscular_regularised + settings.weight_peripersonal * peripersonal_m
 }
 
+/// A comfort with the objective of other weights: of the mean, where it has one.
+pub fn weighted(comfort: Comfort, settings: &ComfortSettings) -> Comfort {
+    let (muscular_regularised, peripersonal_m) = match comfort.average {
+        Some(average) => (average.muscular_regularised, average.peripersonal_m),
+        None => (comfort.muscular_regularised, comfort.peripersonal_m),
+    };
+    Comfort { objective: objective(settings, muscular_regularised, peripersonal_m), ..comfort }
+}
+
 /// Makes the mean over all answers the objective of a posture's comfort.
 pub fn rate_by_average(comfort: &mut Comfort, average: AverageComfort, settings: &ComfortSettings) {
     comfort.objective = objective(settings, average.muscular_regularised, average.peripersonal_m);

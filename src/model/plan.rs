@@ -194,9 +194,13 @@ pub struct PlannerRecord {
     pub kind: PlannerKind,
     /// Seed of the search.
     pub seed: u64,
-    /// Time that the search took, ms; the one figure that two equal runs do not share.
+    /// Time that the search took, ms; this and `map_ms` are the figures that two equal runs do not share.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall_ms: Option<f64>,
+    /// Time that the map of the robot and this size of board took, ms: that is made once for all plans of one run; zero
+    /// where it was at hand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map_ms: Option<f64>,
     /// How many candidates the search scored.
     pub evaluations: u64,
 }

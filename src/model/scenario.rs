@@ -124,6 +124,11 @@ pub(super) fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+/// True for what need not be written.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
 /// The tool in the hand: mass and the tip's frame T in the right hand's frame H.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -222,20 +227,56 @@ impl Default for ComfortSettings {
     }
 }
 
-/// What a planner maximises.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+/// What a planner looks for (METHOD section 3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PlannerKind {
-    /// Both comforts.
+    /// The best of both comforts together, weighted.
     Comfort,
+    /// The best muscular comfort; the peripersonal one has no weight.
+    Muscular,
+    /// The best peripersonal comfort; the muscular one has no weight.
+    Peripersonal,
+    /// Any hold, drawn uniformly; the person answers it as best they can.
+    Random,
+}
+
+impl PlannerKind {
+    /// All planners, in the order of the paper's table.
+    pub const ALL: [Self; 4] = [Self::Comfort, Self::Peripersonal, Self::Muscular, Self::Random];
+
+    /// The comfort that this planner maximises: `settings` with the weight of what it does not look at set to zero.
+    pub fn objective(self, settings: ComfortSettings) -> ComfortSettings {
+        match self {
+            Self::Comfort | Self::Random => settings,
+            Self::Muscular => ComfortSettings { weight_peripersonal: 0.0, ..settings },
+            Self::Peripersonal => ComfortSettings { weight_muscular: 0.0, ..settings },
+        }
+    }
 }
 
 impl std::fmt::Display for PlannerKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.pad(match self {
             Self::Comfort => "comfort",
+            Self::Muscular => "muscular",
+            Self::Peripersonal => "peripersonal",
+            Self::Random => "random",
         })
     }
+}
+
+/// How much work a search may do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Budget {
+    /// For a robot that replans while the person moves.
+    Fast,
+    /// For one plan.
+    #[default]
+    Default,
+    /// A hundred times the default: what the others are measured against.
+    Exhaustive,
 }
 
 /// Which stability a plan must show (METHOD section 6).
@@ -258,6 +299,12 @@ pub struct PlannerSettings {
     pub stability: StabilityKind,
     /// Seed of the search.
     pub seed: u64,
+    /// How much work the search may do.
+    #[serde(skip_serializing_if = "is_default")]
+    pub budget: Budget,
+    /// The largest number of candidates that the search may look at, if that ends it before the budget does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evaluations: Option<u64>,
     /// A plan file to judge in place of planning, relative to the scenario's file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<String>,
@@ -265,7 +312,14 @@ pub struct PlannerSettings {
 
 impl Default for PlannerSettings {
     fn default() -> Self {
-        Self { kind: PlannerKind::Comfort, stability: StabilityKind::Compliant, seed: 1, plan: None }
+        Self {
+            kind: PlannerKind::Comfort,
+            stability: StabilityKind::Compliant,
+            seed: 1,
+            budget: Budget::Default,
+            evaluations: None,
+            plan: None,
+        }
     }
 }
 

@@ -1,6 +1,9 @@
 //! Ranking by the mean of the person's answers.
 
-use super::{Problem, assess, draw::Feasible};
+use super::{
+    Problem,
+    assess::{self, Feasible},
+};
 use crate::{comfort, model::scenario::PersonAnswer};
 
 /// How many of the best holds are compared by their mean comfort: one takes some seconds when the roll is free.
@@ -12,7 +15,7 @@ const COMPARED: usize = 4;
 /// search has looked for the best answer too; the first few of what it found are ranked by the mean over all answers, and
 /// the rest left out. So the mean is the best of those few, not of all holds.
 pub fn rank(problem: &Problem<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
-    let settings = &problem.scenario.comfort;
+    let settings = &problem.objective;
     if settings.person == PersonAnswer::Most {
         return found;
     }
@@ -20,11 +23,12 @@ pub fn rank(problem: &Problem<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
         .into_iter()
         .take(COMPARED)
         .filter_map(|mut found| {
-            let average = assess::average(problem, &found.candidate)?;
+            let average = assess::average(problem, &found)?;
             comfort::rate_by_average(&mut found.comfort, average, settings);
+            found.worth = found.comfort.objective;
             Some(found)
         })
         .collect();
-    rated.sort_by(|a, b| b.comfort.objective.total_cmp(&a.comfort.objective));
+    rated.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     rated
 }

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Quaternion, UnitQuaternion, Vector3};
+use rand_pcg::Pcg64;
 
-use super::{Candidate, Infeasible, Problem};
+use super::{Candidate, Infeasible, Problem, propose::uniform};
 use crate::{
     collision::{PersonPart, Scene},
     comfort,
-    human::{ArmAngles, Muscular},
+    human::{ArmAngles, CAPSULES, Muscular},
     model::{
         frames::Pose,
         grasp::EdgeGrasp,
@@ -16,7 +17,7 @@ use crate::{
         scenario::{Limits, Scenario, StabilityKind},
         wrench::Wrench,
     },
-    robot::{ArmState, Gripper},
+    robot::Gripper,
     statics::{HandModel, Hold},
 };
 
@@ -36,14 +37,12 @@ const COMPLIANT_RESERVE: f64 = 1.1;
 /// The first constraint that a candidate breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rejection {
-    /// The board's centre outside the domain of the search.
+    /// The board's centre outside the domain of the search, or its worked face turned from the person's side.
     BoardPlace,
-    /// The worked face turned away from the person's side.
-    Facing,
     /// A joint of the person loaded beyond its strength.
     Strength,
-    /// A pad over the edge of the board.
-    PadOverEdge,
+    /// A tool pose that the person cannot bring about.
+    PersonReach,
     /// A hand that an arm of the robot cannot bring there.
     RobotReach,
     /// Bodies that touch or come too close.
@@ -59,9 +58,8 @@ impl Rejection {
     pub fn name(self) -> &'static str {
         match self {
             Self::BoardPlace => "board outside the search domain",
-            Self::Facing => "worked face turned from the person",
             Self::Strength => "person's strength",
-            Self::PadOverEdge => "pads over the edge",
+            Self::PersonReach => "human reach",
             Self::RobotReach => "robot reach",
             Self::Collision => "collision or too close",
             Self::Stability => "stability",
@@ -71,13 +69,24 @@ impl Rejection {
 }
 
 /// How many candidates were drawn, and what removed them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Tally {
     candidates: u64,
+    most: u64,
     removed: BTreeMap<Rejection, u64>,
 }
 
 impl Tally {
+    /// Nothing drawn yet, of at most so many candidates.
+    pub fn of_at_most(most: Option<u64>) -> Self {
+        Self { candidates: 0, most: most.unwrap_or(u64::MAX), removed: BTreeMap::new() }
+    }
+
+    /// True when no further candidate may be looked at.
+    pub fn is_exhausted(&self) -> bool {
+        self.candidates >= self.most
+    }
+
     /// Counts a candidate that was drawn.
     pub fn draw(&mut self) {
         self.candidates += 1;
@@ -108,19 +117,102 @@ pub struct Placed {
     pub x_wb: Pose,
 }
 
-/// Places board and person, and tests what depends on the person and the board's pose alone.
-pub fn place(problem: &Problem<'_>, candidate: &Candidate) -> Result<Placed, Rejection> {
+/// Everything about a candidate that follows from its numbers.
+#[derive(Clone, Debug)]
+pub struct Configured {
+    pub placed: Placed,
+    pub link_poses: Vec<Pose>,
+    pub person: [PersonPart; CAPSULES],
+}
+
+/// A candidate that keeps every constraint, with its figures.
+#[derive(Clone, Debug)]
+pub struct Feasible {
+    pub candidate: Candidate,
+    pub configured: Configured,
+    /// Both comforts.
+    pub comfort: Comfort,
+    /// What the search maximises.
+    pub worth: f64,
+    /// The share that the hold uses of what the limits of stability allow it.
+    pub utilisation: f64,
+}
+
+impl Configured {
+    /// Computes it; the candidate's arms must have configurations.
+    pub fn new(problem: &Problem<'_>, candidate: &Candidate) -> Self {
+        let placed = Placed { x_wo: candidate.x_wo(problem), x_wb: candidate.x_wb(problem) };
+        Self {
+            placed,
+            link_poses: problem.map.link_poses(&candidate.holds),
+            person: problem.human.capsules_w(&placed.x_wb, &candidate.q_h_rad).map(PersonPart::from),
+        }
+    }
+
+    /// The scene of collisions.
+    pub fn scene<'a>(&'a self, problem: &'a Problem<'_>) -> Scene<'a> {
+        Scene { person: &self.person, ..problem.map.scene(&self.link_poses, self.placed.x_wo) }
+    }
+}
+
+/// All that a candidate is and is worth, when it keeps every constraint; the cheapest tests come first.
+pub fn feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasible, Rejection> {
+    place(problem, &candidate)?;
+    let configured = Configured::new(problem, &candidate);
+    collisions(problem, &configured)?;
+    let utilisation = utilisation(problem, &candidate, &configured.placed.x_wo);
+    if utilisation > 1.0 {
+        return Err(Rejection::Stability);
+    }
+    let comfort = comfort(problem, &candidate, &configured);
+    Ok(Feasible { candidate, configured, comfort, worth: comfort.objective, utilisation })
+}
+
+/// Tests what depends on the person and the board's pose alone.
+pub fn place(problem: &Problem<'_>, candidate: &Candidate) -> Result<(), Rejection> {
     let x_wo = candidate.x_wo(problem);
-    let within = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);
-    let p_wo = x_wo.translation.vector;
-    if !(within(p_wo.x, BOARD_X_M) && within(p_wo.y, BOARD_Y_M) && within(p_wo.z, BOARD_Z_M)) {
+    if !in_domain(&x_wo) {
         return Err(Rejection::BoardPlace);
     }
-    if (x_wo.rotation * Vector3::z()).x < FACING_LIMIT_RAD.cos() {
-        return Err(Rejection::Facing);
-    }
     posture_comfort(problem, &candidate.q_h_rad).ok_or(Rejection::Strength)?;
-    Ok(Placed { x_wo, x_wb: candidate.x_wb(problem) })
+    Ok(())
+}
+
+/// True when the board's centre and worked face are in the domain of the search (METHOD section 3).
+pub fn in_domain(x_wo: &Pose) -> bool {
+    let p_wo = x_wo.translation.vector;
+    within(p_wo.x, BOARD_X_M) && within(p_wo.y, BOARD_Y_M) && within(p_wo.z, BOARD_Z_M) && faces_person(x_wo)
+}
+
+/// A pose of the board, uniformly from the domain of the search (METHOD section 3).
+pub fn draw_board(random: &mut Pcg64) -> Pose {
+    let p_wo = [BOARD_X_M, BOARD_Y_M, BOARD_Z_M].map(|[low, high]| uniform(random, low, high));
+    loop {
+        // A point of the unit ball in four dimensions is a uniform rotation.
+        let [x, y, z, w] = std::array::from_fn(|_| uniform(random, -1.0, 1.0));
+        let quaternion = Quaternion::new(w, x, y, z);
+        if !(0.01..=1.0).contains(&quaternion.norm_squared()) {
+            continue;
+        }
+        let x_wo = Isometry3::from_parts(p_wo.into(), UnitQuaternion::from_quaternion(quaternion));
+        if faces_person(&x_wo) {
+            return x_wo;
+        }
+    }
+}
+
+fn within(value: f64, [low, high]: [f64; 2]) -> bool {
+    (low..=high).contains(&value)
+}
+
+/// True when the worked face looks towards the person's side: how much further it may turn away.
+pub fn faces_person(x_wo: &Pose) -> bool {
+    facing(x_wo) >= 0.0
+}
+
+/// How far the worked face's normal is inside the cone about the person's side, as a difference of cosines.
+pub fn facing(x_wo: &Pose) -> f64 {
+    (x_wo.rotation * Vector3::z()).x - FACING_LIMIT_RAD.cos()
 }
 
 /// The muscular comfort of a posture, if every joint is strong enough. It does not depend on where the person stands or
@@ -135,69 +227,59 @@ pub fn posture_comfort(problem: &Problem<'_>, q_h_rad: &ArmAngles) -> Option<Mus
 
 /// True when every corner of the gripper's pads lies on the face of the board.
 pub fn pads_on_board(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> bool {
+    pad_margins_m(gripper, grasp, size_m).iter().all(|&margin_m| margin_m >= 0.0)
+}
+
+/// How far the gripper's pads are inside each edge of the board, m: +x_O, -x_O, +y_O, -y_O.
+pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> [f64; 4] {
     let x_og = grasp.x_og(size_m);
     let pad = &gripper.fingers[0].pad;
     let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
-    corners.iter().all(|[side_x, side_z]| {
+    corners.iter().fold([f64::INFINITY; 4], |margins_m, [side_x, side_z]| {
         let x_g = pad.centre_m[0] + side_x * pad.size_m[0] / 2.0;
         let z_g = pad.centre_m[1] + side_z * pad.size_m[1] / 2.0;
         let p_o = x_og * Point3::new(x_g, 0.0, z_g);
-        p_o.x.abs() <= size_m[0] / 2.0 && p_o.y.abs() <= size_m[1] / 2.0
+        let [half_x_m, half_y_m, _] = size_m.map(|side_m| side_m / 2.0);
+        let here_m = [half_x_m - p_o.x, half_x_m + p_o.x, half_y_m - p_o.y, half_y_m + p_o.y];
+        std::array::from_fn(|side| margins_m[side].min(here_m[side]))
     })
 }
 
-/// Both comforts and the objective of a candidate whose arms reach.
-pub fn comfort(problem: &Problem<'_>, candidate: &Candidate, placed: &Placed) -> Comfort {
-    let poses = problem.robot.link_poses(&positions(problem, candidate));
-    let surface = comfort::robot_points_w(problem.robot, &poses);
-    let wrench_w = problem.scenario.operation.wrench_w(&placed.x_wo);
-    let settings = &problem.scenario.comfort;
-    comfort::of_posture(&problem.human, settings, &surface, &placed.x_wb, &candidate.q_h_rad, &wrench_w)
+/// Both comforts of a candidate, and the objective of the search.
+pub fn comfort(problem: &Problem<'_>, candidate: &Candidate, configured: &Configured) -> Comfort {
+    let surface = comfort::robot_points_w(&problem.map.robot, &configured.link_poses);
+    let Placed { x_wo, x_wb } = configured.placed;
+    let wrench_w = problem.scenario.operation.wrench_w(&x_wo);
+    comfort::of_posture(&problem.human, &problem.objective, &surface, &x_wb, &candidate.q_h_rad, &wrench_w)
+}
+
+/// A candidate's hold, for the person to answer.
+pub fn hold<'a>(
+    problem: &'a Problem<'_>,
+    candidate: &Candidate,
+    configured: &'a Configured,
+    robot_points_w: &'a [Point3<f64>],
+) -> comfort::Hold<'a> {
+    comfort::Hold {
+        human: &problem.human,
+        collision: &problem.map.collision,
+        settings: problem.objective,
+        operation: problem.scenario.operation.rolled(candidate.roll_rad),
+        floor_z_m: problem.map.robot.floor_z_m,
+        robot_points_w,
+        scene: Scene { person: &[], ..configured.scene(problem) },
+    }
 }
 
 /// The mean comfort of the person's answers to a candidate's hold.
-pub fn average(problem: &Problem<'_>, candidate: &Candidate) -> Option<AverageComfort> {
-    let poses = problem.robot.link_poses(&positions(problem, candidate));
-    let hold = comfort::Hold {
-        human: &problem.human,
-        collision: &problem.collision,
-        settings: problem.scenario.comfort,
-        operation: problem.scenario.operation.rolled(candidate.roll_rad),
-        floor_z_m: problem.robot.floor_z_m,
-        robot_points_w: &comfort::robot_points_w(problem.robot, &poses),
-        scene: Scene {
-            link_poses: &poses,
-            holding: &problem.arms.iter().map(|arm| arm.index).collect::<Vec<_>>(),
-            board_size_m: problem.scenario.object.size_m,
-            x_wo: candidate.x_wo(problem),
-            person: &[],
-        },
-    };
-    comfort::average(&hold)
-}
-
-/// Positions of all joints of the robot.
-fn positions(problem: &Problem<'_>, candidate: &Candidate) -> Vec<f64> {
-    let states: Vec<_> = problem
-        .arms
-        .iter()
-        .zip(&candidate.holds)
-        .map(|(arm, hold)| ArmState { arm: arm.index, q_rad: &hold.q_rad, finger_travel_m: arm.finger_travel_m })
-        .collect();
-    problem.robot.positions(&states)
+pub fn average(problem: &Problem<'_>, found: &Feasible) -> Option<AverageComfort> {
+    let points = comfort::robot_points_w(&problem.map.robot, &found.configured.link_poses);
+    comfort::average(&hold(problem, &found.candidate, &found.configured, &points))
 }
 
 /// Tests that nothing touches what it must not.
-pub fn collisions(problem: &Problem<'_>, candidate: &Candidate, placed: &Placed) -> Result<(), Rejection> {
-    let person = problem.human.capsules_w(&placed.x_wb, &candidate.q_h_rad).map(PersonPart::from);
-    let scene = Scene {
-        link_poses: &problem.robot.link_poses(&positions(problem, candidate)),
-        holding: &problem.arms.iter().map(|arm| arm.index).collect::<Vec<_>>(),
-        board_size_m: problem.scenario.object.size_m,
-        x_wo: placed.x_wo,
-        person: &person,
-    };
-    match problem.collision.first_violation(&scene) {
+pub fn collisions(problem: &Problem<'_>, configured: &Configured) -> Result<(), Rejection> {
+    match problem.map.collision.first_violation(&configured.scene(problem)) {
         None => Ok(()),
         Some(_) => Err(Rejection::Collision),
     }
@@ -207,6 +289,7 @@ pub fn collisions(problem: &Problem<'_>, candidate: &Candidate, placed: &Placed)
 pub fn arm_holds(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
     let scenario = problem.scenario;
     problem
+        .map
         .arms
         .iter()
         .zip(&candidate.holds)
@@ -220,23 +303,21 @@ pub fn arm_holds(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
         .collect()
 }
 
-/// Tests that a candidate stands the load.
-pub fn stability(problem: &mut Problem<'_>, candidate: &Candidate, placed: &Placed) -> Result<(), Rejection> {
+/// The share that a candidate's hold uses of what the limits of stability allow it, reserve included: at most 1 when it
+/// stands, infinite when it cannot.
+pub fn utilisation(problem: &mut Problem<'_>, candidate: &Candidate, x_wo: &Pose) -> f64 {
     let Scenario { object, operation, grip, limits, planner, .. } = problem.scenario;
-    let object = PlacedObject { size_m: object.size_m, mass_kg: object.mass_kg(), x_wo: placed.x_wo };
+    let object = PlacedObject { size_m: object.size_m, mass_kg: object.mass_kg(), x_wo: *x_wo };
     let hands: Result<Vec<_>, _> = arm_holds(problem, candidate)
         .iter()
-        .zip(&problem.arms)
-        .map(|(hold, arm)| HandModel::from_plan(problem.robot, &arm.chain, hold, &object, grip.friction))
+        .zip(&problem.map.arms)
+        .map(|(hold, arm)| HandModel::from_plan(&problem.map.robot, &arm.chain, hold, &object, grip.friction))
         .collect();
     let reserve = if planner.stability == StabilityKind::Compliant { COMPLIANT_RESERVE } else { 1.0 };
     let limits = Limits { load_factor: reserve * limits.load_factor, ..*limits };
-    let stands = hands
+    hands
         .map(|hands| Hold::from_hands(hands, &object, &operation.rolled(candidate.roll_rad)))
-        .and_then(|hold| problem.stability.stands(&hold, &limits, planner.stability));
-    match stands {
-        Ok(true) => Ok(()),
+        .and_then(|hold| problem.stability.utilisation(&hold, &limits, planner.stability))
         // A hold that the statics call broken, say by a pad off the board, stands nothing.
-        Ok(false) | Err(_) => Err(Rejection::Stability),
-    }
+        .unwrap_or(f64::INFINITY)
 }

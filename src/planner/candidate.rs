@@ -40,7 +40,7 @@ impl Candidate {
     pub fn x_wo(&self, problem: &Problem<'_>) -> Pose {
         let x_bo = self.x_bo(problem);
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.heading_rad);
-        let z_m = problem.robot.floor_z_m + x_bo.translation.z;
+        let z_m = problem.map.robot.floor_z_m + x_bo.translation.z;
         let [x_m, y_m] = self.p_wo_xy_m;
         Isometry3::from_parts(Vector3::new(x_m, y_m, z_m).into(), turn * x_bo.rotation)
     }
@@ -50,7 +50,7 @@ impl Candidate {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.heading_rad);
         let p_bo_w = turn * self.x_bo(problem).translation.vector;
         let [x_m, y_m] = self.p_wo_xy_m;
-        let position = Vector3::new(x_m - p_bo_w.x, y_m - p_bo_w.y, problem.robot.floor_z_m);
+        let position = Vector3::new(x_m - p_bo_w.x, y_m - p_bo_w.y, problem.map.robot.floor_z_m);
         Isometry3::from_parts(position.into(), turn)
     }
 }

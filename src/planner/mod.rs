@@ -11,29 +11,36 @@
 
 mod answer;
 mod assess;
+mod bank;
 mod candidate;
-mod draw;
+mod effort;
+mod person_map;
+mod propose;
+mod random;
+mod reach;
 mod refine;
+mod robot_map;
 mod verify;
 
 use rand_pcg::Pcg64;
 
 use crate::{
-    collision::CollisionModel,
+    comfort,
     human::{Human, HumanError},
     model::{
         FORMAT,
         operation::Operation,
         plan::{HumanPosture, PlacedObject, Plan, PlannerRecord},
-        scenario::{PlannerSettings, Scenario},
+        scenario::{ComfortSettings, PlannerKind, PlannerSettings, Scenario},
         wrench::Wrench,
     },
-    robot::{Chain, InverseKinematics, Robot},
+    robot::Robot,
     statics::{Hold, StabilityWorkspace},
 };
-use assess::{Rejection, Tally};
+use assess::{Configured, Feasible, Rejection, Tally};
 use candidate::Candidate;
-use draw::Feasible;
+use effort::Effort;
+pub use robot_map::RobotMap;
 pub use verify::{Flaw, first_touch, verify};
 
 /// What the search came to.
@@ -68,55 +75,26 @@ impl std::fmt::Display for Infeasible {
 /// Everything that is the same for all candidates of one scenario.
 struct Problem<'a> {
     scenario: &'a Scenario,
-    robot: &'a Robot,
+    map: &'a RobotMap,
     human: Human,
+    /// What the search maximises: the scenario's comfort with the weights of its planner.
+    objective: ComfortSettings,
     /// The operation's wrench about the tool tip in T axes, where it does not change.
     wrench_t: Wrench,
-    collision: CollisionModel,
     stability: StabilityWorkspace,
-    arms: Vec<ProblemArm>,
-}
-
-/// An arm as the search needs it.
-struct ProblemArm {
-    index: usize,
-    name: String,
-    joints: Vec<String>,
-    chain: Chain,
-    inverse: InverseKinematics,
-    finger_travel_m: [f64; 2],
 }
 
 impl<'a> Problem<'a> {
-    fn new(scenario: &'a Scenario, robot: &'a Robot) -> Result<Self, HumanError> {
-        let thickness_m = scenario.object.size_m[2];
-        let arms = robot
-            .arms
-            .iter()
-            .enumerate()
-            .map(|(index, arm)| {
-                let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, thickness_m));
-                let chain = Chain::new(robot, index, finger_travel_m[0]);
-                ProblemArm {
-                    index,
-                    name: arm.name.clone(),
-                    joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
-                    inverse: InverseKinematics::for_chain(&chain),
-                    chain,
-                    finger_travel_m,
-                }
-            })
-            .collect();
+    fn new(scenario: &'a Scenario, map: &'a RobotMap) -> Result<Self, HumanError> {
         let Operation { wrench_o, x_ot, .. } = scenario.operation;
         let to_tool = x_ot.rotation.inverse();
         Ok(Self {
             scenario,
-            robot,
+            map,
             human: Human::new(&scenario.human, &scenario.tool)?,
+            objective: scenario.planner.kind.objective(scenario.comfort),
             wrench_t: Wrench::new(to_tool * wrench_o.force_n, to_tool * wrench_o.moment_nm),
-            collision: CollisionModel::new(robot),
             stability: StabilityWorkspace::new(),
-            arms,
         })
     }
 }
@@ -126,18 +104,31 @@ impl<'a> Problem<'a> {
 /// # Errors
 /// When the scenario's person or tool is none; a scenario that was read from a file is checked for that.
 pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanError> {
-    let mut problem = Problem::new(scenario, robot)?;
-    let mut tally = Tally::default();
+    plan_on(scenario, &RobotMap::new(robot, scenario.object.size_m))
+}
+
+/// As [`plan`], on a map of the scenario's robot and size of board that is at hand.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_on(scenario: &Scenario, map: &RobotMap) -> Result<PlanOutcome, HumanError> {
+    let mut problem = Problem::new(scenario, map)?;
+    let mut tally = Tally::of_at_most(scenario.planner.evaluations);
     let mut random = Pcg64::new(u128::from(scenario.planner.seed), 0);
-    let drawn = draw::best_candidates(&mut problem, &mut random, &mut tally);
-    let refined = refine::refine(&mut problem, drawn, &mut random, &mut tally);
-    for found in answer::rank(&problem, refined) {
+    let effort = Effort::of(scenario.planner.budget);
+    let found = if scenario.planner.kind == PlannerKind::Random {
+        random::draw(&mut problem, &mut random, &mut tally).into_iter().collect()
+    } else {
+        let starts = propose::best_candidates(&mut problem, &effort, &mut random, &mut tally);
+        refine::refine(&mut problem, starts, &effort, &mut tally)
+    };
+    for found in answer::rank(&problem, found) {
         let Some(plan) = assemble(&mut problem, &found, tally.candidates()) else {
             tally.remove(Rejection::Stability);
             continue;
         };
         // The check takes nothing from the search but the plan, so what both accept can be trusted.
-        if verify(&plan, scenario, robot)?.is_empty() {
+        if verify(&plan, scenario, &map.robot)?.is_empty() {
             return Ok(PlanOutcome::Found(Box::new(plan)));
         }
         tally.remove(Rejection::Verification);
@@ -148,24 +139,25 @@ pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanErro
 /// The plan of a candidate that passed every test; none when its stability cannot be stated.
 fn assemble(problem: &mut Problem<'_>, found: &Feasible, evaluations: u64) -> Option<Plan> {
     let scenario = problem.scenario;
-    let Feasible { candidate, comfort } = found;
+    let Feasible { candidate, configured, comfort, .. } = found;
     let PlannerSettings { kind, seed, .. } = scenario.planner;
     let operation = scenario.operation.rolled(candidate.roll_rad);
-    let x_wo = candidate.x_wo(problem);
+    let Configured { placed, .. } = configured;
+    let (x_wo, x_wb) = (placed.x_wo, placed.x_wb);
     let object = PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo };
     let arms = assess::arm_holds(problem, candidate);
-    let hold = Hold::from_plan(problem.robot, &arms, &object, &operation, scenario.grip.friction).ok()?;
+    let hold = Hold::from_plan(&problem.map.robot, &arms, &object, &operation, scenario.grip.friction).ok()?;
     Some(Plan {
         format: FORMAT,
         name: scenario.name.clone(),
-        robot: problem.robot.description.clone(),
+        robot: problem.map.robot.description.clone(),
         operation,
         object,
         arms,
-        human: Some(HumanPosture::new(&scenario.human, candidate.x_wb(problem), candidate.q_h_rad)),
-        comfort: Some(*comfort),
+        human: Some(HumanPosture::new(&scenario.human, x_wb, candidate.q_h_rad)),
+        comfort: Some(comfort::weighted(*comfort, &scenario.comfort)),
         stability: Some(problem.stability.predict(&hold, &scenario.limits).ok()??),
-        planner: Some(PlannerRecord { kind, seed, wall_ms: None, evaluations }),
+        planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations }),
         scenario: Some(scenario.clone()),
         benchdog: Some(env!("CARGO_PKG_VERSION").into()),
     })

@@ -1,145 +1,164 @@
-//! The first half of the search: random candidates, the best of which are handed on.
+//! The first half of the search: where good holds may be.
+//!
+//! Two maps meet: the robot's knows holds of the board, the person's knows comfortable postures. A hold brings the tool to
+//! some height and turn against the vertical; the postures that ask for just that are looked up and valued as if they
+//! fitted exactly. The most promising pairs are then disposed of in earnest: the person's inverse kinematics makes the
+//! posture fit, and strength, collisions and stability are tested.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64;
 
 use super::{
     Problem,
-    assess::{self, BOARD_X_M, BOARD_Y_M, Placed, Rejection, Tally},
-    candidate::{Candidate, Hold},
+    assess::{self, Feasible, Rejection, Tally},
+    bank::KnownHold,
+    candidate::Candidate,
+    effort::Effort,
+    person_map::{PersonMap, Posture},
 };
 use crate::{
-    human::ArmAngles,
+    comfort,
+    human::{ArmAngles, BODY_POINTS, peripersonal_m},
     model::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
-        plan::Comfort,
     },
 };
-
-/// Postures of the person's arm that are drawn before anything else.
-const POSTURES: usize = 20_000;
-/// The best postures that candidates are made of.
-const POSTURES_KEPT: usize = 4_000;
-/// Candidates that are drawn.
-const DRAWS: usize = 30_000;
-/// Headings that are tried for a posture, and grasps for an arm, before the candidate is given up.
-const TRIES: usize = 16;
-/// Random seeds that each arm's inverse kinematics is given for a drawn grasp.
-const ARM_SEEDS: usize = 3;
-/// Probability that a second arm holds the edge opposite to the first's, not the same one.
-const OPPOSITE: f64 = 0.75;
-/// Candidates that are handed on.
-const KEPT: usize = 8;
 
 /// Depth of G inside the edge, m (METHOD section 2).
 pub const DEPTH_M: [f64; 2] = [0.020, 0.060];
 /// Turn of the gripper in the plane of the board, rad (METHOD section 2).
 pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
 
-/// A candidate that keeps every constraint, with its figures.
-#[derive(Clone, Debug)]
-pub struct Feasible {
-    pub candidate: Candidate,
-    pub comfort: Comfort,
+/// A hold of the bank and a posture that nearly answers it.
+struct Proposal<'a> {
+    known: &'a KnownHold,
+    posture: Posture,
+    roll_rad: f64,
+    x_wb: Pose,
+    worth: f64,
 }
 
-/// Draws candidates and returns the best that keep every constraint, the best first.
-pub fn best_candidates(problem: &mut Problem<'_>, random: &mut Pcg64, tally: &mut Tally) -> Vec<Feasible> {
-    let postures = comfortable_postures(problem, random);
-    let mut reachable = Vec::new();
-    for _ in 0..DRAWS {
+/// The best pairs of the two maps that keep every constraint, the best first.
+pub fn best_candidates(
+    problem: &mut Problem<'_>,
+    effort: &Effort,
+    random: &mut Pcg64,
+    tally: &mut Tally,
+) -> Vec<Feasible> {
+    let person = PersonMap::new(problem, effort.postures, effort.postures_a_cell, random);
+    let map = problem.map;
+    let mut proposals = Vec::new();
+    for known in &map.bank {
+        if tally.is_exhausted() {
+            break;
+        }
         tally.draw();
-        if postures.is_empty() {
+        if person.is_empty() {
             tally.remove(Rejection::Strength);
             continue;
         }
-        match draw(problem, &postures, random) {
-            Ok((candidate, placed)) => {
-                let comfort = assess::comfort(problem, &candidate, &placed);
-                reachable.push((candidate, placed, comfort));
+        let before = proposals.len();
+        propose(problem, &person, known, &mut proposals);
+        if proposals.len() == before {
+            tally.remove(Rejection::PersonReach);
+        }
+    }
+    proposals.sort_by(|a, b| b.worth.total_cmp(&a.worth));
+    dispose(problem, effort, &proposals, tally)
+}
+
+/// The first proposals that keep every constraint, the best first.
+fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>], tally: &mut Tally) -> Vec<Feasible> {
+    let mut kept: Vec<Feasible> = Vec::new();
+    let mut used: Vec<&KnownHold> = Vec::new();
+    for proposal in proposals.iter().take(effort.disposed) {
+        if kept.len() == effort.starts {
+            break;
+        }
+        if used.iter().any(|known| std::ptr::eq(*known, proposal.known)) {
+            continue;
+        }
+        tally.draw();
+        match fit(problem, proposal).ok_or(Rejection::PersonReach).and_then(|fit| assess::feasible(problem, fit)) {
+            Ok(found) => {
+                kept.push(found);
+                used.push(proposal.known);
             }
             Err(why) => tally.remove(why),
         }
     }
-    reachable.sort_by(|a, b| b.2.objective.total_cmp(&a.2.objective));
-    let mut kept = Vec::new();
-    for (candidate, placed, comfort) in reachable {
-        if kept.len() == KEPT {
-            break;
-        }
-        match assess::stability(problem, &candidate, &placed) {
-            Ok(()) => kept.push(Feasible { candidate, comfort }),
-            Err(why) => tally.remove(why),
-        }
-    }
+    kept.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     kept
 }
 
-/// Postures that the person's strength allows, the most comfortable first.
-fn comfortable_postures(problem: &Problem<'_>, random: &mut Pcg64) -> Vec<ArmAngles> {
-    let mut postures: Vec<_> = (0..POSTURES)
-        .filter_map(|_| {
-            let q_h_rad = problem.human.arm().limits_rad.map(|[low, high]| uniform(random, low, high));
-            assess::posture_comfort(problem, &q_h_rad).map(|muscular| (muscular.regularised, q_h_rad))
-        })
-        .collect();
-    postures.sort_by(|a, b| b.0.total_cmp(&a.0));
-    postures.truncate(POSTURES_KEPT);
-    postures.into_iter().map(|(_, q_h_rad)| q_h_rad).collect()
-}
-
-/// One candidate whose arms reach and where nothing collides.
-fn draw(problem: &Problem<'_>, postures: &[ArmAngles], random: &mut Pcg64) -> Result<(Candidate, Placed), Rejection> {
-    let (mut candidate, placed) = draw_place(problem, postures, random)?;
-    let size_m = problem.scenario.object.size_m;
-    let first = random.random_range(0..Edge::ALL.len());
-    for (index, arm) in problem.arms.iter().enumerate() {
-        // Each next arm holds opposite to the first or on the same edge (METHOD section 2).
-        let opposite = index > 0 && random.random_bool(OPPOSITE);
-        let edge = Edge::ALL[if opposite { (first + 2) % Edge::ALL.len() } else { first }];
-        let gripper = &problem.robot.arms[arm.index].gripper;
-        let grasp = (0..TRIES)
-            .map(|_| draw_grasp(edge, size_m, random))
-            .find(|grasp| assess::pads_on_board(gripper, grasp, size_m))
-            .ok_or(Rejection::PadOverEdge)?;
-        let q_rad = draw_arm(problem, arm.index, &(placed.x_wo * grasp.x_og(size_m)), random)?;
-        candidate.holds.push(Hold { grasp, q_rad });
+/// Pairs a hold with the postures that its tool pose asks for.
+fn propose<'a>(problem: &Problem<'_>, person: &PersonMap, known: &'a KnownHold, proposals: &mut Vec<Proposal<'a>>) {
+    let operation = &problem.scenario.operation;
+    let mut points: Option<Vec<Point3<f64>>> = None;
+    // Where the tool may roll, all rolls share a cell; which one a posture needs is worked out.
+    let x_wt = known.x_wo * operation.x_ot;
+    for posture in person.postures(&x_wt, problem.map.robot.floor_z_m) {
+        let roll_rad = if operation.kind.roll_is_free() { roll_between(&x_wt, &posture.x_bt) } else { 0.0 };
+        let x_wt = known.x_wo * operation.rolled(roll_rad).x_ot;
+        let x_wb = standing(&x_wt, &posture.x_bt, problem.map.robot.floor_z_m);
+        let points = points
+            .get_or_insert_with(|| comfort::robot_points_w(&problem.map.robot, &problem.map.link_poses(&known.holds)));
+        let body = problem.human.body_points_w(&x_wb, &posture.q_h_rad);
+        // A quarter of the points tells promising pairs from others.
+        let body: [_; BODY_POINTS / 4] = std::array::from_fn(|point| body[4 * point + 1]);
+        let settings = &problem.objective;
+        let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, points);
+        let worth = posture.worth + settings.weight_peripersonal * distance_m;
+        proposals.push(Proposal { known, posture: *posture, roll_rad, x_wb, worth });
     }
-    assess::collisions(problem, &candidate, &placed)?;
-    Ok((candidate, placed))
 }
 
-/// A candidate without its grasps: a comfortable posture, somewhere in the domain of the search.
-fn draw_place(
-    problem: &Problem<'_>,
-    postures: &[ArmAngles],
-    random: &mut Pcg64,
-) -> Result<(Candidate, Placed), Rejection> {
-    let roll_is_free = problem.scenario.operation.kind.roll_is_free();
-    // The square leans towards the comfortable end of the list.
-    let rank = uniform(random, 0.0, 1.0).powi(2) * postures.len() as f64;
-    let mut candidate = Candidate {
-        q_h_rad: postures[rank as usize],
-        heading_rad: 0.0,
-        roll_rad: if roll_is_free { uniform(random, -PI, PI) } else { 0.0 },
-        p_wo_xy_m: [uniform(random, BOARD_X_M[0], BOARD_X_M[1]), uniform(random, BOARD_Y_M[0], BOARD_Y_M[1])],
-        holds: Vec::new(),
+/// The roll about the tool's axis that brings the vertical, seen from the tool, from one pose to another.
+fn roll_between(x_wt: &Pose, x_bt: &Pose) -> f64 {
+    let azimuth = |pose: &Pose| {
+        let up_t = pose.rotation.inverse() * Vector3::z();
+        up_t.y.atan2(up_t.x)
     };
-    let mut placed = Err(Rejection::Facing);
-    for _ in 0..TRIES {
-        candidate.heading_rad = uniform(random, -PI, PI);
-        placed = assess::place(problem, &candidate);
-        if !matches!(placed, Err(Rejection::Facing)) {
-            break;
-        }
-    }
-    placed.map(|placed| (candidate, placed))
+    let roll_rad = azimuth(x_wt) - azimuth(x_bt);
+    (roll_rad + PI).rem_euclid(2.0 * PI) - PI
 }
 
-fn draw_grasp(edge: Edge, size_m: [f64; 3], random: &mut Pcg64) -> EdgeGrasp {
+/// Where an upright body stands so that its tool is at the tip's place and turned as closely to it as may be.
+fn standing(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
+    let turn = (x_wt.rotation * x_bt.rotation.inverse()).to_rotation_matrix();
+    let heading_rad = (turn[(1, 0)] - turn[(0, 1)]).atan2(turn[(0, 0)] + turn[(1, 1)]);
+    let heading = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad);
+    let from_body = heading * x_bt.translation.vector;
+    let tip = x_wt.translation.vector;
+    Isometry3::from_parts(Vector3::new(tip.x - from_body.x, tip.y - from_body.y, floor_z_m).into(), heading)
+}
+
+/// The pair with a posture that brings the tool exactly to its place; none when the arm cannot.
+fn fit(problem: &Problem<'_>, proposal: &Proposal<'_>) -> Option<Candidate> {
+    let Proposal { known, posture, roll_rad, x_wb, .. } = proposal;
+    let x_wt = known.x_wo * problem.scenario.operation.rolled(*roll_rad).x_ot;
+    let x_bt = x_wb.inverse() * x_wt;
+    let swivel_rad = problem.human.swivel_rad(&posture.q_h_rad);
+    let apart = |q: &ArmAngles| q.iter().zip(&posture.q_h_rad).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    let q_h_rad =
+        problem.human.arm_solutions(&x_bt, swivel_rad).into_iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+    let heading = x_wb.rotation * Vector3::x();
+    let p_wo = known.x_wo.translation.vector;
+    Some(Candidate {
+        q_h_rad,
+        heading_rad: heading.y.atan2(heading.x),
+        roll_rad: *roll_rad,
+        p_wo_xy_m: [p_wo.x, p_wo.y],
+        holds: known.holds.clone(),
+    })
+}
+
+/// A grasp on this edge; its pads may be over the board's edge.
+pub fn draw_grasp(edge: Edge, size_m: [f64; 3], random: &mut Pcg64) -> EdgeGrasp {
     let (_, half_length_m) = edge.reach_and_half_length_m(size_m);
     EdgeGrasp {
         edge,
@@ -148,17 +167,6 @@ fn draw_grasp(edge: Edge, size_m: [f64; 3], random: &mut Pcg64) -> EdgeGrasp {
         angle_rad: uniform(random, ANGLE_RAD[0], ANGLE_RAD[1]),
         flipped: random.random_bool(0.5),
     }
-}
-
-/// A configuration of an arm that brings its gripper there.
-fn draw_arm(problem: &Problem<'_>, arm: usize, x_wg: &Pose, random: &mut Pcg64) -> Result<Vec<f64>, Rejection> {
-    let arm = &problem.arms[arm];
-    let found = (0..ARM_SEEDS).find_map(|_| {
-        let limits = arm.chain.lower().iter().zip(arm.chain.upper());
-        let seed: Vec<_> = limits.map(|(&low, &high)| uniform(random, low, high)).collect();
-        arm.inverse.local(x_wg, &seed).found()
-    });
-    found.ok_or(Rejection::RobotReach)
 }
 
 /// A number drawn uniformly between two others.

@@ -1,0 +1,91 @@
+//! A bank of holds that a robot can take with a board of some size: what its arms reach without touching anything.
+//!
+//! Whether a robot can hold a board in some pose depends neither on the person nor on the operation, and is the rarest of
+//! all things that a plan needs. So holds are found once and serve every operation on boards of that size. A first arm's
+//! configuration is drawn, its grasp then says where the board is, and the reach maps and inverse kinematics bring the other
+//! hands there. The bank knows nothing of people, comfort or loads.
+
+use rand::RngExt;
+use rand_pcg::Pcg64;
+
+use super::{
+    assess,
+    candidate::Hold,
+    propose,
+    robot_map::{ArmSearch, RobotMap},
+};
+use crate::model::{
+    frames::Pose,
+    grasp::{Edge, EdgeGrasp},
+};
+
+/// Grasps that are tried for every hand.
+const TRIES: usize = 12;
+/// Configurations of the first arm that are tried for a grasp.
+const FIRST_TRIES: usize = 200;
+/// Probability that a second arm holds the edge opposite to the first's, not the same one.
+const OPPOSITE: f64 = 0.7;
+/// The bank's seed: it is the same for every search.
+const SEED: u128 = 0x0b0a_7d00_ba4c_0001;
+/// First configurations that are drawn for each hold that is wanted, at most.
+const DRAWS_A_HOLD: usize = 200;
+
+/// A hold that the robot can take.
+#[derive(Clone, Debug)]
+pub struct KnownHold {
+    pub x_wo: Pose,
+    pub holds: Vec<Hold>,
+}
+
+/// So many holds of a board of this size, or fewer where they are rare.
+pub fn holds(map: &RobotMap, wanted: usize) -> Vec<KnownHold> {
+    let mut random = Pcg64::new(SEED, 0);
+    let mut found = Vec::with_capacity(wanted);
+    for _ in 0..DRAWS_A_HOLD * wanted {
+        if found.len() == wanted {
+            break;
+        }
+        found.extend(draw(map, &mut random));
+    }
+    found
+}
+
+fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<KnownHold> {
+    let (first, others) = map.arms.split_first()?;
+    let edge = random.random_range(0..Edge::ALL.len());
+    let grasp = draw_grasp(map, first, Edge::ALL[edge], |_| true, random)?;
+    let x_go = grasp.x_og(map.size_m).inverse();
+    let (q_rad, x_wo) =
+        (0..FIRST_TRIES).find_map(|_| first.reach.draw(&first.chain, &x_go, assess::in_domain, random))?;
+    let mut holds = vec![Hold { grasp, q_rad }];
+    for arm in others {
+        let edge = other_edge(edge, random);
+        let reached = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
+        let grasp = draw_grasp(map, arm, Edge::ALL[edge], reached, random)?;
+        let x_wg = x_wo * grasp.x_og(map.size_m);
+        let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
+        holds.push(Hold { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? });
+    }
+    let poses = map.link_poses(&holds);
+    let touches = map.collision.first_violation(&map.scene(&poses, x_wo)).is_some();
+    (!touches).then_some(KnownHold { x_wo, holds })
+}
+
+/// The edge of a further hand, by its number: opposite to the first's or the same (METHOD section 2).
+pub fn other_edge(edge: usize, random: &mut Pcg64) -> usize {
+    if random.random_bool(OPPOSITE) { (edge + 2) % Edge::ALL.len() } else { edge }
+}
+
+/// A grasp on an edge with the pads on the board, at a pose of the hand that is accepted.
+pub fn draw_grasp(
+    map: &RobotMap,
+    arm: &ArmSearch,
+    edge: Edge,
+    accepts: impl Fn(&Pose) -> bool,
+    random: &mut Pcg64,
+) -> Option<EdgeGrasp> {
+    let gripper = &map.robot.arms[arm.index].gripper;
+    (0..TRIES)
+        .map(|_| propose::draw_grasp(edge, map.size_m, random))
+        .find(|grasp| assess::pads_on_board(gripper, grasp, map.size_m) && accepts(&grasp.x_og(map.size_m)))
+}

@@ -1,0 +1,232 @@
+//! Objective and constraints of a hold, linearised along its free moves.
+
+use nalgebra::{DVector, Point3};
+
+use super::{
+    super::{
+        Problem,
+        assess::{self, BOARD_X_M, BOARD_Y_M, BOARD_Z_M, Configured, Feasible},
+        candidate::Candidate,
+        propose::{ANGLE_RAD, DEPTH_M},
+    },
+    moves::{Moves, SMALL},
+    program::Row,
+};
+use crate::collision::{Carrier, Near};
+
+/// Bodies farther apart than this, beyond what they must keep, are no constraint of a step, m.
+const WATCHED_M: f64 = 0.06;
+/// How much farther from each other than they must be bodies are kept, m: an exact test follows.
+const CLEARANCE_M: f64 = 1e-5;
+/// The same for every other constraint, in its own unit.
+const BACK_OFF: f64 = 1e-7;
+/// Below this share of what stability allows no step looks at it.
+const RELAXED: f64 = 0.8;
+/// The share that a step may use of what stability allows.
+const FULL: f64 = 0.999;
+/// Share of a move with which the utilisation is differentiated: well above the solvers' tolerance.
+const SMALL_STABLE: f64 = 2e-3;
+
+/// A hold's linearisation.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// The free moves.
+    pub moves: Moves,
+    /// Gradient of the objective.
+    pub gradient: DVector<f64>,
+    /// The constraints: plain ones, bodies near each other, and stability last where it is watched.
+    pub rows: Vec<Row>,
+    near: Vec<[(Carrier, usize); 2]>,
+    stability: Option<DVector<f64>>,
+    /// True when that gradient was carried over from other holds.
+    inherited: bool,
+}
+
+impl Linear {
+    /// Linearises about a hold. Stability is left out until a step or [`Linear::inherit_stability`] asks for it.
+    pub fn at(problem: &mut Problem<'_>, here: &Feasible) -> Self {
+        let moves = Moves::at(problem, &here.candidate);
+        let margins = plain_margins(problem, &here.candidate, &here.configured, &here.comfort.activations);
+        let near = problem.map.collision.near(&here.configured.scene(problem), WATCHED_M);
+        let count = moves.count();
+        let mut gradient = DVector::zeros(count);
+        let mut rows: Vec<Row> =
+            margins.iter().map(|&margin| Row { gradient: DVector::zeros(count), margin: margin - BACK_OFF }).collect();
+        let plain = rows.len();
+        rows.extend(
+            near.iter().map(|near| Row { gradient: DVector::zeros(count), margin: near.margin_m - CLEARANCE_M }),
+        );
+        for number in 0..count {
+            let mut d = DVector::zeros(count);
+            d[number] = SMALL;
+            let candidate = moves.moved(&here.candidate, &d);
+            let configured = Configured::new(problem, &candidate);
+            let comfort = assess::comfort(problem, &candidate, &configured);
+            gradient[number] = (comfort.objective - here.worth) / SMALL;
+            let moved = plain_margins(problem, &candidate, &configured, &comfort.activations);
+            for (row, (moved, here)) in rows.iter_mut().zip(moved.iter().zip(&margins)) {
+                row.gradient[number] = (moved - here) / SMALL;
+            }
+            for (row, near) in rows[plain..].iter_mut().zip(&near) {
+                row.gradient[number] = approach(near, &here.configured, &configured) / SMALL;
+            }
+        }
+        let near = near.iter().map(|near| near.carriers).collect();
+        Self { moves, gradient, rows, near, stability: None, inherited: false }
+    }
+
+    /// Compares the constraints after a move with what the rows promised. True when one is broken; then `rows` (those
+    /// that the move was made with) are moved by what the linearisation had missed.
+    pub fn correct(
+        &self,
+        problem: &Problem<'_>,
+        candidate: &Candidate,
+        configured: &Configured,
+        d: &DVector<f64>,
+        rows: &mut [Row],
+    ) -> bool {
+        let comfort = assess::comfort(problem, candidate, configured);
+        let there = plain_margins(problem, candidate, configured, &comfort.activations);
+        let near = problem.map.collision.near(&configured.scene(problem), WATCHED_M);
+        let mut broken = near.iter().any(|near| near.margin_m <= 0.0 && !self.near.contains(&near.carriers));
+        let near_margin = |carriers: &[(Carrier, usize); 2]| {
+            near.iter().find(|near| near.carriers == *carriers).map(|near| near.margin_m - CLEARANCE_M)
+        };
+        let there = there.iter().map(|&margin| Some(margin - BACK_OFF)).chain(self.near.iter().map(near_margin));
+        for ((row, linear), there) in rows.iter_mut().zip(&self.rows).zip(there) {
+            let Some(there) = there else { continue };
+            let missed = there - (linear.margin + linear.gradient.dot(d));
+            if missed < 0.0 {
+                row.margin = row.margin.min(linear.margin + missed);
+            }
+            broken |= there < -BACK_OFF.max(CLEARANCE_M);
+        }
+        broken
+    }
+
+    /// Takes stability into the rows after a move that broke it; false when nothing can be learned from it.
+    pub fn correct_stability(
+        &mut self,
+        problem: &mut Problem<'_>,
+        here: &Feasible,
+        utilisation: f64,
+        d: &DVector<f64>,
+        rows: &mut Vec<Row>,
+    ) -> bool {
+        if !utilisation.is_finite() {
+            return false;
+        }
+        let known = self.stability.is_some();
+        let gradient = self.stability_gradient(problem, here);
+        let margin = FULL - here.utilisation;
+        let missed = if known { (here.utilisation + gradient.dot(d)) - utilisation } else { 0.0 };
+        if !known {
+            self.rows.push(Row { gradient: -&gradient, margin });
+            rows.push(Row { gradient: -gradient, margin });
+        } else if let Some(row) = rows.last_mut() {
+            row.margin = row.margin.min(margin + missed.min(0.0));
+        }
+        true
+    }
+
+    fn stability_gradient(&mut self, problem: &mut Problem<'_>, here: &Feasible) -> DVector<f64> {
+        if let Some(known) = &self.stability {
+            return known.clone();
+        }
+        let count = self.moves.count();
+        let mut gradient = DVector::zeros(count);
+        for number in 0..count {
+            let mut d = DVector::zeros(count);
+            d[number] = SMALL_STABLE;
+            let candidate = self.moves.moved(&here.candidate, &d);
+            let there = assess::utilisation(problem, &candidate, &candidate.x_wo(problem));
+            // Where there is no equilibrium, one side tells nothing: stay.
+            gradient[number] = if there.is_finite() { (there - here.utilisation) / SMALL_STABLE } else { 1.0 };
+        }
+        self.stability = Some(gradient.clone());
+        gradient
+    }
+
+    /// Carries what is known of stability over a move, corrected by what the move showed (Broyden's rank-one update).
+    pub fn inherit_stability(&mut self, before: &Self, from: &Feasible, to: &Feasible, d: &DVector<f64>) {
+        let Some(known) = &before.stability else { return };
+        if to.utilisation < RELAXED {
+            return;
+        }
+        let missed = to.utilisation - from.utilisation - known.dot(d);
+        let gradient = known + d * (missed / d.norm_squared());
+        self.rows.push(Row { gradient: -&gradient, margin: FULL - to.utilisation });
+        self.stability = Some(gradient);
+        self.inherited = true;
+    }
+
+    /// Works the gradient of stability out anew; false when it is not watched or has been already.
+    pub fn refresh_stability(&mut self, problem: &mut Problem<'_>, here: &Feasible) -> bool {
+        if !self.inherited {
+            return false;
+        }
+        self.stability = None;
+        self.inherited = false;
+        let gradient = -self.stability_gradient(problem, here);
+        if let Some(row) = self.rows.last_mut() {
+            *row = Row { gradient, margin: FULL - here.utilisation };
+        }
+        true
+    }
+}
+
+/// The margins of all constraints that cost next to nothing, each in units of about a move, at least 0 when kept.
+fn plain_margins(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    configured: &Configured,
+    activations: &[f64; 7],
+) -> Vec<f64> {
+    let mut margins = Vec::with_capacity(96);
+    let mut between = |value: f64, [low, high]: [f64; 2]| margins.extend([value - low, high - value]);
+    for (q, limits) in candidate.q_h_rad.iter().zip(problem.human.arm().limits_rad) {
+        between(*q, limits);
+    }
+    let p_wo = configured.placed.x_wo.translation.vector;
+    between(p_wo.x, BOARD_X_M);
+    between(p_wo.y, BOARD_Y_M);
+    between(p_wo.z, BOARD_Z_M);
+    for (arm, hold) in problem.map.arms.iter().zip(&candidate.holds) {
+        for (q, (&low, &high)) in hold.q_rad.iter().zip(arm.chain.lower().iter().zip(arm.chain.upper())) {
+            between(*q, [low, high]);
+        }
+        between(hold.grasp.depth_m, DEPTH_M);
+        between(hold.grasp.angle_rad, ANGLE_RAD);
+    }
+    margins.push(assess::facing(&configured.placed.x_wo));
+    margins.extend(activations.iter().map(|activation| 1.0 - activation));
+    for (arm, hold) in problem.map.arms.iter().zip(&candidate.holds) {
+        let gripper = &problem.map.robot.arms[arm.index].gripper;
+        margins.extend(assess::pad_margins_m(gripper, &hold.grasp, problem.scenario.object.size_m));
+    }
+    margins
+}
+
+/// How much the bodies of a pair come apart between two nearby configurations, m.
+fn approach(near: &Near, from: &Configured, to: &Configured) -> f64 {
+    let moved = |side: usize| {
+        let p_w = near.p_w[side];
+        match near.carriers[side].0 {
+            Carrier::Link(link) => to.link_poses[link] * (from.link_poses[link].inverse() * p_w) - p_w,
+            Carrier::Board => to.placed.x_wo * (from.placed.x_wo.inverse() * p_w) - p_w,
+            Carrier::Person(part) => {
+                let (from, to) = (&from.person[part], &to.person[part]);
+                let share = share_along(&p_w, &from.p0_w, &from.p1_w);
+                (to.p0_w - from.p0_w) * (1.0 - share) + (to.p1_w - from.p1_w) * share
+            }
+        }
+    };
+    near.normal_w.dot(&(moved(1) - moved(0)))
+}
+
+/// How far along a segment a point is, from 0 to 1.
+fn share_along(p: &Point3<f64>, p0: &Point3<f64>, p1: &Point3<f64>) -> f64 {
+    let axis = p1 - p0;
+    let length2 = axis.norm_squared();
+    if length2 == 0.0 { 0.0 } else { ((p - p0).dot(&axis) / length2).clamp(0.0, 1.0) }
+}

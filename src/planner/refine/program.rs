@@ -1,0 +1,204 @@
+//! The quadratic program of one step: the dual active-set method of Goldfarb and Idnani (Mathematical Programming 27,
+//! 1983), for a few dozen variables.
+//!
+//! From the unconstrained optimum on, the constraint that is broken most is made active, others are let go where their
+//! multipliers would turn negative, until none is broken. The curvature is positive definite, so every step is unique.
+//! With so few variables the projections are worked out anew at every change of the active set. (clarabel, which solves
+//! the programs of stability, takes ten times as long here: it is made for large sparse programs.)
+
+use nalgebra::{DMatrix, DVector};
+
+/// A linearised constraint: `margin + gradient . d >= 0`.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub gradient: DVector<f64>,
+    pub margin: f64,
+}
+
+/// A constraint that is broken by less than this share of its gradient's length is kept.
+const TOLERANCE: f64 = 1e-9;
+/// Changes of the active set after which a program is given up; a few more than there are variables are usual.
+const MAX_CHANGES: usize = 200;
+
+/// The move that maximises `gradient . d - 1/2 d' curvature d` within `|d_i| <= radius` and all rows; none when the rows
+/// leave no room or the curvature is not positive definite.
+pub fn best_move(gradient: &DVector<f64>, curvature: &DMatrix<f64>, rows: &[Row], radius: f64) -> Option<DVector<f64>> {
+    let inverse = curvature.clone().cholesky()?.inverse();
+    let program = Program { rows: normalised(rows), radius, count: gradient.len() };
+    let mut d = &inverse * gradient;
+    let mut active: Vec<Active> = Vec::new();
+    let mut changes = 0;
+    while let Some(broken) = program.most_broken(&d) {
+        let normal = program.normal(broken);
+        let mut multiplier = 0.0;
+        loop {
+            changes += 1;
+            if changes > MAX_CHANGES {
+                return None;
+            }
+            let Direction { primal, dual } = direction(&inverse, &active, &normal)?;
+            let curvature_along = primal.dot(&normal);
+            let full = if curvature_along > TOLERANCE * inverse.amax() {
+                -program.margin(broken, &d) / curvature_along
+            } else {
+                f64::INFINITY
+            };
+            let (first, partial) = first_to_leave(&active, &dual);
+            let step = full.min(partial);
+            if step.is_infinite() {
+                return None;
+            }
+            if full.is_finite() {
+                d += &primal * step;
+            }
+            for (constraint, rate) in active.iter_mut().zip(dual.iter()) {
+                constraint.multiplier -= step * rate;
+            }
+            multiplier += step;
+            if full <= partial {
+                break;
+            }
+            active.remove(first);
+        }
+        active.push(Active { normal, multiplier });
+    }
+    Some(d)
+}
+
+/// A constraint that holds with equality.
+struct Active {
+    normal: DVector<f64>,
+    multiplier: f64,
+}
+
+/// All constraints, with normals of length 1.
+struct Program {
+    rows: Vec<Row>,
+    radius: f64,
+    count: usize,
+}
+
+/// Rows with gradients of length 1; those that no move changes are left out.
+fn normalised(rows: &[Row]) -> Vec<Row> {
+    let lengths = rows.iter().map(|row| (row, row.gradient.norm()));
+    let moved = lengths.filter(|(_, length)| *length > 0.0);
+    moved.map(|(row, length)| Row { gradient: &row.gradient / length, margin: row.margin / length }).collect()
+}
+
+impl Program {
+    /// The constraint that is broken most: the rows come first, then `radius - d_i` and `radius + d_i` by turns.
+    fn most_broken(&self, d: &DVector<f64>) -> Option<usize> {
+        let margins = (0..self.rows.len() + 2 * self.count).map(|number| (number, self.margin(number, d)));
+        margins.filter(|(_, margin)| *margin < -TOLERANCE).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| number)
+    }
+
+    fn margin(&self, number: usize, d: &DVector<f64>) -> f64 {
+        match self.rows.get(number) {
+            Some(row) => row.margin + row.gradient.dot(d),
+            None => {
+                let (variable, sign) = self.bound(number);
+                self.radius + sign * d[variable]
+            }
+        }
+    }
+
+    fn normal(&self, number: usize) -> DVector<f64> {
+        match self.rows.get(number) {
+            Some(row) => row.gradient.clone(),
+            None => {
+                let (variable, sign) = self.bound(number);
+                let mut normal = DVector::zeros(self.count);
+                normal[variable] = sign;
+                normal
+            }
+        }
+    }
+
+    fn bound(&self, number: usize) -> (usize, f64) {
+        let number = number - self.rows.len();
+        (number / 2, if number.is_multiple_of(2) { -1.0 } else { 1.0 })
+    }
+}
+
+/// How the move and the active multipliers change as a further constraint's multiplier grows.
+struct Direction {
+    primal: DVector<f64>,
+    /// The rates at which the multipliers fall.
+    dual: DVector<f64>,
+}
+
+/// With H the inverse curvature and N the active normals: `dual = (N' H N)^-1 N' H n`, `primal = H (n - N dual)`.
+fn direction(inverse: &DMatrix<f64>, active: &[Active], normal: &DVector<f64>) -> Option<Direction> {
+    let along = inverse * normal;
+    if active.is_empty() {
+        return Some(Direction { primal: along, dual: DVector::zeros(0) });
+    }
+    let normals = DMatrix::from_columns(&active.iter().map(|active| active.normal.clone()).collect::<Vec<_>>());
+    let moved = inverse * &normals;
+    let gram = normals.tr_mul(&moved).cholesky()?;
+    let dual = gram.solve(&normals.tr_mul(&along));
+    Some(Direction { primal: along - moved * &dual, dual })
+}
+
+/// The active constraint whose multiplier reaches zero first, and the step at which it does.
+fn first_to_leave(active: &[Active], dual: &DVector<f64>) -> (usize, f64) {
+    let steps = active.iter().zip(dual.iter()).enumerate().filter(|(_, (_, rate))| **rate > 0.0);
+    steps
+        .map(|(number, (active, rate))| (number, active.multiplier / rate))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or((0, f64::INFINITY))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn row(gradient: &[f64], margin: f64) -> Row {
+        Row { gradient: DVector::from_column_slice(gradient), margin }
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_corner_is_found() {
+        // min |d - (2, 1)|^2 / 2 within d_0 + d_1 <= 1 and d_0 <= 0.75: by hand d = (0.75, 0.25).
+        let rows = [row(&[-1.0, -1.0], 1.0), row(&[-1.0, 0.0], 0.75)];
+        let d = best_move(&DVector::from_column_slice(&[2.0, 1.0]), &DMatrix::identity(2, 2), &rows, 10.0).unwrap();
+        assert!((d - DVector::from_column_slice(&[0.75, 0.25])).norm() < 1e-12);
+    }
+
+    #[test]
+    fn rows_that_leave_no_room_have_no_move() {
+        let rows = [row(&[1.0, 0.0], -1.0), row(&[-1.0, 0.0], -1.0)];
+        assert!(best_move(&DVector::from_column_slice(&[1.0, 0.0]), &DMatrix::identity(2, 2), &rows, 10.0).is_none());
+    }
+
+    proptest! {
+        /// Feasible, and no feasible point is better: a convex program's optimum beats every convex combination with any
+        /// other feasible point.
+        #[test]
+        fn no_feasible_move_is_better(
+            numbers in prop::collection::vec(-1.0..1.0_f64, 6 * 6 + 6 + 12 * 7),
+            others in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 6), 40),
+        ) {
+            let root = DMatrix::from_column_slice(6, 6, &numbers[..36]);
+            let curvature = &root * root.transpose() + DMatrix::identity(6, 6) * 0.05;
+            let gradient = DVector::from_column_slice(&numbers[36..42]);
+            // Margins of at least 0: no move is always allowed.
+            let rows: Vec<_> = numbers[42..].chunks(7).map(|row_| row(&row_[..6], row_[6].abs())).collect();
+            let worth = |d: &DVector<f64>| gradient.dot(d) - 0.5 * d.dot(&(&curvature * d));
+            let d = best_move(&gradient, &curvature, &rows, 0.8).unwrap();
+            let kept = |d: &DVector<f64>| {
+                d.amax() <= 0.8 + 1e-8 && rows.iter().all(|row| row.margin + row.gradient.dot(d) >= -1e-8)
+            };
+            prop_assert!(kept(&d));
+            for other in others {
+                let mut other = DVector::from_column_slice(&other);
+                while !kept(&other) {
+                    other *= 0.7;
+                }
+                prop_assert!(worth(&other) <= worth(&d) + 1e-8);
+            }
+        }
+    }
+}
