@@ -13,7 +13,7 @@ use benchdog::{
     },
     robot::Robot,
     scenario::read_plan,
-    sim::simulate,
+    sim::{Conditions, simulate},
     statics::{CompliantResponse, Crossing, Hold, ResponseOutcome, StabilityWorkspace},
 };
 
@@ -63,7 +63,7 @@ fn limits(kind: OperationKind) -> Limits {
 fn simulated(robot: &Robot, case: &Case, load_factor: f64) -> Judgement {
     let mut plan = case.plan.clone();
     plan.operation.wrench_o = plan.operation.wrench_o.scaled(load_factor);
-    let trace = simulate(robot, &plan, FRICTION, &SETTINGS).unwrap();
+    let trace = simulate(robot, &plan, &Conditions::new(FRICTION, SETTINGS)).unwrap();
     judge(&trace, &case.limits)
 }
 

@@ -4,7 +4,9 @@
 mod args;
 mod curve;
 mod exit;
+
 mod finish;
+mod margin;
 mod output;
 mod pipeline;
 mod plan;
@@ -41,6 +43,8 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
         Command::Schema(args) => schema::schema(args),
+        Command::Margin(args) => margin::margin(args),
+
     });
     match outcome {
         Ok(Ok(exit)) => exit.into(),

@@ -7,7 +7,7 @@ use super::*;
 use crate::model::{
     frames::Pose,
     measures::EventKind,
-    trace::{ArmSample, ArmTrace, PadSample},
+    trace::{ArmSample, ArmTrace, PadSample, StepCheck},
     verdict::CheckKind,
     wrench::Wrench,
 };
@@ -70,6 +70,8 @@ fn still() -> Trace {
         },
         tool_wrench_w: Wrench::default(),
         x_wo: crooked(),
+        p_ot_m: Vector3::new(0.1, 0.05, 0.015),
+        self_check: StepCheck::default(),
         arms: vec![arm_sample.clone(); 2],
     };
     Trace {

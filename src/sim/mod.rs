@@ -48,22 +48,25 @@ mod bodies;
 mod body_chain;
 mod border;
 mod check;
+mod conditions;
 mod error;
 mod gripper;
 mod load;
 mod pad;
 mod scene;
+mod self_check;
 mod servo;
+mod tool;
 mod world;
 
+pub use conditions::Conditions;
 pub use error::SimError;
-use load::LoadProfile;
 pub use scene::{Scene, blank_sample};
+use tool::ToolLoad;
 
 use crate::{
     model::{
         plan::Plan,
-        scenario::SimulationSettings,
         trace::{ArmTrace, Trace},
     },
     robot::Robot,
@@ -75,9 +78,8 @@ const LOST_AFTER_S: f64 = 0.1;
 /// Simulates a hold: settle, ramp, hold, release.
 ///
 /// The board is held by the plan's arms, whose servos keep the planned angles against the torque limits of the
-/// robot, under gravity and the operation's wrench. The wrench acts at the tool point and turns with the board: nothing
-/// while settling, growing evenly in the ramp, whole in the hold, nothing after. `friction` is the Coulomb coefficient
-/// between pads and board.
+/// robot, under gravity and the tool's wrench. The wrench acts at the tool point: nothing while settling, growing in the
+/// ramp, whole in the hold, nothing after, as [`crate::model::load::Load`] has it.
 ///
 /// When no pad has touched the board for a tenth of a second the board is lost, and the trace ends there.
 ///
@@ -86,17 +88,18 @@ const LOST_AFTER_S: f64 = 0.1;
 ///
 /// # Errors
 /// [`SimError`] when the plan does not fit the robot or itself, or the settings make no sense.
-pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &SimulationSettings) -> Result<Trace, SimError> {
-    let profile = LoadProfile::new(settings)?;
-    let mut scene = Scene::new(robot, plan, friction, settings.timestep_s)?;
-    let mut trace = empty_trace(robot, plan, profile.steps() + 1);
+pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Trace, SimError> {
+    let tool = ToolLoad::new(plan, conditions)?;
+    let timestep_s = conditions.settings.timestep_s;
+    let mut scene = Scene::new(robot, plan, conditions)?;
+    let mut trace = empty_trace(robot, plan, conditions, tool.steps() + 1);
     let mut untouched_s = 0.0;
-    for step in 0..=profile.steps() {
-        let (phase, load_factor) = profile.at(step);
+    for step in 0..=tool.steps() {
+        let (phase, state) = tool.at(step);
         if step > 0 {
-            scene.step(load_factor);
+            scene.step_under(state);
         }
-        let time_s = step as f64 * settings.timestep_s;
+        let time_s = step as f64 * timestep_s;
         if let Some(reason) = scene.breakdown() {
             trace.samples.truncate(step);
             trace.broke_down = Some(format!("at {time_s:.3} s {reason}"));
@@ -106,7 +109,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &Simulation
         (sample.time_s, sample.phase) = (time_s, phase);
         scene.observe(sample);
         // Before the first step there are no forces yet.
-        untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + settings.timestep_s };
+        untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + timestep_s };
         if untouched_s > LOST_AFTER_S {
             trace.samples.truncate(step + 1);
             break;
@@ -116,7 +119,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &Simulation
 }
 
 /// A trace with room for every sample, so that the steps allocate nothing of ours.
-fn empty_trace(robot: &Robot, plan: &Plan, samples: usize) -> Trace {
+fn empty_trace(robot: &Robot, plan: &Plan, conditions: &Conditions, samples: usize) -> Trace {
     let arms = plan.arms.iter().filter_map(|hold| {
         let arm = &robot.arms[robot.arm_index(&hold.name)?];
         Some(ArmTrace {
@@ -124,7 +127,7 @@ fn empty_trace(robot: &Robot, plan: &Plan, samples: usize) -> Trace {
             joints: hold.joints.clone(),
             effort_nm: arm.effort_nm.clone(),
             pads: [0, 1].map(|finger| arm.gripper.pad_name(finger, &hold.x_og).to_owned()).to_vec(),
-            grip_force_n: hold.grip_force_n,
+            grip_force_n: hold.grip_force_n * conditions.uncertainty.grip_force_scale,
         })
     });
     Trace {

@@ -101,6 +101,13 @@ impl SimPad {
         Self { finger, x_fp, colliders }
     }
 
+    /// How deep the pad's contacts with the board sank in before the last step, m: nothing where it does not touch.
+    pub fn penetration_m(&self, world: &PhysicsWorld, board: TouchedBoard) -> f64 {
+        let pairs = self.colliders.iter().filter_map(|core| world.narrow_phase.contact_pair(*core, board.collider));
+        let points = pairs.flat_map(|pair| pair.solver_manifolds()).flat_map(|manifold| &manifold.points);
+        points.map(|point| -point.dist).fold(0.0, f64::max)
+    }
+
     /// What the pad does to the board in the last substep: the engine keeps the friction of no other.
     pub fn observe(&self, world: &PhysicsWorld, board: TouchedBoard) -> PadSample {
         let x_wp = border::from_engine_pose(world.bodies[self.finger].position()) * self.x_fp;

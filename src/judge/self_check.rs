@@ -1,0 +1,61 @@
+//! Whether the simulation itself can be believed: a state that leaves the laws of mechanics allows no verdict.
+
+use std::fmt::Write as _;
+
+use super::checks::check;
+use crate::model::{
+    trace::{Phase, Sample, Trace},
+    verdict::{Check, CheckKind},
+};
+
+/// How deep pads may sink into the board, mm.
+const PENETRATION_LIMIT_MM: f64 = 2.0;
+
+/// By how much the energy that contacts and integration brought in may ever rise, J.
+const ENERGY_LIMIT_J: f64 = 0.5;
+
+/// How far the travels of coupled fingers may differ, mm.
+const COUPLING_LIMIT_MM: f64 = 1.0;
+
+/// What the board's momentum may leave unexplained, N.
+const FORCE_LIMIT_N: f64 = 1.0;
+
+/// Penetration, created energy and the fingers' coupling over the whole trace, and the board's momentum at the end of
+/// every steady phase, settling and hold, that the board was still held in.
+pub(super) fn self_checks(trace: &Trace) -> Vec<Check> {
+    let largest = |of: fn(&Sample) -> f64| trace.samples.iter().map(of).fold(0.0, worse);
+    let steady_ends = [Phase::Settle, Phase::Hold].map(|phase| trace.samples.iter().rfind(|s| s.phase == phase));
+    let held = steady_ends.into_iter().flatten().filter(|sample| sample.is_touched());
+    let residual_n = held.map(|sample| sample.self_check.force_residual_n).fold(0.0, worse);
+    vec![
+        check(CheckKind::Penetration, 1e3 * largest(|s| s.self_check.penetration_m), PENETRATION_LIMIT_MM),
+        check(CheckKind::EnergyCreated, created_j(&trace.samples), ENERGY_LIMIT_J),
+        check(CheckKind::ForceResidual, residual_n, FORCE_LIMIT_N),
+        check(CheckKind::CouplingDrift, 1e3 * largest(|s| s.self_check.coupling_m), COUPLING_LIMIT_MM),
+    ]
+}
+
+/// The larger of two; what is not a number is larger than all that are, and stays a number for files.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::MAX } else { a.max(b) }
+}
+
+/// The largest rise of the contacts' energy between any two times, J: its height above its lowest value so far.
+fn created_j(samples: &[Sample]) -> f64 {
+    let mut lowest = 0.0_f64;
+    samples.iter().fold(0.0, |created, sample| {
+        lowest = lowest.min(sample.self_check.contact_energy_j);
+        worse(created, sample.self_check.contact_energy_j - lowest)
+    })
+}
+
+/// Why a trace with these checks cannot be believed, if so.
+pub(super) fn distrust(self_checks: &[Check]) -> Option<String> {
+    let mut reason = String::new();
+    for check in self_checks.iter().filter(|check| !check.passed) {
+        let separator = if reason.is_empty() { "the simulation cannot be believed: " } else { ", " };
+        // Writing to a string never fails.
+        _ = write!(reason, "{separator}{} {:.3} {}, at most {}", check.name, check.value, check.unit, check.limit);
+    }
+    (!reason.is_empty()).then_some(reason)
+}
