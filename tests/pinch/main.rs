@@ -4,6 +4,7 @@
 
 mod baxter;
 mod bench;
+mod patch;
 
 use std::{ops::AddAssign, thread};
 
