@@ -4,7 +4,7 @@
 mod args;
 mod curve;
 mod exit;
-
+mod export;
 mod finish;
 mod margin;
 mod output;
@@ -44,7 +44,7 @@ pub fn main() -> ExitCode {
         Command::Curve(args) => curve::curve(args),
         Command::Schema(args) => schema::schema(args),
         Command::Margin(args) => margin::margin(args),
-
+        Command::Export(args) => export::export(args),
     });
     match outcome {
         Ok(Ok(exit)) => exit.into(),

@@ -39,10 +39,7 @@ pub struct FailingLoad {
 ///
 /// # Errors
 /// The first error of `judged`.
-pub fn failing_load<E>(
-    guess: f64,
-    mut judged: impl FnMut(f64) -> Result<Judgement, E>,
-) -> Result<FailingLoad, E> {
+pub fn failing_load<E>(guess: f64, mut judged: impl FnMut(f64) -> Result<Judgement, E>) -> Result<FailingLoad, E> {
     let start = if guess.is_finite() { guess.clamp(MIN_FACTOR, MAX_SIMULATED_FACTOR) } else { 1.0 };
     // A prediction is good to a few per cent, so the first bracket around it is narrow.
     let mut stride = 1.1;
@@ -91,7 +88,8 @@ mod tests {
 
     /// A hold that stands every load below `limit`, and how often it was asked.
     fn search(guess: f64, limit: f64) -> FailingLoad {
-        let empty = Trace { arms: Vec::new(), p_ot_m: nalgebra::Vector3::zeros(), samples: Vec::new(), broke_down: None };
+        let empty =
+            Trace { arms: Vec::new(), p_ot_m: nalgebra::Vector3::zeros(), samples: Vec::new(), broke_down: None };
         let limits = Limits {
             slip_mm: 1.0,
             slip_deg: 2.0,

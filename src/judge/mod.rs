@@ -90,12 +90,13 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     if let Some(reason) = undecidable(trace, judged) {
         return no_verdict(trace, measures, Vec::new(), reason);
     }
-    let self_checks = self_check::self_checks(trace);
+    let findings = checks::findings(trace, judged, &measures, limits);
+    let first = checks::first_failure(&findings);
+    let decided = first.map_or(trace.samples.len(), |(_, crossing)| reference + crossing.sample + 1);
+    let self_checks = self_check::self_checks(&trace.samples[..decided]);
     if let Some(reason) = self_check::distrust(&self_checks) {
         return no_verdict(trace, measures, self_checks, reason);
     }
-    let findings = checks::findings(trace, judged, &measures, limits);
-    let first = checks::first_failure(&findings);
     Judgement {
         verdict: first.map_or(VerdictKind::Holds, |(finding, _)| finding.check.name.verdict()),
         first_failure: first.map(|(finding, crossing)| Failure {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::checks::check;
 use crate::model::{
-    trace::{Phase, Sample, Trace},
+    trace::{Phase, Sample},
     verdict::{Check, CheckKind},
 };
 
@@ -20,16 +20,18 @@ const COUPLING_LIMIT_MM: f64 = 1.0;
 /// What the board's momentum may leave unexplained, N.
 const FORCE_LIMIT_N: f64 = 1.0;
 
-/// Penetration, created energy and the fingers' coupling over the whole trace, and the board's momentum at the end of
-/// every steady phase, settling and hold, that the board was still held in.
-pub(super) fn self_checks(trace: &Trace) -> Vec<Check> {
-    let largest = |of: fn(&Sample) -> f64| trace.samples.iter().map(of).fold(0.0, worse);
-    let steady_ends = [Phase::Settle, Phase::Hold].map(|phase| trace.samples.iter().rfind(|s| s.phase == phase));
-    let held = steady_ends.into_iter().flatten().filter(|sample| sample.is_touched());
+/// Penetration, created energy and the fingers' coupling up to the moment that decided the verdict, and the board's
+/// momentum at the end of every steady phase, settling and hold, until then. What a board does that was torn out of its
+/// hands decides nothing.
+pub(super) fn self_checks(decisive: &[Sample]) -> Vec<Check> {
+    let largest = |of: fn(&Sample) -> f64| decisive.iter().map(of).fold(0.0, worse);
+    let ends = |phase| decisive.windows(2).filter(move |pair| pair[0].phase == phase && pair[1].phase != phase);
+    let steady_ends = ends(Phase::Settle).chain(ends(Phase::Hold)).map(|pair| &pair[0]);
+    let held = steady_ends.filter(|sample| sample.is_touched());
     let residual_n = held.map(|sample| sample.self_check.force_residual_n).fold(0.0, worse);
     vec![
         check(CheckKind::Penetration, 1e3 * largest(|s| s.self_check.penetration_m), PENETRATION_LIMIT_MM),
-        check(CheckKind::EnergyCreated, created_j(&trace.samples), ENERGY_LIMIT_J),
+        check(CheckKind::EnergyCreated, created_j(decisive), ENERGY_LIMIT_J),
         check(CheckKind::ForceResidual, residual_n, FORCE_LIMIT_N),
         check(CheckKind::CouplingDrift, 1e3 * largest(|s| s.self_check.coupling_m), COUPLING_LIMIT_MM),
     ]

@@ -114,7 +114,8 @@ fn check_keys(check: &Checker<'_>, section: &LoadSection) -> Result<(), InputErr
 /// load at all; with the file and the line.
 pub fn measured(path: &Path) -> Result<Vec<[f64; 7]>, InputError> {
     let text = read_text(path)?;
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let mut rows: Vec<[f64; 7]> = Vec::new();
     let mut records = reader.records();
     let first = records.next().transpose().map_err(|error| unreadable(path, &error))?;

@@ -170,7 +170,7 @@ fn driven_joints(
 }
 
 /// The joint torques with which the robot's model holds the arm's own weight, N m.
-fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
+pub(super) fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
     if q_rad.is_empty() {
         return Vec::new();
     }

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Damping of each finger, N s/m (assumed): a finger comes to rest within milliseconds, far faster than an arm.
-const FINGER_DAMPING_N_S_M: f64 = 50.0;
+pub(super) const FINGER_DAMPING_N_S_M: f64 = 50.0;
 
 /// Stiffness, N/m, of the spring that stands for the constant force on a finger: so soft that over a whole travel of
 /// 20 mm the force changes by less than a thousandth of 30 N. It acts in the joint, so it pulls the palm exactly as
@@ -73,7 +73,16 @@ impl SimGripper {
             let place = chain.links[body];
             let x_gf = x_gj * Translation3::from(joint.axis_j.into_inner() * finger.closed_m);
             let pad = SimPad::new(world, &finger.pad, k, place.body, &x_gf, contact);
-            (SimFinger { place, finger, limits_m: [joint.lower, joint.upper], rest_m: 0.0, before: JointState::default() }, pad)
+            (
+                SimFinger {
+                    place,
+                    finger,
+                    limits_m: [joint.lower, joint.upper],
+                    rest_m: 0.0,
+                    before: JointState::default(),
+                },
+                pad,
+            )
         });
         let [(first, first_pad), (second, second_pad)] = parts;
         Self {

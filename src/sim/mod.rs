@@ -52,6 +52,7 @@ mod conditions;
 mod error;
 mod gripper;
 mod load;
+mod mjcf;
 mod pad;
 mod scene;
 mod self_check;
@@ -61,6 +62,7 @@ mod world;
 
 pub use conditions::Conditions;
 pub use error::SimError;
+pub use mjcf::mjcf;
 pub use scene::{Scene, blank_sample};
 use tool::ToolLoad;
 

@@ -73,7 +73,8 @@ impl<'a> ToolLoad<'a> {
     pub fn at(&self, step: usize) -> (Phase, ToolState) {
         let (phase, ramp) = self.phases.at(step);
         let loaded_s = step.saturating_sub(self.phases.settle_steps()) as f64 * self.timestep_s;
-        let held_s = step.saturating_sub(self.phases.settle_steps() + self.phases.ramp_steps()) as f64 * self.timestep_s;
+        let held_s =
+            step.saturating_sub(self.phases.settle_steps() + self.phases.ramp_steps()) as f64 * self.timestep_s;
         let still =
             ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m: self.operation.x_ot.translation.vector };
         let state = match phase {

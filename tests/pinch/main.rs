@@ -4,6 +4,8 @@
 
 mod baxter;
 mod bench;
+mod holds;
+mod loads;
 mod patch;
 
 use std::{ops::AddAssign, thread};
@@ -284,7 +286,8 @@ fn after_the_release_the_board_returns() {
 fn a_board_that_is_torn_out_is_gone_and_the_arms_stay() {
     let robot = baxter::robot();
     let operation = Operation::cut([0.0, 0.1], -Vector3::y(), 200.0, THICKNESS_M);
-    let trace = simulate(&robot, &baxter::plan(&robot, operation, BOARD_KG, 30.0), &Conditions::new(0.6, QUICK)).unwrap();
+    let trace =
+        simulate(&robot, &baxter::plan(&robot, operation, BOARD_KG, 30.0), &Conditions::new(0.6, QUICK)).unwrap();
     // A lost board is an outcome, not a breakdown.
     assert_eq!(trace.broke_down, None);
     let (before, after) = (last(&trace, Phase::Settle), trace.samples.last().unwrap());
@@ -391,7 +394,10 @@ fn plans_that_do_not_fit_are_refused() {
     near.arms[0].x_og.translation.vector.x += 0.9e-3;
     let short = SimulationSettings { settle_s: 0.0, ramp_s: 0.0, hold_s: 0.0, release_s: 0.0, timestep_s: 0.002 };
     assert!(simulate(&robot, &near, &Conditions::new(0.6, short)).is_ok());
-    assert!(matches!(simulate(&robot, &near, &Conditions::new(-0.1, short)), Err(SimError::Settings { key: "friction", .. })));
+    assert!(matches!(
+        simulate(&robot, &near, &Conditions::new(-0.1, short)),
+        Err(SimError::Settings { key: "friction", .. })
+    ));
 }
 
 #[test]
