@@ -176,6 +176,7 @@ fn a_value_at_its_limit_passes() {
     // Powers of two: exact in binary, so that the value is the limit and not one rounding off.
     for sample in &mut trace.samples {
         sample.x_wo = Pose::identity();
+        sample.p_ot_m = Vector3::zeros();
         sample.arms.iter_mut().for_each(|arm| arm.x_oc = Pose::identity());
     }
     trace.p_ot_m = Vector3::zeros();
