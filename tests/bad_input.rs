@@ -366,3 +366,59 @@ fn a_saturation_at_no_distance() {
         "bad.toml:13: comfort.saturation_m: found 0, expected a positive number (m)",
     );
 }
+
+/// A scenario with this `[load]` or `[uncertainty]` is refused with exactly this message; line 16 is the section's.
+#[track_caller]
+fn assert_section_refused(section: &str, message: &str) {
+    let (output, _) = benchdog_on("bad.toml", &format!("{SCENARIO}\n{section}"), &["run", "bad.toml"]);
+    assert_refused(&output, message);
+}
+
+#[test]
+fn a_load_that_does_not_fit_its_operation() {
+    assert_section_refused(
+        "[load]\nkind = \"path\"\nspeed_m_s = 0.1\n",
+        "bad.toml:17: load.kind: found \"path\" for an operation that is to drill, expected an operation of the kind \"cut\"",
+    );
+    assert_section_refused(
+        "[load]\nspindle_torque_nm = 0.1\n",
+        "bad.toml:17: load.spindle_torque_nm: found a value, expected none: it belongs to kind = \"drill\"",
+    );
+    assert_section_refused(
+        "[load]\nkind = \"drill\"\nvibration_n = 1.0\nvibration_hz = 200.0\n",
+        "bad.toml:19: load.vibration_hz: found 200, expected a number from 0 to 125 (Hz, four time steps a period)",
+    );
+    assert_section_refused(
+        "[uncertainty]\ncontact_stiffness_scale = 4.0\n",
+        "bad.toml:17: uncertainty.contact_stiffness_scale: found 4, expected a number from 0.001 to 1.75 (a factor)",
+    );
+}
+
+#[test]
+fn a_file_of_forces_names_its_own_line() {
+    let refused = |csv: &str, message: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("forces.csv"), csv).unwrap();
+        let scenario = format!("{SCENARIO}\n[load]\nkind = \"measured\"\nfile = \"forces.csv\"\n");
+        fs::write(folder.path().join("bad.toml"), scenario).unwrap();
+        assert_refused(&benchdog_in(folder.path(), &["run", "bad.toml"]), message);
+    };
+    let header = "time_s,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm\n";
+    refused(
+        "t,fx\n",
+        "forces.csv:1: found \"t, fx\", expected the columns time_s, fx_n, fy_n, fz_n, mx_nm, my_nm, mz_nm",
+    );
+    refused(
+        &format!("{header}0,0,0,0,0,0,0\n0.1,0,0,-15,0,0\n"),
+        "forces.csv:3: found 6 cells, expected 7, one a column",
+    );
+    refused(&format!("{header}0,0,0,hard,0,0,0\n"), "forces.csv:2: fz_n: found \"hard\", expected a finite number");
+    refused(
+        &format!("{header}0.2,0,0,-1,0,0,0\n0.1,0,0,-2,0,0,0\n"),
+        "forces.csv:3: time_s: found 0.1, expected a time after 0.2, that of the row before",
+    );
+    refused(
+        &format!("{header}0,0,0,0,0,0,0\n"),
+        "forces.csv: found 1 rows without a load, expected forces that load the board",
+    );
+}

@@ -1,10 +1,10 @@
 //! What the statics predict against what the simulation shows, on ten planned holds: five cuts and five drills on the
 //! foam board of METHOD section 2. `cargo test --release --test prediction -- --nocapture` prints both tables.
 
-use std::{fs, path::Path, thread};
+use std::{convert::Infallible, fs, path::Path, thread};
 
 use benchdog::{
-    judge::{Judgement, judge},
+    judge::{Judgement, failing_load, judge},
     model::{
         operation::OperationKind,
         plan::Plan,
@@ -13,7 +13,7 @@ use benchdog::{
     },
     robot::Robot,
     scenario::read_plan,
-    sim::simulate,
+    sim::{Conditions, simulate},
     statics::{CompliantResponse, Crossing, Hold, ResponseOutcome, StabilityWorkspace},
 };
 
@@ -22,9 +22,6 @@ const FRICTION: f64 = 0.6;
 
 /// The share of the operation's load at which hardly any pad is near its limits.
 const SMALL_LOAD: f64 = 0.1;
-
-/// Halvings of the bracket of the failing load.
-const BISECTIONS: usize = 8;
 
 /// The settings of a run, without the release: it is not judged.
 const SETTINGS: SimulationSettings =
@@ -61,9 +58,7 @@ fn limits(kind: OperationKind) -> Limits {
 
 /// What the simulation makes of a multiple of the operation.
 fn simulated(robot: &Robot, case: &Case, load_factor: f64) -> Judgement {
-    let mut plan = case.plan.clone();
-    plan.operation.wrench_o = plan.operation.wrench_o.scaled(load_factor);
-    let trace = simulate(robot, &plan, FRICTION, &SETTINGS).unwrap();
+    let trace = simulate(robot, &case.plan, &Conditions::new(FRICTION, SETTINGS).scaled(load_factor)).unwrap();
     judge(&trace, &case.limits)
 }
 
@@ -107,21 +102,11 @@ fn small_deflections_are_predicted() {
     assert!(too_far.is_empty(), "{too_far:?}");
 }
 
-/// The load factor at which the simulation fails, and by what; the bracket is 15 % of the prediction on either side,
-/// and ends 0.1 % wide.
-fn failing_load(robot: &Robot, case: &Case, predicted: f64) -> (f64, VerdictKind) {
-    let (mut low, mut high) = (0.85 * predicted, 1.15 * predicted);
-    let mut by = simulated(robot, case, high).verdict;
-    assert_eq!(simulated(robot, case, low).verdict, VerdictKind::Holds, "{}", case.plan.name);
-    assert_ne!(by, VerdictKind::Holds, "{}", case.plan.name);
-    for _ in 0..BISECTIONS {
-        let middle = (low + high) / 2.0;
-        match simulated(robot, case, middle).verdict {
-            VerdictKind::Holds => low = middle,
-            verdict => (high, by) = (middle, verdict),
-        }
-    }
-    (low, by)
+/// The load factor up to which the simulated hold stands, and what ends it, as `benchdog margin` finds them.
+fn simulated_failing_load(robot: &Robot, case: &Case, predicted: f64) -> (f64, VerdictKind) {
+    let judged = |load_factor| Ok::<_, Infallible>(simulated(robot, case, load_factor));
+    let Ok(found) = failing_load(predicted, judged);
+    (found.holds_at, found.judgement.verdict)
 }
 
 #[test]
@@ -129,7 +114,7 @@ fn failing_loads_are_predicted() {
     let (robot, cases) = cases();
     let found = of_each(&cases, |case| {
         let found = StabilityWorkspace::new().compliant_load_factor(&case.hold, &case.limits).unwrap();
-        let simulated = failing_load(&robot, case, found.load_factor);
+        let simulated = simulated_failing_load(&robot, case, found.load_factor);
         (found, simulated)
     });
     let mut too_far = Vec::new();

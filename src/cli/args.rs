@@ -37,6 +37,10 @@ pub enum Command {
     Curve(CurveArgs),
     /// Print the JSON Schema of a file format
     Schema(SchemaArgs),
+    /// Raise a plan's load until the hold fails, beside what the statics predict
+    Margin(MarginArgs),
+    /// Write a plan's scene for another simulator
+    Export(ExportArgs),
 }
 
 /// What `run` and `simulate` share.
@@ -116,6 +120,32 @@ pub struct SchemaArgs {
     /// The file format
     #[arg(value_enum)]
     pub of: SchemaOf,
+}
+
+/// `benchdog margin`.
+#[derive(Clone, Debug, Args)]
+pub struct MarginArgs {
+    /// Plan file
+    pub plan: PathBuf,
+    /// Scenario whose friction, load, phases, limits and expectation apply, in place of those in the plan
+    #[arg(long, value_name = "FILE")]
+    pub scenario: Option<PathBuf>,
+    /// Form of what is printed to standard output
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+}
+
+/// `benchdog export`.
+#[derive(Clone, Debug, Args)]
+pub struct ExportArgs {
+    /// Plan file
+    pub plan: PathBuf,
+    /// Scenario whose friction, load and phases apply, in place of those in the plan
+    #[arg(long, value_name = "FILE")]
+    pub scenario: Option<PathBuf>,
+    /// Where to write the scene as MJCF, the format of MuJoCo
+    #[arg(long, value_name = "FILE")]
+    pub mjcf: PathBuf,
 }
 
 /// Form of what is printed.

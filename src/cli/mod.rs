@@ -4,8 +4,10 @@
 mod args;
 mod curve;
 mod exit;
+mod export;
 mod finish;
 mod maps;
+mod margin;
 mod output;
 mod pipeline;
 mod plan;
@@ -42,6 +44,8 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
         Command::Schema(args) => schema::schema(args),
+        Command::Margin(args) => margin::margin(args),
+        Command::Export(args) => export::export(args),
     });
     match outcome {
         Ok(Ok(exit)) => exit.into(),

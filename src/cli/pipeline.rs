@@ -15,7 +15,7 @@ use crate::{
     planner::{self, PlanOutcome},
     robot::Robot,
     scenario::LoadedScenario,
-    sim,
+    sim::{self, Conditions},
 };
 
 /// One scenario, run to its verdict.
@@ -58,8 +58,7 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
         let verdict = without_simulation(scenario, VerdictKind::Touches, touch);
         return Ok(Run { verdict, plan: Some(plan), simulated: None });
     }
-    let trace =
-        sim::simulate(robot, &plan, scenario.grip.friction, &scenario.simulation).map_err(CliError::Simulation)?;
+    let trace = sim::simulate(robot, &plan, &Conditions::of(scenario)).map_err(CliError::Simulation)?;
     let judgement = judge(&trace, &scenario.limits);
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
@@ -93,6 +92,7 @@ fn without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String)
         expected: scenario.expect.verdict,
         met: verdict == scenario.expect.verdict,
         checks: Vec::new(),
+        self_checks: Vec::new(),
         first_failure: None,
         peak_torque_ratio: BTreeMap::new(),
         reason: Some(reason),

@@ -67,7 +67,8 @@ impl Channel {
 }
 
 /// Every check, in the order of tables. `judged` are the samples from the reference to the end of the load, and
-/// `measures` begins at the same sample. Creep is left out when the hold is too short to have a slope.
+/// `measures` begins at the same sample. Creep is left out when the hold is too short to have a
+/// slope, or its load does not stay the same: a hand that follows the load does not creep.
 pub(super) fn findings(trace: &Trace, judged: &[Sample], measures: &Measures, limits: &Limits) -> Vec<Finding> {
     let count = judged.len();
     let hand = |kind, limit, series: fn(&HandMeasures) -> &[f64]| {
@@ -156,7 +157,8 @@ fn creep(trace: &Trace, judged: &[Sample], limit: f64) -> Option<Finding> {
     let hold_start = judged.iter().position(|sample| sample.phase == Phase::Hold)?;
     let middle_s = (judged[hold_start].time_s + judged[judged.len() - 1].time_s) / 2.0;
     let half = &judged[judged.partition_point(|sample| sample.time_s < middle_s)..];
-    if half.len() < 2 {
+    let steady = |sample: &Sample| sample.load_factor == half[0].load_factor && sample.p_ot_m == half[0].p_ot_m;
+    if half.len() < 2 || !half.iter().all(steady) {
         return None;
     }
     let rates_mm_s = (0..trace.arms.len()).map(|arm| 1e3 * slope(half, |s| s.arms[arm].x_oc.translation.vector).norm());
@@ -185,7 +187,7 @@ fn is_crossed(value: f64, limit: f64) -> bool {
     value.partial_cmp(&limit).is_none_or(Ordering::is_gt)
 }
 
-fn check(kind: CheckKind, value: f64, limit: f64) -> Check {
+pub(super) fn check(kind: CheckKind, value: f64, limit: f64) -> Check {
     Check {
         name: kind,
         value,

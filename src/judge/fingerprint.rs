@@ -9,13 +9,17 @@ use crate::model::{
 };
 
 /// SHA-256 of the trace's numbers, in lowercase hexadecimal: the little-endian bits of every f64 in the order of the
-/// fields, the phase as its place in time (0 to 3). Names are no part of it. Equal fingerprints mean simulations that
+/// fields, the phase as its place in time (0 to 3), the tool point where it has left its start. Names are no part of it,
+/// nor are the self-checks, which only repeat what the rest implies. Equal fingerprints mean simulations that
 /// agree bit by bit.
 pub fn fingerprint(trace: &Trace) -> String {
     let mut hasher = Sha256::new();
     visit_constants(trace, &mut |value| hasher.update(value.to_le_bytes()));
     for sample in &trace.samples {
         visit_sample(sample, &mut |value| hasher.update(value.to_le_bytes()));
+        if sample.p_ot_m != trace.p_ot_m {
+            visit_all(sample.p_ot_m.as_slice(), &mut |value| hasher.update(value.to_le_bytes()));
+        }
     }
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -31,6 +35,7 @@ pub(super) fn constants_are_finite(trace: &Trace) -> bool {
 pub(super) fn sample_is_finite(sample: &Sample) -> bool {
     let mut finite = true;
     visit_sample(sample, &mut |value| finite &= value.is_finite());
+    visit_all(sample.p_ot_m.as_slice(), &mut |value| finite &= value.is_finite());
     finite
 }
 

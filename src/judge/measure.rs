@@ -9,20 +9,20 @@ use crate::model::{
 /// Slip, deflection and torque ratios (METHOD section 8) of every sample from the reference on:
 ///
 /// - slip of a hand: `|p_OC(t) - p_OC(ref)|` and the angle of `R_OC(ref)' R_OC(t)`, C between the hand's pads;
-/// - deflection: `|X_WO(t) p_OT - X_WO(ref) p_OT|`, T the tool point;
+/// - deflection: `|X_WO(t) p_OT - X_WO(ref) p_OT|`, T the tool point at that time;
 /// - torque ratio of a joint: `|tau_demanded| / tau_max`.
 ///
 /// `reference` is an index into the trace's samples.
 pub(super) fn measures(trace: &Trace, reference: usize) -> Measures {
     let samples = &trace.samples[reference..];
-    let tool_point_w = |sample: &Sample| sample.x_wo * nalgebra::Point3::from(trace.p_ot_m);
+    let deflection_mm = |sample: &Sample| {
+        let p_ot = nalgebra::Point3::from(sample.p_ot_m);
+        1e3 * (sample.x_wo * p_ot - samples[0].x_wo * p_ot).norm()
+    };
     Measures {
         time_s: samples.iter().map(|sample| sample.time_s).collect(),
         hands: (0..trace.arms.len()).map(|arm| hand_measures(trace, samples, arm)).collect(),
-        deflection_mm: samples
-            .iter()
-            .map(|sample| 1e3 * (tool_point_w(sample) - tool_point_w(&samples[0])).norm())
-            .collect(),
+        deflection_mm: samples.iter().map(deflection_mm).collect(),
         joints: (0..trace.arms.len()).flat_map(|arm| joint_measures(trace, samples, arm)).collect(),
     }
 }

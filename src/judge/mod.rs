@@ -5,13 +5,16 @@
 
 mod checks;
 mod events;
+mod failing_load;
 mod fingerprint;
 mod measure;
+mod self_check;
 #[cfg(test)]
 mod tests;
 
 use std::collections::BTreeMap;
 
+pub use failing_load::{FailingLoad, MAX_SIMULATED_FACTOR, failing_load};
 pub use fingerprint::fingerprint;
 
 use crate::model::{
@@ -29,6 +32,8 @@ pub struct Judgement {
     pub verdict: VerdictKind,
     /// Every limit, with what was found; empty without a verdict.
     pub checks: Vec<Check>,
+    /// What the simulation made of the laws of mechanics; empty when the trace is malformed.
+    pub self_checks: Vec<Check>,
     /// The first limit that was crossed.
     pub first_failure: Option<Failure>,
     /// Largest torque over limit of each joint, from the reference to the end of the load.
@@ -59,6 +64,7 @@ impl Judgement {
             expected,
             met: self.verdict == expected && self.verdict != VerdictKind::NoVerdict,
             checks: self.checks.clone(),
+            self_checks: self.self_checks.clone(),
             first_failure: self.first_failure.clone(),
             peak_torque_ratio: self.peak_torque_ratio.clone(),
             reason: self.reason.clone(),
@@ -76,16 +82,21 @@ impl Judgement {
 /// loss of the board goes before the contacts (pad, slip, rotation), and these before torque, deflection and creep.
 pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     if let Some(reason) = malformed(trace) {
-        return no_verdict(trace, Measures::default(), reason);
+        return no_verdict(trace, Measures::default(), Vec::new(), reason);
     }
     let reference = reference(trace);
     let measures = measure::measures(trace, reference);
     let judged = judged(trace, reference);
     if let Some(reason) = undecidable(trace, judged) {
-        return no_verdict(trace, measures, reason);
+        return no_verdict(trace, measures, Vec::new(), reason);
     }
     let findings = checks::findings(trace, judged, &measures, limits);
     let first = checks::first_failure(&findings);
+    let decided = first.map_or(trace.samples.len(), |(_, crossing)| reference + crossing.sample + 1);
+    let self_checks = self_check::self_checks(&trace.samples[..decided]);
+    if let Some(reason) = self_check::distrust(&self_checks) {
+        return no_verdict(trace, measures, self_checks, reason);
+    }
     Judgement {
         verdict: first.map_or(VerdictKind::Holds, |(finding, _)| finding.check.name.verdict()),
         first_failure: first.map(|(finding, crossing)| Failure {
@@ -97,6 +108,7 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
         reason: None,
         fingerprint: fingerprint(trace),
         events: events::events(trace, judged, &findings),
+        self_checks,
         checks: findings.into_iter().map(|finding| finding.check).collect(),
         measures,
     }
@@ -165,10 +177,11 @@ fn undecidable(trace: &Trace, judged: &[Sample]) -> Option<String> {
     None
 }
 
-fn no_verdict(trace: &Trace, measures: Measures, reason: String) -> Judgement {
+fn no_verdict(trace: &Trace, measures: Measures, self_checks: Vec<Check>, reason: String) -> Judgement {
     Judgement {
         verdict: VerdictKind::NoVerdict,
         checks: Vec::new(),
+        self_checks,
         first_failure: None,
         peak_torque_ratio: BTreeMap::new(),
         fingerprint: fingerprint(trace),

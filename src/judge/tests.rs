@@ -7,7 +7,7 @@ use super::*;
 use crate::model::{
     frames::Pose,
     measures::EventKind,
-    trace::{ArmSample, ArmTrace, PadSample},
+    trace::{ArmSample, ArmTrace, PadSample, StepCheck},
     verdict::CheckKind,
     wrench::Wrench,
 };
@@ -70,6 +70,8 @@ fn still() -> Trace {
         },
         tool_wrench_w: Wrench::default(),
         x_wo: crooked(),
+        p_ot_m: Vector3::new(0.1, 0.05, 0.015),
+        self_check: StepCheck::default(),
         arms: vec![arm_sample.clone(); 2],
     };
     Trace {
@@ -174,6 +176,7 @@ fn a_value_at_its_limit_passes() {
     // Powers of two: exact in binary, so that the value is the limit and not one rounding off.
     for sample in &mut trace.samples {
         sample.x_wo = Pose::identity();
+        sample.p_ot_m = Vector3::zeros();
         sample.arms.iter_mut().for_each(|arm| arm.x_oc = Pose::identity());
     }
     trace.p_ot_m = Vector3::zeros();
@@ -362,4 +365,59 @@ proptest! {
         // The angle is twice an arc tangent of numbers near 1: good to 1e-15 rad, or 1e-13 degrees.
         prop_assert!((value(&here, CheckKind::SlipRotation) - slip_deg).abs() < 1e-12);
     }
+}
+
+fn self_value(judgement: &Judgement, kind: CheckKind) -> f64 {
+    judgement.self_checks.iter().find(|check| check.name == kind).unwrap().value
+}
+
+#[test]
+fn a_simulation_that_leaves_the_laws_of_mechanics_has_no_verdict() {
+    type Spoil = fn(&mut StepCheck);
+    let spoils: [(CheckKind, Spoil); 4] = [
+        (CheckKind::Penetration, |check| check.penetration_m = 3e-3),
+        (CheckKind::EnergyCreated, |check| check.contact_energy_j = 0.6),
+        (CheckKind::CouplingDrift, |check| check.coupling_m = 2e-3),
+        (CheckKind::Penetration, |check| check.penetration_m = f64::NAN),
+    ];
+    for (kind, spoil) in spoils {
+        let judgement = judge(&changed(SETTLE + 1, |sample| spoil(&mut sample.self_check)), &limits());
+        assert_eq!(judgement.verdict, VerdictKind::NoVerdict, "{kind}");
+        assert!(judgement.reason.unwrap().starts_with(&format!("the simulation cannot be believed: {kind}")));
+        assert!(judgement.checks.is_empty() && judgement.self_checks.len() == 4);
+    }
+    let residual = judge(&changed(0, |sample| sample.self_check.force_residual_n = 1.5), &limits());
+    assert_eq!(residual.verdict, VerdictKind::NoVerdict);
+}
+
+#[test]
+fn friction_takes_energy_and_only_a_rise_counts() {
+    let mut trace = still();
+    for (index, sample) in trace.samples.iter_mut().enumerate() {
+        // Down by ten joules, then up by a tenth of one.
+        sample.self_check.contact_energy_j = if index < SETTLE { -10.0 } else { -9.9 };
+    }
+    let judgement = judge(&trace, &limits());
+    assert_eq!(judgement.verdict, VerdictKind::Holds);
+    assert!((self_value(&judgement, CheckKind::EnergyCreated) - 0.1).abs() < 1e-12);
+}
+
+#[test]
+fn what_happens_after_the_failure_does_not_take_the_verdict_back() {
+    let mut trace = changed(SETTLE + 1, |sample| slide(sample, 0, 2.0));
+    for sample in &mut trace.samples[SETTLE + 3..] {
+        sample.self_check.penetration_m = 0.01;
+    }
+    assert_eq!(judge(&trace, &limits()).verdict, VerdictKind::Slips);
+}
+
+#[test]
+fn a_hand_that_follows_a_changing_load_does_not_creep() {
+    let mut trace = still();
+    for (index, sample) in trace.samples.iter_mut().enumerate().skip(SETTLE + RAMP) {
+        slide(sample, 0, 0.01 * (index - SETTLE - RAMP) as f64);
+        sample.load_factor = 1.0 - 1e-3 * index as f64;
+    }
+    let judgement = judge(&trace, &limits());
+    assert!(judgement.checks.iter().all(|check| check.name != CheckKind::Creep));
 }

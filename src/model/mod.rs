@@ -6,6 +6,7 @@
 
 pub mod frames;
 pub mod grasp;
+pub mod load;
 pub mod measures;
 pub mod operation;
 pub mod plan;

@@ -6,7 +6,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{operation::Operation, verdict::VerdictKind};
+use super::{
+    load::{Load, Uncertainty},
+    operation::Operation,
+    verdict::VerdictKind,
+};
 
 /// A scenario with every default filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -34,6 +38,12 @@ pub struct Scenario {
     pub grip: Grip,
     /// The simulation.
     pub simulation: SimulationSettings,
+    /// How the tool loads the board over time; a ramp that turns with the board unless given.
+    #[serde(default, skip_serializing_if = "Load::is_plain")]
+    pub load: Load,
+    /// How far the simulation departs from what the plan counts on; not at all unless given.
+    #[serde(default, skip_serializing_if = "Uncertainty::is_none")]
+    pub uncertainty: Uncertainty,
     /// What the hold must keep to.
     pub limits: Limits,
     /// What the author expects.

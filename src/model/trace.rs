@@ -38,7 +38,7 @@ impl Phase {
 pub struct Trace {
     /// The arms, in the order of every sample's `arms`.
     pub arms: Vec<ArmTrace>,
-    /// Position of the tool point on the board, in O, m.
+    /// Position of the tool point on the board at the start, in O, m.
     pub p_ot_m: nalgebra::Vector3<f64>,
     /// One sample a step, the first at time 0. The sample's forces are those of the step that led to it.
     pub samples: Vec<Sample>,
@@ -74,8 +74,28 @@ pub struct Sample {
     pub tool_wrench_w: Wrench,
     /// The board's pose.
     pub x_wo: Pose,
+    /// Position of the tool point on the board, in O, m: a knife travels.
+    pub p_ot_m: nalgebra::Vector3<f64>,
     /// One entry an arm.
     pub arms: Vec<ArmSample>,
+    /// What the engine makes of the laws of mechanics.
+    pub self_check: StepCheck,
+}
+
+/// How far the engine is from the laws that it should keep, in one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepCheck {
+    /// Deepest penetration of a pad that touches the board, m.
+    pub penetration_m: f64,
+    /// What the board's change of momentum leaves unexplained: `|m dv/dt - (pads + tool + weight)|`, N. The pads' forces
+    /// are those of the last substep, so it is nothing at rest and no figure of merit while forces change quickly.
+    pub force_residual_n: f64,
+    /// How far the travels of two coupled fingers differ, m.
+    pub coupling_m: f64,
+    /// Energy that contacts and integration brought into the scene since the start, J: the kinetic energy less the work
+    /// of weight, servos, fingers and tool. Friction and damping make it fall; nothing real makes it rise, but for
+    /// the little that contacts store.
+    pub contact_energy_j: f64,
 }
 
 impl Sample {

@@ -74,6 +74,10 @@ pub struct Verdict {
     pub met: bool,
     /// Every limit, with what was found; empty when there was nothing to simulate.
     pub checks: Vec<Check>,
+    /// What the simulation made of the laws of mechanics; a verdict stands on all of them. Empty when nothing was
+    /// simulated.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub self_checks: Vec<Check>,
     /// The first limit that was crossed.
     pub first_failure: Option<Failure>,
     /// Largest torque over limit of each joint.
@@ -116,6 +120,14 @@ pub enum CheckKind {
     ContactLost,
     /// Slip beyond which the board counts as dropped, mm.
     Drop,
+    /// The simulation itself: deepest penetration of pad and board, mm.
+    Penetration,
+    /// The simulation itself: largest rise of the energy that contacts and integration brought in, J.
+    EnergyCreated,
+    /// The simulation itself: the board's momentum against the forces on it at the end of the hold, N.
+    ForceResidual,
+    /// The simulation itself: largest difference between the travels of coupled fingers, mm.
+    CouplingDrift,
 }
 
 impl CheckKind {
@@ -130,17 +142,23 @@ impl CheckKind {
             Self::PadOpen => "pad_open",
             Self::ContactLost => "contact_lost",
             Self::Drop => "drop",
+            Self::Penetration => "penetration",
+            Self::EnergyCreated => "energy_created",
+            Self::ForceResidual => "force_residual",
+            Self::CouplingDrift => "coupling_drift",
         }
     }
 
     /// The unit of its value, limit and margin; `1` for a ratio.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Slip | Self::Deflection | Self::Drop => "mm",
+            Self::Slip | Self::Deflection | Self::Drop | Self::Penetration | Self::CouplingDrift => "mm",
             Self::SlipRotation => "deg",
             Self::Creep => "mm/s",
             Self::TorqueRatio => "1",
             Self::PadOpen | Self::ContactLost => "ms",
+            Self::EnergyCreated => "J",
+            Self::ForceResidual => "N",
         }
     }
 
@@ -154,6 +172,9 @@ impl CheckKind {
             Self::TorqueRatio => VerdictKind::Saturates,
             Self::PadOpen => VerdictKind::Opens,
             Self::ContactLost | Self::Drop => VerdictKind::Drops,
+            Self::Penetration | Self::EnergyCreated | Self::ForceResidual | Self::CouplingDrift => {
+                VerdictKind::NoVerdict
+            }
         }
     }
 }

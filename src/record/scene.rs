@@ -43,7 +43,7 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     for (arm, &robot_arm) in arms.iter().enumerate() {
         log_pads(messages, input, &frames, arm, robot_arm)?;
     }
-    log_load(messages, input, &frames)
+    log_load(messages, &frames)
 }
 
 /// For each arm of the trace its index in the robot.
@@ -224,8 +224,8 @@ fn log_pads(
 }
 
 /// The tool's force at the tool point of the moving board.
-fn log_load(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
-    let tool_point_w = |sample: &Sample| (sample.x_wo * Point3::from(input.trace.p_ot_m)).coords;
+fn log_load(messages: &mut Messages, frames: &Frames) -> Result<(), RecordError> {
+    let tool_point_w = |sample: &Sample| (sample.x_wo * Point3::from(sample.p_ot_m)).coords;
     let forces = frames.samples.iter().map(|sample| (tool_point_w(sample), sample.tool_wrench_w.force_n));
     let style = Arrows3D::update_fields().with_colors([palette::load()]).with_radii([0.009]);
     log_forces(messages, &entity(&["scene", "forces", "tool"]), &frames.times_s, forces, &style)

@@ -12,7 +12,7 @@ use crate::{
         measures::{EventKind, HandMeasures, JointMeasures},
         operation::Operation,
         plan::{ArmHold, PlacedObject},
-        trace::{ArmSample, ArmTrace, PadSample, Phase, Sample},
+        trace::{ArmSample, ArmTrace, PadSample, Phase, Sample, StepCheck},
         verdict::{Check, CheckKind, Failure, VerdictKind},
         wrench::Wrench,
     },
@@ -162,6 +162,8 @@ fn sample(robot: &Robot, plan: &Plan, step: usize) -> Sample {
         load_factor,
         tool_wrench_w: Wrench::from_force(x_wo.rotation * plan.operation.wrench_o.force_n * load_factor),
         x_wo,
+        p_ot_m: plan.operation.x_ot.translation.vector,
+        self_check: StepCheck::default(),
         arms: plan.arms.iter().enumerate().map(|(index, hold)| hand(index, hold)).collect(),
     }
 }
@@ -214,6 +216,7 @@ fn verdict(trace: &Trace, measures: &Measures) -> Verdict {
             check(CheckKind::Deflection, 6.0, 15.0),
             check(CheckKind::TorqueRatio, 8.0 / 15.0, 1.0),
         ],
+        self_checks: Vec::new(),
         first_failure: Some(Failure { check: CheckKind::SlipRotation, time_s: 0.274, load_factor: 0.88 }),
         peak_torque_ratio: measures.joints.iter().map(|j| (j.name.clone(), peak(&j.torque_ratio))).collect(),
         reason: None,

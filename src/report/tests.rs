@@ -22,6 +22,7 @@ fn holding() -> Verdict {
             check(CheckKind::Deflection, 1.5, 5.0),
             check(CheckKind::TorqueRatio, 0.75, 1.0),
         ],
+        self_checks: Vec::new(),
         first_failure: None,
         peak_torque_ratio: BTreeMap::from([("left_s0".into(), 0.25), ("left_w1".into(), 0.75)]),
         reason: None,

@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::{
     error::{InputError, InputErrorKind},
     locate,
+    profile::LoadSection,
 };
 use crate::model::{
+    load::Uncertainty,
     operation::OperationKind,
     scenario::{ComfortSettings, Expectation, Grip, Hand, PlannerSettings, Sex, SimulationSettings, Tool},
 };
@@ -48,6 +50,12 @@ pub struct ScenarioFile {
     /// The simulation.
     #[serde(default)]
     pub simulation: SimulationSettings,
+    /// How the tool loads the board over time.
+    #[serde(default)]
+    pub load: LoadSection,
+    /// How far the simulation departs from what the plan counts on.
+    #[serde(default)]
+    pub uncertainty: Uncertainty,
     /// What the hold must keep to.
     #[serde(default)]
     pub limits: LimitsSection,

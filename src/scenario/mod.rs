@@ -9,6 +9,7 @@ pub mod file;
 mod locate;
 pub mod material;
 pub mod plan_file;
+pub mod profile;
 mod resolve;
 
 use std::path::{Path, PathBuf};
@@ -116,6 +117,22 @@ pub fn load_for(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
     let scenario = load(path)?.scenario;
     resolve::plan_answers(path, &error::read_text(path)?, &scenario, plan)?;
     Ok(scenario)
+}
+
+/// A plan file, its robot, and what it is to be judged under: the scenario given, the one in the plan, or the defaults
+/// for its operation; named after the plan.
+///
+/// # Errors
+/// As [`read_plan`] and [`load_for`].
+pub fn plan_and_scenario(plan: &Path, scenario: Option<&Path>) -> Result<(Plan, Robot, Scenario), InputError> {
+    let (plan, robot) = read_plan(plan, None)?;
+    let mut scenario = match (scenario, &plan.scenario) {
+        (Some(path), _) => load_for(path, &plan)?,
+        (None, Some(scenario)) => scenario.clone(),
+        (None, None) => for_plan(&plan, &robot),
+    };
+    scenario.name.clone_from(&plan.name);
+    Ok((plan, robot, scenario))
 }
 
 /// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.

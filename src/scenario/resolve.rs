@@ -8,13 +8,16 @@ use super::{
     InputError,
     check::Checker,
     file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
-    load_robot, material, robot_figures,
+    load_robot, material,
+    profile::{self, check_load, check_uncertainty},
+    robot_figures,
 };
 use crate::{
     human::{body::MAX_LEAN_DEG, tools::default_tool},
     model::{
         FORMAT,
         frames::{Pose, rotation_from_xyzw},
+        load::{Load, Uncertainty},
         operation::{Operation, OperationKind},
         plan::Plan,
         scenario::{
@@ -50,6 +53,8 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         planner: file.planner.clone(),
         grip: file.grip,
         simulation: file.simulation,
+        load: profile::load(&check, &file.load, folder)?,
+        uncertainty: file.uncertainty,
         expect: file.expect,
     };
     check_figures(&check, &scenario, &robot)?;
@@ -63,6 +68,8 @@ pub fn check_figures(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) ->
     grip(check, &scenario.grip, robot)?;
     comfort(check, &scenario.comfort)?;
     simulation(check, &scenario.simulation)?;
+    check_load(check, scenario)?;
+    check_uncertainty(check, &scenario.uncertainty)?;
     check_limits(check, &scenario.limits)
 }
 
@@ -266,6 +273,8 @@ pub fn defaults_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         planner: PlannerSettings::default(),
         grip: Grip::default(),
         simulation: SimulationSettings::default(),
+        load: Load::default(),
+        uncertainty: Uncertainty::default(),
         limits: typical_limits(&LimitsSection::default(), kind),
         expect: Expectation::default(),
     }

@@ -1,13 +1,14 @@
 //! One arm of the scene: a servo in every joint, a gripper at the end.
 
-use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld};
+use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, RigidBodyHandle};
 
 use super::{
-    SimError,
+    Conditions, SimError,
     bodies::ArmBodies,
     body_chain::{BodyChain, ChainLink},
     gripper::SimGripper,
     pad::PadContact,
+    self_check::{JointState, drive_work_j, mechanical_energy_j},
     servo::Servo,
 };
 use crate::{
@@ -23,6 +24,8 @@ struct DrivenJoint {
     servo: Servo,
     place: ChainLink,
     rest_rad: f64,
+    /// The joint before this step.
+    before: JointState,
 }
 
 /// An arm of the scene.
@@ -30,6 +33,8 @@ pub(super) struct SimArm {
     /// Any of the arm's joints: the way to its multibody.
     multibody: MultibodyJointHandle,
     joints: Vec<DrivenJoint>,
+    /// Every body that moves.
+    bodies: Vec<RigidBodyHandle>,
     /// What it holds with.
     pub gripper: SimGripper,
 }
@@ -45,16 +50,17 @@ impl SimArm {
         arm_index: usize,
         hold: &ArmHold,
         object: &PlacedObject,
-        friction: f64,
+        conditions: &Conditions,
     ) -> Result<Self, SimError> {
         let arm = &robot.arms[arm_index];
+        let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
         let merged = ArmBodies::new(robot, arm);
         let chain = BodyChain::insert(world, robot, &merged.bodies)?;
         let place = |joint: usize| chain.links[merged.of_joint[joint]];
         let arm_joints: Vec<_> = (0..arm.joints.len()).map(place).collect();
         let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
-        let contact = PadContact::new(world, friction, hold.grip_force_n, object.mass_kg);
-        let gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
+        let contact = PadContact::new(world, conditions.real_friction(), grip_force_n, object.mass_kg);
+        let mut gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
         let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
 
         let mut positions = vec![0.0; chain.links.len()];
@@ -62,13 +68,14 @@ impl SimArm {
         placed.for_each(|(link, position)| positions[link.dof] = *position);
         let multibody = fingers[0].joint;
         let engine = take_posture(world, multibody, &positions)?;
-        gripper.close(engine, hold.grip_force_n, finger_m, object.mass_kg);
+        gripper.close(engine, grip_force_n, finger_m, object.mass_kg);
         let weight_nm = weight_torque_nm(robot, arm_index, &hold.q_rad, object.size_m[2]);
-        let joints = driven_joints(arm, hold, &arm_joints, &weight_nm);
+        let joints = driven_joints(arm, hold, &arm_joints, &weight_nm, conditions.uncertainty.joint_stiffness_scale);
         for DrivenJoint { place, servo, .. } in &joints {
             engine.damping_mut()[place.dof] = servo.damping_nm_s_rad;
         }
-        Ok(Self { multibody, joints, gripper })
+        let bodies = chain.links.iter().map(|link| link.body).collect();
+        Ok(Self { multibody, joints, bodies, gripper })
     }
 
     /// Lets every servo react to the state before a step.
@@ -76,9 +83,29 @@ impl SimArm {
         let Some((multibody, _)) = world.multibody_joints.get_mut(self.multibody) else { return };
         for joint in &mut self.joints {
             let (q_rad, velocity_rad_s) = (joint.place.position(multibody), joint.place.velocity(multibody));
+            joint.before = JointState { position: q_rad, velocity: velocity_rad_s };
             joint.rest_rad = joint.servo.rest_rad(q_rad, velocity_rad_s, timestep_s);
             joint.place.set_spring(multibody, joint.servo.stiffness_nm_rad, joint.rest_rad);
         }
+        self.gripper.remember(multibody);
+    }
+
+    /// Kinetic energy and weight's potential of the arm, J.
+    pub fn energy_j(&self, world: &PhysicsWorld) -> f64 {
+        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return f64::NAN };
+        let bodies: f64 = self.bodies.iter().map(|&body| mechanical_energy_j(&world.bodies[body])).sum();
+        bodies + self.gripper.drive_energy_j(multibody)
+    }
+
+    /// Work that the servos and the fingers' drives did in the last step, J.
+    pub fn work_j(&self, world: &PhysicsWorld) -> f64 {
+        let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return f64::NAN };
+        let servos = self.joints.iter().map(|joint| {
+            let DrivenJoint { servo, place, rest_rad, before } = joint;
+            let after = JointState { position: place.position(multibody), velocity: place.velocity(multibody) };
+            drive_work_j(servo.stiffness_nm_rad, servo.damping_nm_s_rad, *rest_rad, [*before, after])
+        });
+        servos.sum::<f64>() + self.gripper.work_j(multibody)
     }
 
     /// True when no joint is faster than `limit_rad_s`; a speed that is not a number is.
@@ -90,7 +117,7 @@ impl SimArm {
     /// Writes the joints' part of the state after a step.
     pub fn observe_joints(&self, world: &PhysicsWorld, sample: &mut ArmSample) {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return };
-        for (k, DrivenJoint { servo, place, rest_rad }) in self.joints.iter().enumerate() {
+        for (k, DrivenJoint { servo, place, rest_rad, .. }) in self.joints.iter().enumerate() {
             let (q_rad, velocity_rad_s) = (place.position(multibody), place.velocity(multibody));
             sample.q_rad[k] = q_rad;
             sample.torque_demanded_nm[k] = servo.demanded_nm(q_rad, velocity_rad_s);
@@ -118,7 +145,13 @@ fn take_posture<'a>(
 }
 
 /// The servos that hold an arm at its planned angles.
-fn driven_joints(arm: &Arm, hold: &ArmHold, places: &[ChainLink], weight_nm: &[f64]) -> Vec<DrivenJoint> {
+fn driven_joints(
+    arm: &Arm,
+    hold: &ArmHold,
+    places: &[ChainLink],
+    weight_nm: &[f64],
+    stiffness_scale: f64,
+) -> Vec<DrivenJoint> {
     places
         .iter()
         .enumerate()
@@ -126,17 +159,18 @@ fn driven_joints(arm: &Arm, hold: &ArmHold, places: &[ChainLink], weight_nm: &[f
             let servo = Servo {
                 wanted_rad: hold.q_rad[k],
                 feed_forward_nm: weight_nm[k],
-                stiffness_nm_rad: arm.stiffness_nm_rad[k],
+                stiffness_nm_rad: arm.stiffness_nm_rad[k] * stiffness_scale,
                 damping_nm_s_rad: arm.damping_nm_s_rad[k],
                 effort_nm: arm.effort_nm[k],
             };
-            DrivenJoint { servo, place, rest_rad: servo.rest_rad(servo.wanted_rad, 0.0, 0.0) }
+            let before = JointState { position: servo.wanted_rad, velocity: 0.0 };
+            DrivenJoint { servo, place, rest_rad: servo.rest_rad(servo.wanted_rad, 0.0, 0.0), before }
         })
         .collect()
 }
 
 /// The joint torques with which the robot's model holds the arm's own weight, N m.
-fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
+pub(super) fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
     if q_rad.is_empty() {
         return Vec::new();
     }

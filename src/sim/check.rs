@@ -27,15 +27,8 @@ pub(super) struct Holding<'a> {
 }
 
 /// The arms that hold, each with its part of the plan.
-pub(super) fn holds<'a>(robot: &'a Robot, plan: &'a Plan, friction: f64) -> Result<Vec<Holding<'a>>, SimError> {
+pub(super) fn holds<'a>(robot: &'a Robot, plan: &'a Plan) -> Result<Vec<Holding<'a>>, SimError> {
     board(plan)?;
-    if !(friction.is_finite() && friction >= 0.0) {
-        return Err(SimError::Settings {
-            key: "friction",
-            found: friction,
-            expected: "a coefficient of at least zero",
-        });
-    }
     let mut holds: Vec<Holding> = Vec::with_capacity(plan.arms.len());
     for hold in &plan.arms {
         if holds.iter().any(|other| other.hold.name == hold.name) {

@@ -24,6 +24,14 @@ pub enum SimError {
     /// An operation that is not finite.
     #[error("found a wrench that is not finite, expected N and N m")]
     Wrench,
+    /// A load over time that makes no sense.
+    #[error("found {found}, expected {expected}")]
+    Profile {
+        /// What the load is.
+        found: String,
+        /// What it should be.
+        expected: &'static str,
+    },
     /// Nothing holds the board.
     #[error("found no arm that holds the board, expected at least one")]
     NoArm,

@@ -8,6 +8,7 @@ use super::{
     body_chain::{BodyChain, ChainLink},
     border,
     pad::{PadContact, SimPad},
+    self_check::{JointState, drive_work_j},
 };
 use crate::{
     model::frames::Pose,
@@ -15,7 +16,7 @@ use crate::{
 };
 
 /// Damping of each finger, N s/m (assumed): a finger comes to rest within milliseconds, far faster than an arm.
-const FINGER_DAMPING_N_S_M: f64 = 50.0;
+pub(super) const FINGER_DAMPING_N_S_M: f64 = 50.0;
 
 /// Stiffness, N/m, of the spring that stands for the constant force on a finger: so soft that over a whole travel of
 /// 20 mm the force changes by less than a thousandth of 30 N. It acts in the joint, so it pulls the palm exactly as
@@ -28,6 +29,16 @@ struct SimFinger {
     finger: Finger,
     /// Limits of the joint position, m.
     limits_m: [f64; 2],
+    /// Where the spring rests that pushes it, m.
+    rest_m: f64,
+    /// The joint before this step.
+    before: JointState,
+}
+
+impl SimFinger {
+    fn state(&self, multibody: &Multibody) -> JointState {
+        JointState { position: self.place.position(multibody), velocity: self.place.velocity(multibody) }
+    }
 }
 
 /// A gripper of the scene.
@@ -62,7 +73,16 @@ impl SimGripper {
             let place = chain.links[body];
             let x_gf = x_gj * Translation3::from(joint.axis_j.into_inner() * finger.closed_m);
             let pad = SimPad::new(world, &finger.pad, k, place.body, &x_gf, contact);
-            (SimFinger { place, finger, limits_m: [joint.lower, joint.upper] }, pad)
+            (
+                SimFinger {
+                    place,
+                    finger,
+                    limits_m: [joint.lower, joint.upper],
+                    rest_m: 0.0,
+                    before: JointState::default(),
+                },
+                pad,
+            )
         });
         let [(first, first_pad), (second, second_pad)] = parts;
         Self {
@@ -86,7 +106,7 @@ impl SimGripper {
     /// The solver, which goes from contact to contact, converges when the masses on both sides of them are alike:
     /// measured, a bare finger of 30 g shakes a board of more than 0.3 kg out of its grip, and a drive of 0.3 to 20
     /// times the board's mass holds every board still. So the caller gives the board's mass.
-    pub fn close(&self, multibody: &mut Multibody, force_n: f64, positions_m: [f64; 2], drive_inertia_kg: f64) {
+    pub fn close(&mut self, multibody: &mut Multibody, force_n: f64, positions_m: [f64; 2], drive_inertia_kg: f64) {
         let [first, second] = &self.fingers;
         let coeff = first.finger.opening_sign * second.finger.opening_sign;
         multibody.add_dof_coupling(MultibodyDofCoupling {
@@ -101,12 +121,37 @@ impl SimGripper {
         });
         // The coupling hands the first finger's limits on to the second.
         first.place.set_limits(multibody, first.limits_m);
-        for (SimFinger { place, finger, .. }, position_m) in self.fingers.iter().zip(positions_m) {
-            let rest_m = position_m - finger.opening_sign * force_n / PUSH_STIFFNESS_N_M;
-            place.set_spring(multibody, PUSH_STIFFNESS_N_M, rest_m);
+        for (SimFinger { place, finger, rest_m, .. }, position_m) in self.fingers.iter_mut().zip(positions_m) {
+            *rest_m = position_m - finger.opening_sign * force_n / PUSH_STIFFNESS_N_M;
+            place.set_spring(multibody, PUSH_STIFFNESS_N_M, *rest_m);
             multibody.damping_mut()[place.dof] = FINGER_DAMPING_N_S_M;
             multibody.armature_mut()[place.dof] = drive_inertia_kg;
         }
+    }
+
+    /// Keeps the fingers' state before a step.
+    pub fn remember(&mut self, multibody: &Multibody) {
+        for finger in &mut self.fingers {
+            finger.before = finger.state(multibody);
+        }
+    }
+
+    /// Work of the fingers' drives in the last step, J.
+    pub fn work_j(&self, multibody: &Multibody) -> f64 {
+        let work_j = |finger: &SimFinger| {
+            let states = [finger.before, finger.state(multibody)];
+            drive_work_j(PUSH_STIFFNESS_N_M, FINGER_DAMPING_N_S_M, finger.rest_m, states)
+        };
+        self.fingers.iter().map(work_j).sum()
+    }
+
+    /// Kinetic energy of the drives' own inertia, J.
+    pub fn drive_energy_j(&self, multibody: &Multibody) -> f64 {
+        let energy_j = |finger: &SimFinger| {
+            let velocity_m_s = finger.place.velocity(multibody);
+            multibody.armature()[finger.place.dof] * velocity_m_s * velocity_m_s / 2.0
+        };
+        self.fingers.iter().map(energy_j).sum()
     }
 
     /// Travel of each finger from its closed limit, m.

@@ -1,4 +1,4 @@
-//! When the tool's wrench acts, and how much of it.
+//! The phases of a simulation: when the tool's wrench acts.
 
 use super::SimError;
 use crate::model::{scenario::SimulationSettings, trace::Phase};
@@ -49,6 +49,16 @@ impl LoadProfile {
     /// How many steps there are.
     pub fn steps(&self) -> usize {
         self.settle.saturating_add(self.ramp).saturating_add(self.hold).saturating_add(self.release)
+    }
+
+    /// How many of them come before the load.
+    pub fn settle_steps(&self) -> usize {
+        self.settle
+    }
+
+    /// In how many of them the load grows.
+    pub fn ramp_steps(&self) -> usize {
+        self.ramp
     }
 
     /// The phase and the multiple of the operation's wrench that acts in a step; steps count from 1, and 0 stands for

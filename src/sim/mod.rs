@@ -8,7 +8,7 @@
 //!   one body. A servo in every joint: an implicit spring and damper about the planned angle, the torque that holds
 //!   the arm's own weight fed forward, and the effort limit by moving the point where the spring rests.
 //! - Grippers: two fingers coupled to open alike, each pushed with a constant force that the palm feels too.
-//! - The board, a free body under gravity and the tool's wrench. Pads and board touch; nothing else does. Joint limits
+//! - The board, a free body under gravity and the tool's wrench over time (`tool.rs`). Pads and board touch; nothing else does. Joint limits
 //!   of the arms are not modelled: a plan's angles are inside them, and servos give way by milliradians.
 //!
 //! # The pads
@@ -40,30 +40,54 @@
 //! | two arms and a board of 1 kg, of 0.21 kg, a tenth of the load | `K_O^-1 w` | 1.3 %, 6 % (0.006 mm) |
 //! | drift without a load in the last 1.7 s of 5 s | 0 | 3e-14 m |
 //!
+//! | slip at 0 to 90 degrees in the pad's plane | Coulomb cone | 0.2 % (the bisection's width) |
+//! | force and torsion together, along the pad's axes | limit surface of a uniform patch | -1.6 to -2.5 % |
+//! | the same along its diagonals | | -6 to -9 % |
+//! | shares of two hands in a load of 3 N, their squeeze included | welded hands | 0.01 N |
+//! | slip left after a release from 80 % of the slip load | 0 | 1e-4 mm |
+//! | drift in 60 s without a load | 0 | 4e-5 mm |
+//! | deflection of ten holds, time steps of 2 ms | of 0.5 ms | -0.2 to +0.9 % |
+//! | largest rotation of their hands | | 0.02 degrees |
+//! | largest translation of their hands | | 0.06 mm |
+//!
+//! Force and torsion together: four corners give less than a face when the centre that a pad turns about lies at one of
+//! them. Eight corners at the mean radius, in two boxes, were tried: still 7 % short, and torsion, small deflections and
+//! the slanted board come out of their bounds. So the pad stays on the safe side by as much.
+//!
+//! A step takes some 230 us, 8.7 times real time on one core: half of it is the engine's mass matrices, Coriolis terms
+//! and their factorisation, anew in each of four substeps, 35 % the contacts' sweeps. Three substeps would take a quarter less, and small
+//! deflections would leave the bounds above; four sweeps in place of six would let hands slide on
+//! a release. `benches/sim.rs` measures it.
+//!
 //! The engine makes a contact as stiff as the lighter of its bodies is heavy, so light boards sit softer: 20 %
-//! (0.02 mm) at 50 g. A step of the scene of two arms takes some 230 us.
+//! (0.02 mm) at 50 g.
 
 mod arm;
 mod bodies;
 mod body_chain;
 mod border;
 mod check;
+mod conditions;
 mod error;
 mod gripper;
 mod load;
+mod mjcf;
 mod pad;
 mod scene;
+mod self_check;
 mod servo;
+mod tool;
 mod world;
 
+pub use conditions::Conditions;
 pub use error::SimError;
-use load::LoadProfile;
+pub use mjcf::mjcf;
 pub use scene::{Scene, blank_sample};
+use tool::ToolLoad;
 
 use crate::{
     model::{
         plan::Plan,
-        scenario::SimulationSettings,
         trace::{ArmTrace, Trace},
     },
     robot::Robot,
@@ -75,9 +99,8 @@ const LOST_AFTER_S: f64 = 0.1;
 /// Simulates a hold: settle, ramp, hold, release.
 ///
 /// The board is held by the plan's arms, whose servos keep the planned angles against the torque limits of the
-/// robot, under gravity and the operation's wrench. The wrench acts at the tool point and turns with the board: nothing
-/// while settling, growing evenly in the ramp, whole in the hold, nothing after. `friction` is the Coulomb coefficient
-/// between pads and board.
+/// robot, under gravity and the tool's wrench. The wrench acts at the tool point: nothing while settling, growing in the
+/// ramp, whole in the hold, nothing after, as [`crate::model::load::Load`] has it.
 ///
 /// When no pad has touched the board for a tenth of a second the board is lost, and the trace ends there.
 ///
@@ -86,17 +109,18 @@ const LOST_AFTER_S: f64 = 0.1;
 ///
 /// # Errors
 /// [`SimError`] when the plan does not fit the robot or itself, or the settings make no sense.
-pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &SimulationSettings) -> Result<Trace, SimError> {
-    let profile = LoadProfile::new(settings)?;
-    let mut scene = Scene::new(robot, plan, friction, settings.timestep_s)?;
-    let mut trace = empty_trace(robot, plan, profile.steps() + 1);
+pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Trace, SimError> {
+    let tool = ToolLoad::new(plan, conditions)?;
+    let timestep_s = conditions.settings.timestep_s;
+    let mut scene = Scene::new(robot, plan, conditions)?;
+    let mut trace = empty_trace(robot, plan, conditions, tool.steps() + 1);
     let mut untouched_s = 0.0;
-    for step in 0..=profile.steps() {
-        let (phase, load_factor) = profile.at(step);
+    for step in 0..=tool.steps() {
+        let (phase, state) = tool.at(step);
         if step > 0 {
-            scene.step(load_factor);
+            scene.step_under(state);
         }
-        let time_s = step as f64 * settings.timestep_s;
+        let time_s = step as f64 * timestep_s;
         if let Some(reason) = scene.breakdown() {
             trace.samples.truncate(step);
             trace.broke_down = Some(format!("at {time_s:.3} s {reason}"));
@@ -106,7 +130,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &Simulation
         (sample.time_s, sample.phase) = (time_s, phase);
         scene.observe(sample);
         // Before the first step there are no forces yet.
-        untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + settings.timestep_s };
+        untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + timestep_s };
         if untouched_s > LOST_AFTER_S {
             trace.samples.truncate(step + 1);
             break;
@@ -116,7 +140,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, friction: f64, settings: &Simulation
 }
 
 /// A trace with room for every sample, so that the steps allocate nothing of ours.
-fn empty_trace(robot: &Robot, plan: &Plan, samples: usize) -> Trace {
+fn empty_trace(robot: &Robot, plan: &Plan, conditions: &Conditions, samples: usize) -> Trace {
     let arms = plan.arms.iter().filter_map(|hold| {
         let arm = &robot.arms[robot.arm_index(&hold.name)?];
         Some(ArmTrace {
@@ -124,7 +148,7 @@ fn empty_trace(robot: &Robot, plan: &Plan, samples: usize) -> Trace {
             joints: hold.joints.clone(),
             effort_nm: arm.effort_nm.clone(),
             pads: [0, 1].map(|finger| arm.gripper.pad_name(finger, &hold.x_og).to_owned()).to_vec(),
-            grip_force_n: hold.grip_force_n,
+            grip_force_n: hold.grip_force_n * conditions.uncertainty.grip_force_scale,
         })
     });
     Trace {

@@ -62,6 +62,33 @@ fn boxes(half_m: [f64; 2], recess_m: f64) -> [([f64; 2], f64); 2] {
     [(half_m.map(|half| half * shrink), 0.0), (half_m, recess_m)]
 }
 
+/// A box of a pad.
+pub(super) struct PadBox {
+    /// Half sides, m.
+    pub half_m: [f64; 3],
+    /// Pose of its centre in P.
+    pub x_pc: Pose,
+}
+
+/// The boxes of a pad, its face recessed behind its core.
+pub(super) fn pad_boxes(pad: &Pad, recess_m: f64) -> [PadBox; 2] {
+    boxes(pad.size_m.map(|side| side / 2.0), recess_m).map(|([x, y], recess_m)| PadBox {
+        half_m: [x, y, DEPTH_M / 2.0],
+        x_pc: Isometry3::translation(0.0, 0.0, -recess_m - DEPTH_M / 2.0),
+    })
+}
+
+/// Pose of the pad of finger `k` (0 on the +y_G side) in G when its travel is 0: x_P along x_G, z_P into the object.
+pub(super) fn x_gp(pad: &Pad, k: usize) -> Pose {
+    let side = if k == 0 { 1.0 } else { -1.0 };
+    let z_p = Vector3::y() * -side;
+    let axes = Matrix3::from_columns(&[Vector3::x(), z_p.cross(&Vector3::x()), z_p]);
+    Isometry3::from_parts(
+        Vector3::new(pad.centre_m[0], side * pad.offset_m, pad.centre_m[1]).into(),
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
+    )
+}
+
 /// A pad of the scene.
 pub(super) struct SimPad {
     finger: RigidBodyHandle,
@@ -81,17 +108,9 @@ impl SimPad {
         x_gf: &Pose,
         contact: PadContact,
     ) -> Self {
-        let side = if k == 0 { 1.0 } else { -1.0 };
-        let z_p = Vector3::y() * -side;
-        let axes = Matrix3::from_columns(&[Vector3::x(), z_p.cross(&Vector3::x()), z_p]);
-        let x_gp = Isometry3::from_parts(
-            Vector3::new(pad.centre_m[0], side * pad.offset_m, pad.centre_m[1]).into(),
-            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
-        );
-        let x_fp = x_gf.inverse() * x_gp;
-        let colliders = boxes(pad.size_m.map(|side| side / 2.0), contact.recess_m).map(|([x, y], recess_m)| {
-            let x_pc = Isometry3::translation(0.0, 0.0, -recess_m - DEPTH_M / 2.0);
-            let collider = ColliderBuilder::cuboid(x, y, DEPTH_M / 2.0)
+        let x_fp = x_gf.inverse() * x_gp(pad, k);
+        let colliders = pad_boxes(pad, contact.recess_m).map(|PadBox { half_m: [x, y, z], x_pc }| {
+            let collider = ColliderBuilder::cuboid(x, y, z)
                 .density(0.0)
                 .friction(contact.friction)
                 .position(border::engine_pose(&(x_fp * x_pc)))
@@ -99,6 +118,13 @@ impl SimPad {
             world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
         });
         Self { finger, x_fp, colliders }
+    }
+
+    /// How deep the pad's contacts with the board sank in before the last step, m: nothing where it does not touch.
+    pub fn penetration_m(&self, world: &PhysicsWorld, board: TouchedBoard) -> f64 {
+        let pairs = self.colliders.iter().filter_map(|core| world.narrow_phase.contact_pair(*core, board.collider));
+        let points = pairs.flat_map(|pair| pair.solver_manifolds()).flat_map(|manifold| &manifold.points);
+        points.map(|point| -point.dist).fold(0.0, f64::max)
     }
 
     /// What the pad does to the board in the last substep: the engine keeps the friction of no other.

@@ -4,17 +4,20 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 
 use super::{
-    SimError,
+    Conditions, SimError,
     arm::SimArm,
     border, check,
     pad::TouchedBoard,
+    self_check::{Books, mechanical_energy_j},
+    tool::{ToolState, wrench_w},
     world::{board_groups, new_world},
 };
 use crate::{
     model::{
         frames::Pose,
+        load::ForceFrame,
         plan::{PlacedObject, Plan},
-        trace::{ArmSample, PadSample, Phase, Sample},
+        trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },
     robot::Robot,
@@ -33,10 +36,16 @@ pub struct Scene {
     wrench_o: Wrench,
     /// The tool point in O, m.
     p_ot_m: Vector3<f64>,
-    /// The multiple of the wrench that acted in the last step.
-    load_factor: f64,
-    /// The wrench that acted then, about the tool point, world axes.
+    /// What the tool's direction is fixed to.
+    frame: ForceFrame,
+    /// The planned pose of the board.
+    x_wo_planned: Pose,
+    /// What the tool did in the last step.
+    tool: ToolState,
+    /// Its wrench then, about the tool point, world axes.
     tool_wrench_w: Wrench,
+    /// Momentum and energy.
+    books: Books,
 }
 
 impl Scene {
@@ -45,45 +54,59 @@ impl Scene {
     ///
     /// # Errors
     /// [`SimError`] when the plan does not fit the robot or itself.
-    pub fn new(robot: &Robot, plan: &Plan, friction: f64, timestep_s: f64) -> Result<Self, SimError> {
-        let holds = check::holds(robot, plan, friction)?;
-        let mut world = new_world(timestep_s);
-        let board = insert_board(&mut world, &plan.object, friction);
+    pub fn new(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Self, SimError> {
+        let holds = check::holds(robot, plan)?;
+        conditions.check()?;
+        let mut world = new_world(conditions.settings.timestep_s, conditions.uncertainty.contact_stiffness_scale);
+        let board = insert_board(&mut world, &plan.object, conditions.real_friction());
         let mut arms = Vec::with_capacity(holds.len());
         for hold in holds {
-            let arm = SimArm::new(&mut world, robot, hold.arm_index, hold.hold, &plan.object, friction)?;
+            let arm = SimArm::new(&mut world, robot, hold.arm_index, hold.hold, &plan.object, conditions)?;
             check::hand_is_where_planned(hold.hold, &plan.object.x_wo, &arm.gripper.x_wg(&world))?;
             arms.push(arm);
         }
-        let Plan { operation, .. } = plan;
+        let energy_j = energy_j(&world, &arms, board);
+        let p_ot_m = plan.operation.x_ot.translation.vector;
         Ok(Self {
+            books: Books::new(&world, board.body, energy_j),
             world,
             arms,
             board,
-            wrench_o: operation.wrench_o,
-            p_ot_m: operation.x_ot.translation.vector,
-            load_factor: 0.0,
+            wrench_o: plan.operation.wrench_o,
+            p_ot_m,
+            frame: conditions.load.frame,
+            x_wo_planned: plan.object.x_wo,
+            tool: ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m },
             tool_wrench_w: Wrench::default(),
         })
     }
 
-    /// One time step under `load_factor` times the operation's wrench, which turns with the board.
+    /// One time step under `load_factor` times the operation's wrench.
     pub fn step(&mut self, load_factor: f64) {
+        let wrench_o = self.wrench_o.scaled(load_factor);
+        self.step_under(ToolState { load_factor, wrench_o, p_ot_m: self.p_ot_m });
+    }
+
+    /// One time step under what the tool does.
+    pub(super) fn step_under(&mut self, tool: ToolState) {
         let timestep_s = self.world.integration_parameters.dt;
         for arm in &mut self.arms {
             arm.drive(&mut self.world, timestep_s);
         }
-        self.load_factor = load_factor;
+        self.tool = tool;
         self.push_board();
         self.world.step();
+        let worked_j = self.arms.iter().map(|arm| arm.work_j(&self.world)).sum();
+        let energy_j = energy_j(&self.world, &self.arms, self.board);
+        self.books.close_step(&self.world, energy_j, worked_j);
     }
 
     /// Lays the tool's wrench on the board for one step.
     fn push_board(&mut self) {
         let x_wo = self.x_wo();
-        let Wrench { force_n, moment_nm } = self.wrench_o.scaled(self.load_factor);
-        self.tool_wrench_w = Wrench::new(x_wo.rotation * force_n, x_wo.rotation * moment_nm);
-        let tip_w = x_wo * Point3::from(self.p_ot_m);
+        self.tool_wrench_w = wrench_w(self.frame, &self.tool.wrench_o, &x_wo, &self.x_wo_planned);
+        let tip_w = x_wo * Point3::from(self.tool.p_ot_m);
+        self.books.open_step(&self.world, &self.tool_wrench_w, &tip_w.coords);
         let body = &mut self.world.bodies[self.board.body];
         body.reset_forces(false);
         body.reset_torques(false);
@@ -99,7 +122,8 @@ impl Scene {
     /// Writes the state, and the forces of the last step, into a sample of [`blank_sample`]'s shape. Time and phase are
     /// the caller's.
     pub fn observe(&self, sample: &mut Sample) {
-        sample.load_factor = self.load_factor;
+        sample.load_factor = self.tool.load_factor;
+        sample.p_ot_m = self.tool.p_ot_m;
         sample.tool_wrench_w = self.tool_wrench_w;
         sample.x_wo = self.x_wo();
         for (arm, sample_arm) in self.arms.iter().zip(&mut sample.arms) {
@@ -108,6 +132,20 @@ impl Scene {
             for (pad, sample_pad) in arm.gripper.pads.iter().zip(&mut sample_arm.pads) {
                 *sample_pad = pad.observe(&self.world, self.board);
             }
+        }
+        sample.self_check = self.self_check(&sample.arms);
+    }
+
+    /// What the last step made of the laws of mechanics.
+    fn self_check(&self, observed: &[ArmSample]) -> StepCheck {
+        let pads = self.arms.iter().flat_map(|arm| &arm.gripper.pads);
+        let pads_w_n = observed.iter().flat_map(|arm| &arm.pads).map(|pad| pad.wrench_w.force_n).sum();
+        let apart_m = |arm: &ArmSample| (arm.finger_m[0] - arm.finger_m[1]).abs();
+        StepCheck {
+            penetration_m: pads.map(|pad| pad.penetration_m(&self.world, self.board)).fold(0.0, f64::max),
+            force_residual_n: self.books.force_residual_n(&self.world, &pads_w_n),
+            coupling_m: observed.iter().map(apart_m).fold(0.0, f64::max),
+            contact_energy_j: self.books.contact_energy_j,
         }
     }
 
@@ -119,6 +157,11 @@ impl Scene {
         let calm = self.arms.iter().all(|arm| arm.is_slower_than(&self.world, LOST_RAD_S));
         if calm { None } else { Some("the joint speeds have blown up") }
     }
+}
+
+/// Kinetic energy and weight's potential of arms and board, J.
+fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: TouchedBoard) -> f64 {
+    arms.iter().map(|arm| arm.energy_j(world)).sum::<f64>() + mechanical_energy_j(&world.bodies[board.body])
 }
 
 /// The board as a free body of evenly spread mass.
@@ -151,6 +194,8 @@ pub fn blank_sample(plan: &Plan) -> Sample {
         load_factor: 0.0,
         tool_wrench_w: Wrench::default(),
         x_wo: plan.object.x_wo,
+        p_ot_m: plan.operation.x_ot.translation.vector,
         arms: arms.collect(),
+        self_check: StepCheck::default(),
     }
 }

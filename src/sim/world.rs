@@ -22,9 +22,11 @@ const CONTACT_OSCILLATIONS: f64 = 1.5;
 /// Damping of the contacts, as a multiple of the critical one.
 const CONTACT_DAMPING_RATIO: f64 = 10.0;
 
-/// A world under gravity with nothing in it.
-pub(super) fn new_world(timestep_s: f64) -> PhysicsWorld {
-    let softness = SpringCoefficients::new(contact_frequency_hz(timestep_s / SUBSTEPS as f64), CONTACT_DAMPING_RATIO);
+/// A world under gravity with nothing in it, its contacts stiffer by a factor than they are as a rule.
+pub(super) fn new_world(timestep_s: f64, contact_stiffness_scale: f64) -> PhysicsWorld {
+    // A spring's frequency goes with the root of its stiffness.
+    let frequency_hz = contact_frequency_hz(timestep_s / SUBSTEPS as f64) * contact_stiffness_scale.sqrt();
+    let softness = SpringCoefficients::new(frequency_hz, CONTACT_DAMPING_RATIO);
     PhysicsWorld {
         gravity: border::vector(&GRAVITY_W),
         integration_parameters: IntegrationParameters {
@@ -60,7 +62,7 @@ fn contact_frequency_hz(substep_s: f64) -> f64 {
 /// How deep contacts sink that press a free body of this mass with this force, m: `F / (m omega^2)`, with
 /// `omega` the contacts' angular frequency.
 pub(super) fn penetration_m(world: &PhysicsWorld, force_n: f64, mass_kg: f64) -> f64 {
-    let omega_rad_s = std::f64::consts::TAU * contact_frequency_hz(substep_s(world));
+    let omega_rad_s = std::f64::consts::TAU * world.integration_parameters.contact_softness.natural_frequency;
     force_n / (mass_kg * omega_rad_s * omega_rad_s)
 }
 

@@ -6,11 +6,12 @@ use benchdog::{
         frames::Pose,
         operation::{Operation, OperationKind},
         plan::{ArmHold, PlacedObject, Plan},
+        scenario::SimulationSettings,
         trace::Sample,
         wrench::Wrench,
     },
     robot::{Arm, Finger, Gripper, Joint, JointKind, Link, Pad, Robot},
-    sim::{Scene, blank_sample},
+    sim::{Conditions, Scene, blank_sample},
 };
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
@@ -172,7 +173,9 @@ impl Bench {
     }
 
     pub fn new(robot: &Robot, plan: &Plan, friction: f64) -> Self {
-        Self { scene: Scene::new(robot, plan, friction, TIMESTEP_S).unwrap(), sample: blank_sample(plan) }
+        let settings = SimulationSettings { timestep_s: TIMESTEP_S, ..SimulationSettings::default() };
+        let scene = Scene::new(robot, plan, &Conditions::new(friction, settings)).unwrap();
+        Self { scene, sample: blank_sample(plan) }
     }
 
     /// Steps for `duration_s` while the load goes evenly from one multiple of the wrench to another.

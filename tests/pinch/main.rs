@@ -4,6 +4,9 @@
 
 mod baxter;
 mod bench;
+mod holds;
+mod loads;
+mod patch;
 
 use std::{ops::AddAssign, thread};
 
@@ -18,7 +21,7 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::{Chain, Robot},
-    sim::{SimError, simulate},
+    sim::{Conditions, SimError, simulate},
 };
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 
@@ -184,7 +187,7 @@ fn a_free_arm_gives_way_as_its_compliance_says() {
     for force_o in [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * 0.5) {
         plan.operation.wrench_o = Wrench::from_force(force_o);
         let settings = SimulationSettings { settle_s: 2.0, ramp_s: 1.0, hold_s: 2.0, ..QUICK };
-        let trace = simulate(&robot, &plan, 0.6, &settings).unwrap();
+        let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
         let p_wg = |sample: &Sample| {
             let p_cg = -robot.arms[0].gripper.grasp_point_g();
             sample.x_wo * sample.arms[0].x_oc * Point3::from(p_cg)
@@ -215,7 +218,7 @@ fn two_arms_give_way_as_if_welded_under_a_small_load() {
     for (mass_kg, tolerance) in [(1.0, 0.02), (BOARD_KG, 0.07)] {
         for operation in operations {
             let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
-            let trace = simulate(&robot, &plan, 0.6, &QUICK).unwrap();
+            let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
             let found_m = displacement_m(&trace, last(&trace, Phase::Hold));
             let welded_m = welded_displacement_m(&robot, &plan);
             let error = (found_m - welded_m).norm() / welded_m.norm();
@@ -228,7 +231,7 @@ fn two_arms_give_way_as_if_welded_under_a_small_load() {
 fn forces_and_moments_on_the_board_balance_in_the_hold() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, Operation::cut([0.0, 0.1], Vector3::x(), 10.0, THICKNESS_M), BOARD_KG, 30.0);
-    let trace = simulate(&robot, &plan, 0.6, &QUICK).unwrap();
+    let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
     let sample = last(&trace, Phase::Hold);
     let centre_w = sample.x_wo.translation.vector;
     let tip_w = (sample.x_wo * Point3::from(trace.p_ot_m)).coords;
@@ -249,7 +252,7 @@ fn no_board_rings_between_the_hands() {
     for mass_kg in [0.03, 0.1, 0.21, 0.5, 1.5] {
         plan.object.mass_kg = mass_kg;
         let settings = SimulationSettings { ramp_s: 0.3, hold_s: 0.3, release_s: 0.0, ..QUICK };
-        let trace = simulate(&robot, &plan, 0.6, &settings).unwrap();
+        let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
         let normal_n = |step: usize| trace.samples[step].arms[0].pads[0].normal_force_n;
         let steps = trace.samples.len();
         let jump_n = (steps - 50..steps).map(|step| (normal_n(step) - normal_n(step - 1)).abs()).fold(0.0, f64::max);
@@ -263,7 +266,7 @@ fn a_board_without_a_load_stays() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(0.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 5.0, ramp_s: 0.0, hold_s: 0.0, release_s: 0.0, timestep_s: 0.002 };
-    let trace = simulate(&robot, &plan, 0.6, &settings).unwrap();
+    let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
     let drift_m = displacement_m(&trace, &trace.samples[1650]).norm();
     assert!(drift_m < 1e-8, "drifted {drift_m} m in the last 1.7 s");
 }
@@ -272,7 +275,7 @@ fn a_board_without_a_load_stays() {
 fn after_the_release_the_board_returns() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(1.5), BOARD_KG, 30.0);
-    let trace = simulate(&robot, &plan, 0.6, &QUICK).unwrap();
+    let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
     let bent_m = displacement_m(&trace, last(&trace, Phase::Hold)).norm();
     let left_m = displacement_m(&trace, last(&trace, Phase::Release)).norm();
     // The swing has died out by then; a sudden release lets the hands slide by micrometres, 5 % of the bend.
@@ -283,7 +286,8 @@ fn after_the_release_the_board_returns() {
 fn a_board_that_is_torn_out_is_gone_and_the_arms_stay() {
     let robot = baxter::robot();
     let operation = Operation::cut([0.0, 0.1], -Vector3::y(), 200.0, THICKNESS_M);
-    let trace = simulate(&robot, &baxter::plan(&robot, operation, BOARD_KG, 30.0), 0.6, &QUICK).unwrap();
+    let trace =
+        simulate(&robot, &baxter::plan(&robot, operation, BOARD_KG, 30.0), &Conditions::new(0.6, QUICK)).unwrap();
     // A lost board is an outcome, not a breakdown.
     assert_eq!(trace.broke_down, None);
     let (before, after) = (last(&trace, Phase::Settle), trace.samples.last().unwrap());
@@ -313,7 +317,7 @@ fn equal_inputs_give_equal_traces() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(15.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 0.1, ramp_s: 0.1, hold_s: 0.1, release_s: 0.1, timestep_s: 0.002 };
-    let run = || bits(&simulate(&robot, &plan, 0.6, &settings).unwrap());
+    let run = || bits(&simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap());
     let here = run();
     let there = thread::scope(|scope| [scope.spawn(run), scope.spawn(run)].map(|thread| thread.join().unwrap()));
     assert!(there.iter().all(|other| *other == here));
@@ -324,7 +328,7 @@ fn the_trace_says_what_was_simulated() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(3.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 0.1, ramp_s: 0.1, hold_s: 0.1, release_s: 0.1, timestep_s: 0.002 };
-    let trace = simulate(&robot, &plan, 0.6, &settings).unwrap();
+    let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
     assert_eq!(trace.broke_down, None);
     assert_eq!(trace.samples.len(), 201);
     assert_eq!(trace.arms.iter().map(|arm| arm.name.as_str()).collect::<Vec<_>>(), ["left", "right"]);
@@ -350,7 +354,7 @@ fn an_upper_pad_pushes_the_board_down() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(0.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 0.2, ramp_s: 0.0, hold_s: 0.0, release_s: 0.0, timestep_s: 0.002 };
-    let trace = simulate(&robot, &plan, 0.6, &settings).unwrap();
+    let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
     let sample = last(&trace, Phase::Settle);
     let face_w = sample.x_wo.rotation * Vector3::z();
     for (arm, names) in sample.arms.iter().zip(&trace.arms) {
@@ -365,7 +369,7 @@ fn an_upper_pad_pushes_the_board_down() {
 fn refusal(robot: &Robot, change: impl Fn(&mut Plan)) -> SimError {
     let mut plan = baxter::plan(robot, drill(15.0), BOARD_KG, 30.0);
     change(&mut plan);
-    simulate(robot, &plan, 0.6, &QUICK).unwrap_err()
+    simulate(robot, &plan, &Conditions::new(0.6, QUICK)).unwrap_err()
 }
 
 #[test]
@@ -389,15 +393,18 @@ fn plans_that_do_not_fit_are_refused() {
     let mut near = baxter::plan(&robot, drill(15.0), BOARD_KG, 30.0);
     near.arms[0].x_og.translation.vector.x += 0.9e-3;
     let short = SimulationSettings { settle_s: 0.0, ramp_s: 0.0, hold_s: 0.0, release_s: 0.0, timestep_s: 0.002 };
-    assert!(simulate(&robot, &near, 0.6, &short).is_ok());
-    assert!(matches!(simulate(&robot, &near, -0.1, &short), Err(SimError::Settings { key: "friction", .. })));
+    assert!(simulate(&robot, &near, &Conditions::new(0.6, short)).is_ok());
+    assert!(matches!(
+        simulate(&robot, &near, &Conditions::new(-0.1, short)),
+        Err(SimError::Settings { key: "friction", .. })
+    ));
 }
 
 #[test]
 fn a_simulation_that_breaks_down_says_so() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(1e300), BOARD_KG, 30.0);
-    let trace = simulate(&robot, &plan, 0.6, &QUICK).unwrap();
+    let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
     // The first step of the ramp is the 501st.
     assert_eq!(trace.broke_down.as_deref(), Some("at 1.002 s the state is no longer finite"));
     assert_eq!(trace.samples.len(), 501);

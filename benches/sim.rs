@@ -1,0 +1,45 @@
+//! A step of the simulation: a hundred steps of two arms that hold the foam board of the quickstart under half of a
+//! cut's load, of one arm that holds it, and a whole run with its judgement.
+
+use std::{hint::black_box, path::Path};
+
+use benchdog::{
+    judge::judge,
+    model::scenario::{Limits, SimulationSettings},
+    scenario::read_plan,
+    sim::{Conditions, Scene, blank_sample, simulate},
+};
+use criterion::{Criterion, criterion_group, criterion_main};
+
+/// METHOD section 7.
+const FRICTION: f64 = 0.6;
+/// METHOD section 8, for a cut.
+const LIMITS: Limits =
+    Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 15.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 };
+
+fn sim(criterion: &mut Criterion) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
+    let (two_arms, robot) = read_plan(&path, None).expect("the repository's plans can be read");
+    let mut one_arm = two_arms.clone();
+    one_arm.arms.truncate(1);
+    let conditions = Conditions::new(FRICTION, SimulationSettings::default());
+    for (name, plan) in [("two arms", &two_arms), ("one arm", &one_arm)] {
+        let mut scene = Scene::new(&robot, plan, &conditions).expect("the repository's plans are holds");
+        let mut sample = blank_sample(plan);
+        criterion.bench_function(&format!("100 steps/{name}"), |bencher| {
+            bencher.iter(|| {
+                for _ in 0..100 {
+                    scene.step(black_box(0.5));
+                    scene.observe(&mut sample);
+                }
+                black_box(&sample);
+            });
+        });
+    }
+    criterion.benchmark_group("run").sample_size(10).bench_function("simulate and judge 3 s", |bencher| {
+        bencher.iter(|| judge(&simulate(&robot, &two_arms, &conditions).expect("a hold"), &LIMITS));
+    });
+}
+
+criterion_group!(benches, sim);
+criterion_main!(benches);

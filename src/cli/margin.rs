@@ -1,0 +1,161 @@
+//! `benchdog margin`: the load raised until the hold fails, beside what the statics predict.
+
+use serde::Serialize;
+
+use super::{
+    args::{Format, MarginArgs},
+    exit::{CliError, Exit},
+    output,
+};
+use crate::{
+    judge::{FailingLoad, failing_load, judge},
+    model::{
+        plan::Plan,
+        scenario::Scenario,
+        verdict::{Check, VerdictKind},
+    },
+    planner,
+    robot::Robot,
+    scenario,
+    sim::{self, Conditions},
+    statics::{Hold, HoldError, StabilityWorkspace},
+};
+
+/// How much load a hold stands, by the simulation and by both predictions.
+#[derive(Clone, Debug, Serialize)]
+struct Margin {
+    name: String,
+    /// The multiple of the load up to which the simulated hold stands.
+    load_factor: f64,
+    /// The smallest multiple that was found to fail, at most 0.1 % more; none when the hold stands 100 times the load.
+    fails_at: Option<f64>,
+    /// What becomes of the hold there.
+    ended_by: VerdictKind,
+    /// The check that says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    check: Option<Check>,
+    /// Why there is no such check, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
+    /// What the statics predict; none when they have no answer to the plan.
+    predicted: Option<Predicted>,
+    /// How many simulations it took.
+    simulations: usize,
+    /// What the author expected, and whether it is so.
+    expected: VerdictKind,
+    met: bool,
+}
+
+/// What the statics predict.
+#[derive(Clone, Debug, Serialize)]
+struct Predicted {
+    /// The largest multiple that any distribution of forces holds, with a certificate (lambda*).
+    best_case: f64,
+    /// What limits it.
+    binding: Vec<String>,
+    /// The largest multiple that compliant arms hold.
+    compliant: f64,
+    /// What ends it.
+    compliant_ended_by: Option<String>,
+}
+
+/// Finds and reports the margin of a plan.
+pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
+    let (plan, robot, scenario) = scenario::plan_and_scenario(&args.plan, args.scenario.as_deref())?;
+    let margin = margin_of(&plan, &robot, &scenario)?;
+    match args.format {
+        Format::Human => output::print(&for_people(&margin))?,
+        Format::Json => {
+            // Serialisation fails only for maps with keys that are no strings, and there are none.
+            let text = serde_json::to_string_pretty(&margin).expect("a margin has only string keys");
+            output::print(&format!("{text}\n"))?;
+        }
+    }
+    Ok(if margin.met { Exit::Met } else { Exit::NotMet })
+}
+
+fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, CliError> {
+    // Statics that have no answer to a plan which can be simulated are no reason to have no margin.
+    let predicted = predicted(plan, robot, scenario).ok().flatten();
+    let expected = scenario.expect.verdict;
+    let empty = Margin {
+        name: plan.name.clone(),
+        load_factor: 0.0,
+        fails_at: Some(0.0),
+        ended_by: VerdictKind::Touches,
+        check: None,
+        reason: None,
+        predicted,
+        simulations: 0,
+        expected,
+        met: expected == VerdictKind::Touches,
+    };
+    if let Some(touch) = planner::first_touch(plan, &scenario.tool, robot)? {
+        return Ok(Margin { reason: Some(touch), ..empty });
+    }
+    let conditions = Conditions::of(scenario);
+    let judged = |factor: f64| {
+        let trace = sim::simulate(robot, plan, &conditions.scaled(factor)).map_err(CliError::Simulation)?;
+        Ok::<_, CliError>(judge(&trace, &scenario.limits))
+    };
+    let guess = empty.predicted.as_ref().map_or(1.0, |predicted| predicted.compliant);
+    let FailingLoad { holds_at, fails_at, judgement, simulations } = failing_load(guess, judged)?;
+    let failed = judgement.first_failure.as_ref().map(|failure| failure.check);
+    let met = match expected {
+        VerdictKind::Holds => holds_at >= scenario.limits.load_factor,
+        // The load itself fails as expected, or a load beyond it does.
+        other => judged(1.0)?.verdict == other && other != VerdictKind::NoVerdict,
+    };
+    Ok(Margin {
+        load_factor: holds_at,
+        fails_at,
+        ended_by: judgement.verdict,
+        check: judgement.checks.into_iter().find(|check| Some(check.name) == failed),
+        reason: judgement.reason,
+        simulations,
+        met,
+        ..empty
+    })
+}
+
+/// What the statics say of the plan, under the friction that it counts on.
+fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, HoldError> {
+    let hold = Hold::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
+    let mut workspace = StabilityWorkspace::new();
+    let crate::statics::LoadFactorOutcome::Solved(best_case) = workspace.load_factor(&hold)? else { return Ok(None) };
+    let compliant = workspace.compliant_load_factor(&hold, &scenario.limits)?;
+    Ok(Some(Predicted {
+        best_case: best_case.load_factor,
+        binding: best_case.binding,
+        compliant: compliant.load_factor,
+        compliant_ended_by: compliant.first_limit.map(|limit| limit.to_string()),
+    }))
+}
+
+fn for_people(margin: &Margin) -> String {
+    let why = match (&margin.check, &margin.reason) {
+        (Some(check), _) => format!(" ({} {:.3} {}, at most {})", check.name, check.value, check.unit, check.limit),
+        (None, Some(reason)) => format!(" ({reason})"),
+        (None, None) => String::new(),
+    };
+    let end = match margin.fails_at {
+        Some(_) => format!("then {}{why}", margin.ended_by),
+        None => "the largest tried".to_owned(),
+    };
+    let met = if margin.met { "ok" } else { "FAIL" };
+    let mut text = format!(
+        "{}: holds up to {:.3} times the load, {end}; expected {}: {met}\n",
+        margin.name, margin.load_factor, margin.expected
+    );
+    text.push_str(&format!(
+        "simulated            {:7.3}  {} simulations, each with its whole load\n",
+        margin.load_factor, margin.simulations
+    ));
+    if let Some(predicted) = &margin.predicted {
+        let ended_by = predicted.compliant_ended_by.as_deref().unwrap_or("nothing up to 100");
+        text.push_str(&format!("compliant prediction {:7.3}  {ended_by}\n", predicted.compliant));
+        let binding = predicted.binding.join(", ");
+        text.push_str(&format!("best case (lambda*)  {:7.3}  {binding}\n", predicted.best_case));
+    }
+    text
+}

@@ -1,0 +1,123 @@
+//! `benchdog margin` and `benchdog export`, from the command line.
+
+use std::{fs, path::Path, process::Command};
+
+use benchdog::{model::GRAVITY_W, robot::Robot, scenario::read_plan};
+use quick_xml::{Reader, events::Event};
+use serde_json::Value;
+
+fn benchdog(arguments: &[&str]) -> (String, Option<i32>) {
+    let output = Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    (String::from_utf8(output.stdout).unwrap() + &String::from_utf8_lossy(&output.stderr), output.status.code())
+}
+
+#[test]
+fn a_margin_stands_beside_both_predictions() {
+    let (text, code) = benchdog(&["margin", "tests/data/holds/cut-04.json", "--format", "json"]);
+    assert_eq!(code, Some(0), "{text}");
+    let margin: Value = serde_json::from_str(&text).unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let (holds, fails) = (number(&margin["load_factor"]), number(&margin["fails_at"]));
+    assert!(fails > holds && fails - holds <= 1e-3 * fails);
+    assert_eq!(margin["ended_by"], "pivots");
+    // What fails is beyond its limit at the load that fails.
+    assert_eq!(margin["check"]["name"], "slip_rotation");
+    assert!(number(&margin["check"]["value"]) > number(&margin["check"]["limit"]));
+    let predicted = &margin["predicted"];
+    // No distribution of forces holds more than the best case does; the compliant one is good to a tenth.
+    assert!(holds < number(&predicted["best_case"]));
+    assert!((number(&predicted["compliant"]) / holds - 1.0).abs() < 0.1);
+}
+
+#[test]
+fn a_margin_below_one_is_exit_code_1() {
+    let (text, code) = benchdog(&["margin", "scenarios/plans/long-lever.json"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("FAIL") && text.contains("then deflects (deflection "), "{text}");
+}
+
+/// Every start tag of a document with its attributes; panics where it is not well formed.
+fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {
+    let mut reader = Reader::from_str(text);
+    let mut found = Vec::new();
+    loop {
+        match reader.read_event().unwrap() {
+            Event::Eof => return found,
+            Event::Start(tag) | Event::Empty(tag) => {
+                let name = String::from_utf8(tag.name().as_ref().to_vec()).unwrap();
+                let attributes = tag.attributes().map(|attribute| {
+                    let attribute = attribute.unwrap();
+                    let key = String::from_utf8(attribute.key.as_ref().to_vec()).unwrap();
+                    (key, String::from_utf8(attribute.value.to_vec()).unwrap())
+                });
+                found.push((name, attributes.collect()));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn numbers(text: &str) -> Vec<f64> {
+    text.split(' ').map(|number| number.parse().unwrap()).collect()
+}
+
+#[test]
+fn an_exported_scene_has_the_masses_joints_gains_and_load_of_the_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("scene.xml");
+    let (text, code) = benchdog(&["export", "scenarios/plans/cut-rim.json", "--mjcf", file.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{text}");
+    let found = elements(&fs::read_to_string(&file).unwrap());
+    let of = |name: &str| found.iter().filter(|element| element.0 == name).map(|e| &e.1).collect::<Vec<_>>();
+    let get = |attributes: &[(String, String)], key: &str| {
+        attributes.iter().find(|(name, _)| name == key).map(|(_, value)| value.clone()).unwrap()
+    };
+    let (plan, robot) = read_plan(Path::new("scenarios/plans/cut-rim.json"), None).unwrap();
+
+    let mass_kg: f64 = of("inertial").iter().map(|inertial| get(inertial, "mass").parse::<f64>().unwrap()).sum();
+    let expected_kg = moving_mass_kg(&robot) + plan.object.mass_kg;
+    assert!((mass_kg - expected_kg).abs() < 1e-12 * expected_kg, "{mass_kg} {expected_kg}");
+    assert_eq!(numbers(&get(of("option")[0], "gravity")), GRAVITY_W.as_slice());
+
+    let servos = of("general");
+    assert_eq!(servos.len(), 14);
+    let arm = &robot.arms[robot.arm_index("left").unwrap()];
+    let left: Vec<f64> = servos.iter().take(7).map(|servo| get(servo, "gainprm").parse().unwrap()).collect();
+    assert_eq!(left, arm.stiffness_nm_rad);
+    assert_eq!(of("motor").len(), 4);
+
+    // The whole load, in the middle of the hold: 0.5 s of settling, 1 s of ramp, 0.5 s of hold at 2 ms.
+    let load = of("numeric").into_iter().find(|numeric| get(numeric, "name") == "tool_wrench_o").unwrap();
+    let rows = numbers(&get(load, "data"));
+    let wrench: [f64; 6] = plan.operation.wrench_o.into();
+    assert_eq!(rows[6 * 1000..6 * 1001], wrench);
+    assert_eq!(rows[6 * 250..6 * 251], [0.0; 6]);
+    // Nine joints an arm and the board's seven numbers; the plan's angles stand first.
+    let positions = numbers(&get(of("key")[0], "qpos"));
+    assert_eq!(positions.len(), 25);
+    assert_eq!(positions[..7], plan.arms[0].q_rad[..]);
+}
+
+/// Mass of everything that arm and finger joints move, kg: links whose way to the root leads over one of them.
+fn moving_mass_kg(robot: &Robot) -> f64 {
+    let moves = |joint: usize| {
+        robot
+            .arms
+            .iter()
+            .any(|arm| arm.joints.contains(&joint) || arm.gripper.fingers.iter().any(|finger| finger.joint == joint))
+    };
+    let is_moved = |mut link: usize| {
+        while let Some(joint) = robot.links[link].parent_joint {
+            if moves(joint) {
+                return true;
+            }
+            link = robot.joints[joint].parent_link;
+        }
+        false
+    };
+    (0..robot.links.len()).filter(|&link| is_moved(link)).map(|link| robot.links[link].mass_kg).sum()
+}
