@@ -2,12 +2,19 @@
 //! written, and turn what happened into an exit code. Nothing below this module knows any of these.
 
 mod args;
+mod completions;
 mod curve;
+mod doctor;
 mod exit;
 mod finish;
+mod help;
+#[cfg(feature = "recording")]
+mod inspect;
+mod interrupt;
 mod output;
 mod pipeline;
 mod plan;
+mod progress;
 #[cfg(feature = "recording")]
 mod recording;
 #[cfg(not(feature = "recording"))]
@@ -15,8 +22,11 @@ mod recording;
 mod recording;
 mod run;
 mod schema;
+mod select;
 mod simulate;
 mod versions;
+#[cfg(feature = "recording")]
+mod view;
 
 use std::process::ExitCode;
 
@@ -41,6 +51,12 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
         Command::Schema(args) => schema::schema(args),
+        #[cfg(feature = "recording")]
+        Command::Inspect(args) => inspect::inspect(args),
+        #[cfg(feature = "recording")]
+        Command::View(args) => view::view(args),
+        Command::Doctor => doctor::doctor(),
+        Command::Completions(args) => completions::completions(args),
     });
     match outcome {
         Ok(Ok(exit)) => exit.into(),

@@ -18,6 +18,7 @@ pub(super) fn measures(trace: &Trace, reference: usize) -> Measures {
     let tool_point_w = |sample: &Sample| sample.x_wo * nalgebra::Point3::from(trace.p_ot_m);
     Measures {
         time_s: samples.iter().map(|sample| sample.time_s).collect(),
+        load_factor: samples.iter().map(|sample| sample.load_factor).collect(),
         hands: (0..trace.arms.len()).map(|arm| hand_measures(trace, samples, arm)).collect(),
         deflection_mm: samples
             .iter()

@@ -25,6 +25,7 @@ const SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
 /// All that a recording is made of.
 struct Example {
     robot: Robot,
+    scenario: Scenario,
     plan: Plan,
     trace: Trace,
     measures: Measures,
@@ -37,6 +38,7 @@ impl Example {
     fn input(&self) -> RecordingInput<'_> {
         RecordingInput {
             robot: &self.robot,
+            scenario: &self.scenario,
             plan: &self.plan,
             trace: &self.trace,
             measures: &self.measures,
@@ -54,11 +56,12 @@ fn example() -> Example {
     let trace = trace(&robot, &plan);
     let measures = measures(&trace);
     let verdict = verdict(&trace, &measures);
-    let event = |time_s, kind, text: &str| Event { time_s, kind, text: text.into() };
+    let event = |time_s, kind, what: &str, text: &str| Event { time_s, kind, text: text.into(), what: what.into() };
+    let turned = EventKind::LimitCrossed(CheckKind::SlipRotation);
     let events = vec![
-        event(0.0, EventKind::Phase, "settle: the board's weight alone"),
-        event(0.1, EventKind::Phase, "ramp: the load grows"),
-        event(0.27, EventKind::LimitCrossed, "left hand turns past 2 deg at load factor 0.86"),
+        event(0.0, EventKind::Phase, "", "settle: the board's weight alone"),
+        event(0.1, EventKind::Phase, "", "ramp: the load grows"),
+        event(0.276, turned, "left hand", "left hand turns past 2 deg at load factor 0.88"),
     ];
     let capsule = |a: [f64; 3], b: [f64; 3], radius_m| Capsule { ends_w: [a.into(), b.into()], radius_m };
     let person = PersonShape {
@@ -72,8 +75,10 @@ fn example() -> Example {
             capsule([1.25, -0.1, 0.0], [1.25, -0.1, -0.85], 0.07),
         ],
         palm_w: Point3::new(0.78, 0.15, 0.27),
+        points_w: vec![Point3::new(1.2, 0.0, 0.3)],
     };
-    Example { robot, plan, trace, measures, events, verdict, person }
+    let scenario = crate::scenario::for_plan(&plan, &robot);
+    Example { robot, scenario, plan, trace, measures, events, verdict, person }
 }
 
 fn plan(robot: &Robot) -> Plan {
@@ -176,6 +181,7 @@ fn measures(trace: &Trace) -> Measures {
     };
     Measures {
         time_s: of(&|s| s.time_s),
+        load_factor: of(&|s| s.load_factor),
         hands: ["left", "right"]
             .into_iter()
             .zip([0.04_f64, 0.002])
@@ -214,7 +220,7 @@ fn verdict(trace: &Trace, measures: &Measures) -> Verdict {
             check(CheckKind::Deflection, 6.0, 15.0),
             check(CheckKind::TorqueRatio, 8.0 / 15.0, 1.0),
         ],
-        first_failure: Some(Failure { check: CheckKind::SlipRotation, time_s: 0.274, load_factor: 0.88 }),
+        first_failure: Some(Failure { check: CheckKind::SlipRotation, time_s: 0.276, load_factor: 0.88 }),
         peak_torque_ratio: measures.joints.iter().map(|j| (j.name.clone(), peak(&j.torque_ratio))).collect(),
         reason: None,
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into()), ("rapier3d-f64".into(), "0.36.1".into())]),
