@@ -34,8 +34,9 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
         return Err(error);
     }
     let ending = Ending::from(ended);
-    finish::write_reports(&ending.outcomes, &args.report.out)?;
+    // The table first: a disk that has become full must not cost it.
     finish::report(&ending, &args.report)?;
+    finish::write_reports(&ending.outcomes, &args.report.out)?;
     Ok(ending.exit)
 }
 

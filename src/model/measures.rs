@@ -62,7 +62,7 @@ pub enum EventKind {
     BrokeDown,
 }
 
-/// The top of an axis from zero that shows a series and its limit: with a twentieth above the larger of both, but not
+/// The top of an axis from zero that shows a series and its limit: with a tenth above the larger of both, but not
 /// beyond four times the limit, lest a board that is lost press the limit's line to the floor. Without a limit, or with one
 /// of zero, the peak decides.
 pub fn axis_top(peak: f64, limit: Option<f64>) -> f64 {
@@ -70,7 +70,7 @@ pub fn axis_top(peak: f64, limit: Option<f64>) -> f64 {
         Some(limit) => peak.clamp(limit, 4.0 * limit),
         None => peak,
     };
-    if top > 0.0 && top.is_finite() { 1.05 * top } else { 1.0 }
+    if top > 0.0 && top.is_finite() { 1.1 * top } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -79,12 +79,12 @@ mod tests {
 
     #[test]
     fn an_axis_shows_the_limit_whatever_the_series_does() {
-        // Far below its limit, above it, and lost: 1.05 of the limit, of the peak, of four limits.
-        for (peak, top) in [(0.1, 2.1), (3.0, 3.15), (500.0, 8.4)] {
+        // Far below its limit, above it, and lost: 1.1 of the limit, of the peak, of four limits.
+        for (peak, top) in [(0.1, 2.2), (3.0, 3.3), (500.0, 8.8)] {
             // Two multiplications of exact decimals: a rounding each.
             assert!((axis_top(peak, Some(2.0)) - top).abs() < 1e-12);
         }
-        assert_eq!(axis_top(2.0, None), 2.1);
+        assert_eq!(axis_top(2.0, None), 2.2);
         assert_eq!(axis_top(0.0, Some(0.0)), 1.0);
         assert_eq!(axis_top(f64::INFINITY, None), 1.0);
     }

@@ -116,8 +116,9 @@ impl Layout {
         self.log(&child(&view.path, "LineGrid3D"), &LineGrid3D::new().with_plane(floor))?;
         let background = Background::new(BackgroundKind::SolidColor).with_color(palette::background());
         self.log(&child(&view.path, "Background"), &background)?;
-        let points = ViewContents::blueprint_base_visualizer_path_for_entity(view.id, &entity(&["scene", POINTS]));
-        if let Some(overrides) = points.parent() {
+        for whose in ["person", "robot"] {
+            let points = entity(&["scene", POINTS, whose]);
+            let overrides = child(&child(&view.path, "ViewContents"), "overrides").join(&points);
             self.log(&overrides, &EntityBehavior::new().with_visible(false))?;
         }
         Ok(view)

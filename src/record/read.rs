@@ -136,7 +136,7 @@ fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
 }
 
 /// The chunks of the recording itself, without those of its blueprint.
-fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
+pub(super) fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
     check_header(bytes)?;
     if !rrd::is_complete(bytes) {
         return Err("the recording was cut short".to_owned());

@@ -163,10 +163,8 @@ fn log_board(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -
     crossings::log_box_colour(messages, &path, frames, palette::board(), crossings::board_crossed_s(input))?;
     log_poses(messages, &path, &frames.times_s, frames.samples.iter().map(|sample| sample.x_wo))?;
     let operation = &input.plan.operation;
-    let point = Points3D::new([vec3(&operation.x_ot.translation.vector)])
-        .with_radii([0.004])
-        .with_colors([palette::load()])
-        .with_labels([operation_label(operation)]);
+    let point =
+        Points3D::new([vec3(&operation.x_ot.translation.vector)]).with_radii([0.004]).with_colors([palette::load()]);
     messages.log_static(&entity(&["scene", "board", "operation"]), &point)?;
     let lines = marks_o(operation, input.plan.object.size_m[2]);
     let marks = LineStrips3D::new(lines.iter().map(|line| line.iter().map(|p_o| vec3(&p_o.coords))))

@@ -315,3 +315,88 @@ fn runs_without_person_verdict_or_samples_are_recorded_too() {
     let bytes = encode(&RecordingInput { person: None, ..example.input() }).unwrap();
     assert_eq!(read(&bytes).unwrap().verdict, example.verdict);
 }
+
+#[test]
+fn the_stored_run_is_read_back_bit_by_bit() {
+    let example = example();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.rrd");
+    fs::write(&path, encode(&example.input()).unwrap()).unwrap();
+    let run = read_run(&path).unwrap();
+    // Equality of numbers: stored as they are.
+    assert_eq!(run.trace, example.trace);
+    assert_eq!((run.plan, run.scenario, run.verdict), (example.plan, example.scenario, example.verdict));
+}
+
+#[test]
+fn the_time_that_a_search_took_is_not_recorded() {
+    let mut example = example();
+    let record = |wall_ms| {
+        let kind = crate::model::scenario::PlannerKind::Comfort;
+        Some(crate::model::plan::PlannerRecord { kind, seed: 1, wall_ms, evaluations: 7 })
+    };
+    example.plan.planner = record(Some(1234.5));
+    let one = encode(&example.input()).unwrap();
+    example.plan.planner = record(Some(2345.6));
+    assert!(one == encode(&example.input()).unwrap(), "two recordings of one run differ");
+}
+
+/// The times of an entity's rows, ns, and how many there are of this component.
+fn times_ns(bytes: &[u8], path: &[&str], component: &str) -> Vec<i64> {
+    let path = entity(path);
+    let chunks = read::chunks(bytes).unwrap();
+    let rows = chunks.iter().filter(|chunk| *chunk.entity_path() == path);
+    rows.filter(|chunk| chunk.components_identifiers().any(|found| found.as_str() == component))
+        .filter_map(|chunk| chunk.timelines().get(&TIMELINE.into()))
+        .flat_map(|column| column.times_raw().to_vec())
+        .collect()
+}
+
+#[test]
+fn the_moment_of_failure_has_one_time_stamp_in_scene_plot_and_log() {
+    let example = example();
+    let bytes = encode(&example.input()).unwrap();
+    let failure_s = example.verdict.first_failure.as_ref().unwrap().time_s;
+    let moment = (failure_s * 1e9).round() as i64;
+    assert_eq!(times_ns(&bytes, &["scene", "first crossing"], "Points3D:labels"), [moment]);
+    assert_eq!(times_ns(&bytes, &["plots", "rotation", "first crossing"], "Scalars:scalars"), [moment]);
+    assert!(times_ns(&bytes, &["events"], "TextLog:text").contains(&moment));
+    // The pads of the hand that turned change their colour, those of the other do not.
+    for pad in ["upper", "lower"] {
+        assert_eq!(times_ns(&bytes, &["scene", "pads", "left", pad], "Boxes3D:colors"), [0, moment]);
+        assert_eq!(times_ns(&bytes, &["scene", "pads", "right", pad], "Boxes3D:colors"), [0]);
+    }
+    assert_eq!(times_ns(&bytes, &["scene", "board"], "Boxes3D:colors"), [0]);
+}
+
+#[test]
+fn a_hold_that_stands_has_no_moment_of_failure() {
+    let mut example = example();
+    example.verdict.first_failure = None;
+    example.events.truncate(2);
+    let bytes = encode(&example.input()).unwrap();
+    assert!(times_ns(&bytes, &["scene", "first crossing"], "Points3D:labels").is_empty());
+    assert!(times_ns(&bytes, &["plots", "rotation", "first crossing"], "Scalars:scalars").is_empty());
+    assert_eq!(times_ns(&bytes, &["scene", "pads", "left", "upper"], "Boxes3D:colors"), [0]);
+}
+
+#[test]
+fn recordings_of_other_versions_are_refused_with_theirs() {
+    let bytes = encode(&example().input()).unwrap();
+    let with_header = |header: [u8; 8]| {
+        let mut bytes = bytes.clone();
+        bytes[..8].copy_from_slice(&header);
+        read(&bytes).unwrap_err().to_string()
+    };
+    let expected = |version: &str| format!("found a recording of rerun {version}, expected one of 0.36");
+    assert!(with_header([b'R', b'R', b'F', b'2', 0, 40, 1, 0]).ends_with(&expected("0.40.1")));
+    assert!(with_header([b'R', b'R', b'F', b'1', 0, 20, 0, 0]).ends_with(&expected("0.20.0")));
+
+    let mut later = Messages::new(StoreId::new(StoreKind::Recording, APPLICATION, "run"));
+    let about = rerun::TextDocument::new("{\"format\":2,\"benchdog\":\"9.9.9\"}");
+    later.log_static(&entity(&["about"]), &about).unwrap();
+    let message = read(&rrd::bytes(later.into_messages()).unwrap()).unwrap_err().to_string();
+    let expected =
+        "found a recording of format 2, made by benchdog 9.9.9, expected format 1, the only one that benchdog";
+    assert!(message.contains(expected), "{message}");
+}

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{
-    Outcome, Status, console, explanation,
+    Outcome, Status, console,
     plot::{Line, Plot, escape},
     summary::recording_link,
 };
@@ -19,7 +19,7 @@ const JOINTS_SHOWN: usize = 3;
 const HANDS: [&str; 2] = ["hand-0", "hand-1"];
 
 /// The classes of the hardest joints' lines, hardest first.
-const JOINTS: [&str; JOINTS_SHOWN] = ["hand-0", "hand-1", "load"];
+const JOINTS: [&str; JOINTS_SHOWN] = ["joint-0", "joint-1", "joint-2"];
 
 /// The whole page: the table of all scenarios, then each with its checks and plots. Those that did not go as expected are
 /// open.
@@ -40,8 +40,8 @@ pub fn page(outcomes: &[Outcome]) -> String {
     }
     let style = include_str!("report.css");
     format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Benchdog: {}</title>\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Benchdog: {}</title>\n\
          <style>\n{style}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
         escape(count.trim_end())
     )
@@ -72,7 +72,7 @@ fn row(body: &mut String, outcome: &Outcome) {
         _ => None,
     };
     let cells = [
-        format!("<td><a href=\"#{name}\">{name}</a></td>"),
+        format!("<td class=\"name\"><a href=\"#{name}\">{name}</a></td>"),
         format!("<td class=\"{class}\">{mark}</td>"),
         word(verdict.map(|verdict| verdict.verdict.to_string())),
         word(verdict.map(|verdict| verdict.expected.to_string())),
@@ -81,14 +81,14 @@ fn row(body: &mut String, outcome: &Outcome) {
         checked(CheckKind::Deflection),
         checked(CheckKind::TorqueRatio),
         figure(load),
-        word(recording_link(outcome).map(|link| format!("<a href=\"{0}\">{0}</a>", escape(&link)))),
+        word(recording_link(outcome).map(|link| format!("<a href=\"{}\">.rrd</a>", escape(&link)))),
     ];
     push(body, format_args!("<tr>{}</tr>", cells.concat()));
 }
 
 fn section(body: &mut String, outcome: &Outcome) {
     let (name, status) = (escape(outcome.name()), outcome.status());
-    let open = if matches!(status, Status::Failed | Status::Crashed) { " open" } else { "" };
+    let open = if matches!(status, Status::Failed | Status::Crashed) { " open=\"open\"" } else { "" };
     let (class, mark) = (status.name(), status.mark());
     push(
         body,
@@ -114,7 +114,6 @@ fn checks(body: &mut String, verdict: &Verdict) {
     if verdict.checks.is_empty() {
         return;
     }
-    push(body, format_args!("<p>{}</p>", escape(&explanation(verdict))));
     let figures = ["value", "limit", "margin"].map(|head| format!("<th class=\"n\">{head}</th>")).concat();
     push(body, format_args!("<table>\n<tr><th>check</th><th>unit</th>{figures}<th></th></tr>"));
     for Check { name, value, limit, margin, unit, passed } in &verdict.checks {

@@ -194,10 +194,10 @@ mod tests {
         let line = Line { name: "left hand", class: "hand-0", values: &values };
         let svg =
             Plot { title: "slip, mm", time_s: &time_s, lines: vec![line], limit: Some(1.0), failed_s: None }.svg();
-        // The peak is 2 of an axis up to 2.1: y = 172 - 146 * 2 / 2.1.
-        assert!(svg.contains(&format!(",{:.1}", 172.0 - 146.0 * 2.0 / 2.1)), "{svg}");
+        // The peak is 2 of an axis up to 2.2: y = 172 - 146 * 2 / 2.2.
+        assert!(svg.contains(&format!(",{:.1}", 172.0 - 146.0 * 2.0 / 2.2)), "{svg}");
         assert!(svg.matches(',').count() < 2 * COLUMNS + 20);
         // The limit's line lies inside the plot.
-        assert!(svg.contains(&format!("y1=\"{:.1}\"", 172.0 - 146.0 / 2.1)));
+        assert!(svg.contains(&format!("y1=\"{:.1}\"", 172.0 - 146.0 / 2.2)));
     }
 }
