@@ -89,7 +89,10 @@ fn every_command_has_an_example() {
     let folder = folder(&[]);
     let help = String::from_utf8(benchdog(folder.path(), &["--help"]).stdout).unwrap();
     let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
-    for command in commands.filter_map(|line| line.split_whitespace().next()).filter(|command| *command != "help") {
+    for command in commands
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
+        .filter(|command| !["help", ""].contains(command))
+    {
         let help = String::from_utf8(benchdog(folder.path(), &["help", command]).stdout).unwrap();
         assert!(help.contains("Example") && help.contains(&format!("  benchdog {command}")), "{help}");
     }

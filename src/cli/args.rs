@@ -160,19 +160,19 @@ pub struct InspectArgs {
 #[command(next_help_heading = "Limits")]
 pub struct LimitArgs {
     /// Translation of a hand on the board, mm
-    #[arg(long, value_name = "MM", value_parser = positive)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
     pub slip_mm: Option<f64>,
     /// Rotation of a hand on the board, degrees
-    #[arg(long, value_name = "DEG", value_parser = positive)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = positive)]
     pub slip_deg: Option<f64>,
     /// Displacement of the tool point of the board, mm
-    #[arg(long, value_name = "MM", value_parser = positive)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
     pub deflection_mm: Option<f64>,
     /// Rate of slip in the second half of the hold, mm/s
-    #[arg(long, value_name = "MM_S", value_parser = positive)]
+    #[arg(long, value_name = "MM_S", allow_negative_numbers = true, value_parser = positive)]
     pub creep_mm_s: Option<f64>,
     /// Demanded joint torque over its limit
-    #[arg(long, value_name = "RATIO", value_parser = positive)]
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = positive)]
     pub torque_ratio: Option<f64>,
 }
 

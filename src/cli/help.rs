@@ -21,10 +21,10 @@ Examples:
   benchdog run scenarios --filter cut --filter 'fails-*'
   benchdog run scenarios --record failed --fail-fast
 
-Into --out go report.html, summary.csv, summary.json and junit.xml, and for each scenario a folder of its name with
-plan.json, recording.rrd and, last of all, verdict.json: a run that was killed leaves none of the four reports and
-no verdict.json for what it did not finish. Ctrl-C ends the run after the scenarios at work, and reports; a second
-one ends it at once.";
+Into --out go report.html, summary.csv, summary.json and junit.xml, and for each scenario a
+folder of its name with plan.json, recording.rrd and, last of all, verdict.json: a run that was
+killed leaves none of the four reports, and no verdict.json of what it did not finish.
+Ctrl-C ends the run after the scenarios at work and reports; a second one ends it at once.";
 
 /// `benchdog plan --help`.
 pub const PLAN: &str = "\
@@ -57,15 +57,16 @@ Examples:
   benchdog inspect recording.rrd --check --slip-mm 0.5 --deflection-mm 3
   benchdog inspect recording.rrd --scenario stricter.toml
 
-With --check, a limit or --scenario the stored trace is judged again; the exit code is then 1 when the verdict is not the
-expected one. What the file says of the run itself stays as it was recorded.";
+With --check, a limit or --scenario the stored trace is judged again; the exit code is then 1
+when the verdict is not the expected one. What the file says of the run stays as it was.";
 
 /// `benchdog view --help`.
 pub const VIEW: &str = "\
 Example:
   benchdog view out/quickstart/recording.rrd
 
-The viewer is not part of benchdog. `pip install rerun-sdk==0.36.3` or `cargo install rerun-cli@0.36.3 --locked` installs it.";
+The viewer is not part of benchdog. `pip install rerun-sdk==0.36.3` or
+`cargo install rerun-cli@0.36.3 --locked` installs it.";
 
 /// `benchdog doctor --help`.
 pub const DOCTOR: &str = "\

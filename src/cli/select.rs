@@ -24,6 +24,7 @@ pub struct Selected {
 /// # Errors
 /// When an argument names no scenario, a scenario cannot be used, two have one name, or no name passes the filters.
 pub fn scenarios(arguments: &[PathBuf], filters: &[String], seed: Option<u64>) -> Result<Vec<Selected>, CliError> {
+    let asked = filters.join(", ");
     let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
     let mut names = BTreeMap::<String, PathBuf>::new();
     let mut selected = Vec::new();
@@ -44,7 +45,10 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], seed: Option<u64>) -
         return Ok(selected);
     }
     let known: Vec<_> = names.into_keys().collect();
-    Err(CliError::Usage(format!("--filter: found no scenario that passes, expected one of {}", known.join(", "))))
+    Err(CliError::Usage(format!(
+        "--filter {asked}: found no scenario that passes, expected one of {}",
+        known.join(", ")
+    )))
 }
 
 /// The files that the arguments name. A path that exists is taken as it is, whatever characters it has.

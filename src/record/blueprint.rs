@@ -118,7 +118,7 @@ impl Layout {
         self.log(&child(&view.path, "Background"), &background)?;
         for whose in ["person", "robot"] {
             let points = entity(&["scene", POINTS, whose]);
-            let overrides = child(&child(&view.path, "ViewContents"), "overrides").join(&points);
+            let overrides = ViewContents::blueprint_base_visualizer_path_for_entity(view.id, &points);
             self.log(&overrides, &EntityBehavior::new().with_visible(false))?;
         }
         Ok(view)

@@ -30,7 +30,13 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 /// # Errors
 /// When the folder cannot be made or nothing can be written into it.
 pub fn check_folder(folder: &Path) -> Result<(), WriteError> {
-    let probe = || fs::create_dir_all(folder).and_then(|()| beside().tempfile_in(folder).map(drop));
+    let probe = || {
+        if folder.exists() && !folder.is_dir() {
+            return Err(io::Error::other("found a file, expected a folder"));
+        }
+        fs::create_dir_all(folder)?;
+        beside().tempfile_in(folder).map(drop)
+    };
     probe().map_err(|source| WriteError { path: folder.to_owned(), source })
 }
 
