@@ -36,12 +36,15 @@ const BALANCE_N: f64 = 0.01;
 /// What a look at one thing found: what is well, or what is wrong.
 type Finding = Result<String, String>;
 
+/// What is looked at, and how.
+type Look = (&'static str, fn() -> Finding);
+
 /// Looks at everything and prints a line each.
 ///
 /// # Errors
 /// When standard output cannot be written, or something is wrong.
 pub fn doctor() -> Result<Exit, CliError> {
-    let findings: [(&str, fn() -> Finding); 5] =
+    let findings: [Look; 5] =
         [("versions", versions), ("robot", robot), ("person", person), ("solver", solver), ("physics", physics)];
     let mut wrong = Vec::new();
     for (what, look) in findings {

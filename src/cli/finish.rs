@@ -98,7 +98,7 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
         exit: Exit::of(&run.verdict),
         wall_s: None,
         outcome: Outcome::Judged {
-            measures: run.simulated.map(|(_, judgement)| judgement.measures),
+            measures: run.simulated.map(|(_, judgement)| Box::new(judgement.measures)),
             predicted_load_factor: run.plan.and_then(|plan| plan.stability).map(|s| s.compliant_load_factor),
             verdict: run.verdict,
             recording,

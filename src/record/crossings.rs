@@ -66,7 +66,7 @@ pub(super) fn log_mark(messages: &mut Messages, input: &RecordingInput, arms: &[
     let mark = Points3D::new([vec3(&place)])
         .with_radii([0.02])
         .with_colors([palette::limit()])
-        .with_labels([format!("{}: {}", event.text, input.verdict.verdict)]);
+        .with_labels([event.text.as_str()]);
     let path = entity(&["scene", MARK]);
     messages.log_columns(&path, &[event.time_s], mark.columns_of_unit_batches().map_err(RecordError::encode)?)
 }

@@ -102,7 +102,7 @@ fn log_limit(messages: &mut Messages, input: &RecordingInput, plot: &str, kind: 
 }
 
 /// The series that a check is about, all of them.
-fn judged_series<'a>(measures: &'a Measures, kind: CheckKind) -> Vec<&'a [f64]> {
+fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
     match kind {
         CheckKind::Slip => measures.hands.iter().map(|hand| hand.slip_mm.as_slice()).collect(),
         CheckKind::SlipRotation => measures.hands.iter().map(|hand| hand.slip_deg.as_slice()).collect(),

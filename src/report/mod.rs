@@ -33,7 +33,7 @@ pub enum Outcome {
         /// The compliant load factor that the plan predicts; none for a plan without one.
         predicted_load_factor: Option<f64>,
         /// The judge's series; none when nothing was simulated.
-        measures: Option<Measures>,
+        measures: Option<Box<Measures>>,
         /// Where the recording was written.
         recording: Option<PathBuf>,
     },
