@@ -50,6 +50,7 @@ Example:
   benchdog schema scenario > scenario.schema.json";
 
 /// `benchdog inspect --help`.
+#[cfg(feature = "recording")]
 pub const INSPECT: &str = "\
 Examples:
   benchdog inspect out/quickstart/recording.rrd
@@ -61,6 +62,7 @@ With --check, a limit or --scenario the stored trace is judged again; the exit c
 when the verdict is not the expected one. What the file says of the run stays as it was.";
 
 /// `benchdog view --help`.
+#[cfg(feature = "recording")]
 pub const VIEW: &str = "\
 Example:
   benchdog view out/quickstart/recording.rrd
