@@ -25,6 +25,10 @@ scenarios:
 schemas:
     for of in scenario plan verdict; do cargo run --release -- schema $of > schemas/$of.schema.json; done
 
+# Write the expected messages under tests/snapshots again after a change that is meant
+snapshots:
+    INSTA_UPDATE=always cargo test --release --test messages
+
 # Licences, duplicate crates and sources of the dependencies (needs cargo-deny)
 deny:
     cargo deny check licenses bans sources

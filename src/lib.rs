@@ -21,8 +21,56 @@
 //! | [`sim`] | the rapier simulation of a hold |
 //! | [`judge`] | a trace against its limits |
 //! | `record` | the rerun recording of a run (feature `recording`) |
-//! | [`report`] | tables, JSON, JUnit |
+//! | [`report`] | tables, a page with plots, JSON, CSV, JUnit |
 //! | [`cli`] | the commands: they compose all of the above |
+//!
+//! # From a program
+//! A plan of another planner, simulated and judged under a scenario's limits:
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use benchdog::{judge, model::verdict::VerdictKind, scenario, sim};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (plan, robot) = scenario::read_plan(Path::new("scenarios/plans/cut-rim-weak-grip.json"), None)?;
+//! let scenario = scenario::for_plan(&plan, &robot);
+//! let trace = sim::simulate(&robot, &plan, scenario.grip.friction, &scenario.simulation)?;
+//! let judgement = judge::judge(&trace, &scenario.limits);
+//! assert_eq!(judgement.verdict, VerdictKind::Slips);
+//! for check in judgement.checks.iter().filter(|check| !check.passed) {
+//!     println!("{}: {:.2} {}, limit {} {}", check.name, check.value, check.unit, check.limit, check.unit);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A scenario, planned here (some seconds):
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use benchdog::{planner, planner::PlanOutcome, report, scenario};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let loaded = scenario::load(Path::new("scenarios/quickstart.toml"))?;
+//! match planner::plan(&loaded.scenario, &loaded.robot)? {
+//!     PlanOutcome::Found(plan) => report::file::write_whole(Path::new("plan.json"), report::json::plan(&plan).as_bytes())?,
+//!     PlanOutcome::Infeasible(why) => println!("no plan: {why}"),
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Input that cannot be used is an error with the file, the line and the key:
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! let text = "format = 1\nname = \"x\"\n[operation]\nkind = \"drill\"\npoint_m = [0.0, 0.0]\nforce_n = -1.0\n";
+//! let error = benchdog::scenario::load_text(Path::new("x.toml"), text).unwrap_err();
+//! assert_eq!(error.to_string(), "x.toml:6: operation.force_n: found -1, expected a positive number (N)");
+//! ```
 
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]

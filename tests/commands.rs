@@ -85,7 +85,7 @@ fn a_folder_that_cannot_be_written_is_one_clear_error() {
     let output = benchdog(&["run", &scenario], &file);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr);
-    assert!(message.starts_with("error: unwritable: failed to write") && message.lines().count() == 1, "{message}");
+    assert!(message.starts_with("error: failed to write") && message.lines().count() == 1, "{message}");
 }
 
 #[test]

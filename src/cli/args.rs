@@ -4,25 +4,17 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::{help, versions};
+
 /// Plans how a two-armed robot holds a board that a person drills or cuts, and proves by simulation that the hold
 /// stands.
 #[derive(Debug, Parser)]
-#[command(name = "benchdog", version, about, after_help = EXIT_CODES)]
+#[command(name = "benchdog", version, long_version = versions::LONG.as_str(), about, after_help = help::EXIT_CODES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
-
-const EXIT_CODES: &str = "\
-Exit codes:
-  0   all expectations met
-  1   some expectation not met, or no verdict was possible
-  2   bad input or usage, or output that cannot be written
-  3   no feasible plan where one was expected
-  70  a bug in benchdog
-
-Start with: benchdog run scenarios/quickstart.toml";
 
 /// A command.
 #[derive(Debug, Subcommand)]
@@ -41,6 +33,17 @@ pub enum Command {
     Margin(MarginArgs),
     /// Write a plan's scene for another simulator
     Export(ExportArgs),
+    /// Say what a recording says: verdict, checks, peaks, first failure; judge it again with other limits
+    #[cfg(feature = "recording")]
+    Inspect(InspectArgs),
+    /// Open a recording in the rerun viewer
+    #[cfg(feature = "recording")]
+    View(ViewArgs),
+    /// Check that benchdog can work here: assets, versions, a test of physics and solver
+    #[command(after_help = help::DOCTOR)]
+    Doctor,
+    /// Print the completions of a shell
+    Completions(CompletionsArgs),
 }
 
 /// What `run` and `simulate` share.
@@ -55,17 +58,24 @@ pub struct ReportArgs {
     /// Which runs to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Always)]
     pub record: RecordChoice,
-    /// Folder for plans, verdicts and recordings
+    /// Folder for plans, verdicts, recordings and reports
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
 }
 
 /// `benchdog run`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = help::RUN)]
 pub struct RunArgs {
-    /// Scenario files
+    /// Scenario files, folders of them, or patterns such as 'grasps/**/*.toml'
     #[arg(required = true, value_name = "SCENARIO")]
     pub scenarios: Vec<PathBuf>,
+    /// Only scenarios whose name contains this text, or matches it when it has one of * ? [; may be given several times
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Vec<String>,
+    /// Start no further scenario after the first that does not meet its expectation
+    #[arg(long)]
+    pub fail_fast: bool,
     /// How many scenarios run at once; all cores unless given. The results do not depend on it
     #[arg(long, value_name = "N")]
     pub jobs: Option<std::num::NonZero<usize>>,
@@ -79,6 +89,7 @@ pub struct RunArgs {
 
 /// `benchdog plan`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = help::PLAN)]
 pub struct PlanArgs {
     /// Scenario file
     pub scenario: PathBuf,
@@ -92,6 +103,7 @@ pub struct PlanArgs {
 
 /// `benchdog simulate`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = help::SIMULATE)]
 pub struct SimulateArgs {
     /// Plan file
     pub plan: PathBuf,
@@ -105,6 +117,7 @@ pub struct SimulateArgs {
 
 /// `benchdog curve`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = help::CURVE)]
 pub struct CurveArgs {
     /// Scenario of a cut, whose person, tool, board, force and distance from the middle count; that of the paper's
     /// reproduction unless given
@@ -116,6 +129,7 @@ pub struct CurveArgs {
 
 /// `benchdog schema`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = help::SCHEMA)]
 pub struct SchemaArgs {
     /// The file format
     #[arg(value_enum)]
@@ -146,6 +160,76 @@ pub struct ExportArgs {
     /// Where to write the scene as MJCF, the format of MuJoCo
     #[arg(long, value_name = "FILE")]
     pub mjcf: PathBuf,
+}
+
+/// `benchdog inspect`.
+#[cfg(feature = "recording")]
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::INSPECT)]
+pub struct InspectArgs {
+    /// Recording
+    #[arg(value_name = "FILE.rrd")]
+    pub recording: PathBuf,
+    /// Form of what is printed to standard output
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+    /// Judge the stored trace again, with the limits of the run but for those given here
+    #[arg(long)]
+    pub check: bool,
+    /// Scenario whose limits and expectation apply, in place of the run's
+    #[arg(long, value_name = "FILE")]
+    pub scenario: Option<PathBuf>,
+    /// Limits.
+    #[command(flatten)]
+    pub limits: LimitArgs,
+}
+
+/// Limits that take the place of others.
+#[cfg(feature = "recording")]
+#[derive(Clone, Copy, Debug, Args)]
+#[command(next_help_heading = "Limits")]
+pub struct LimitArgs {
+    /// Translation of a hand on the board, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
+    pub slip_mm: Option<f64>,
+    /// Rotation of a hand on the board, degrees
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = positive)]
+    pub slip_deg: Option<f64>,
+    /// Displacement of the tool point of the board, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
+    pub deflection_mm: Option<f64>,
+    /// Rate of slip in the second half of the hold, mm/s
+    #[arg(long, value_name = "MM_S", allow_negative_numbers = true, value_parser = positive)]
+    pub creep_mm_s: Option<f64>,
+    /// Demanded joint torque over its limit
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = positive)]
+    pub torque_ratio: Option<f64>,
+}
+
+/// A limit from the command line.
+#[cfg(feature = "recording")]
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "expected a positive number".to_owned())?;
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("expected a positive number".to_owned()) }
+}
+
+/// `benchdog view`.
+#[cfg(feature = "recording")]
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::VIEW)]
+pub struct ViewArgs {
+    /// Recording
+    #[arg(value_name = "FILE.rrd")]
+    pub recording: PathBuf,
+}
+
+/// `benchdog completions`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::COMPLETIONS)]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
 }
 
 /// Form of what is printed.

@@ -13,6 +13,8 @@ pub enum Exit {
     NotMet,
     /// No feasible plan where one was expected.
     Infeasible,
+    /// Interrupted by the user before all scenarios had their turn.
+    Interrupted,
     /// Bad input or usage, or output that cannot be written.
     Input,
     /// A bug in Benchdog.
@@ -28,6 +30,8 @@ impl Exit {
             Self::Input => 2,
             Self::Infeasible => 3,
             Self::Bug => 70,
+            // As shells report a program that Ctrl-C ended.
+            Self::Interrupted => 130,
         }
     }
 
@@ -66,10 +70,19 @@ pub enum CliError {
     /// The JUnit report cannot be made.
     #[error("failed to write the JUnit report: {0}")]
     JUnit(#[from] quick_junit::SerializeError),
-    /// A recording cannot be written.
+    /// The CSV summary cannot be made.
+    #[error("failed to write the CSV summary: {0}")]
+    Csv(#[from] csv::Error),
+    /// Signals cannot be caught.
+    #[error("failed to listen for Ctrl-C: {0}")]
+    Signals(#[from] ctrlc::Error),
+    /// A recording cannot be written or read.
     #[cfg(feature = "recording")]
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
+    /// Something on this machine does not work as it must.
+    #[error("{0}")]
+    Machine(String),
     /// The command line asks for what cannot be.
     #[error("{0}")]
     Usage(String),
@@ -82,13 +95,17 @@ impl CliError {
     /// The exit code of this error: what no input should bring about is a bug.
     pub fn exit(&self) -> Exit {
         match self {
-            Self::JUnit(_) => Exit::Bug,
+            Self::JUnit(_) | Self::Csv(_) => Exit::Bug,
+            #[cfg(feature = "recording")]
+            Self::Record(error) if error.is_about_a_file() => Exit::Input,
             #[cfg(feature = "recording")]
             Self::Record(_) => Exit::Bug,
-            Self::Input(_)
+            Self::Signals(_)
+            | Self::Input(_)
             | Self::Simulation(_)
             | Self::Human(_)
             | Self::Write(_)
+            | Self::Machine(_)
             | Self::Usage(_)
             | Self::Stdout(_) => Exit::Input,
         }
@@ -101,8 +118,8 @@ mod tests {
 
     #[test]
     fn the_worst_end_wins() {
-        let order = [Exit::Met, Exit::NotMet, Exit::Infeasible, Exit::Input, Exit::Bug];
+        let order = [Exit::Met, Exit::NotMet, Exit::Infeasible, Exit::Interrupted, Exit::Input, Exit::Bug];
         assert!(order.is_sorted());
-        assert_eq!(order.map(Exit::code), [0, 1, 3, 2, 70]);
+        assert_eq!(order.map(Exit::code), [0, 1, 3, 130, 2, 70]);
     }
 }

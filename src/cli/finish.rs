@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     model::scenario::Scenario,
-    report::{self, Outcome},
+    report::{self, Outcome, SkipReason},
     robot::Robot,
 };
 
@@ -22,17 +22,30 @@ pub struct Ended {
     pub outcome: Outcome,
     /// The exit code if it were the only one.
     pub exit: Exit,
+    /// How long it took, s.
+    pub wall_s: Option<f64>,
 }
 
 impl Ended {
     /// Runs a job to its end, whatever that is: other scenarios must not suffer from an error or a bug in this one.
-    pub fn catch(name: &str, job: impl FnOnce() -> Result<Self, CliError>) -> Self {
+    ///
+    /// # Errors
+    /// When a file cannot be written, which is no scenario's own matter.
+    pub fn catch(name: &str, job: impl FnOnce() -> Result<Self, CliError>) -> Result<Self, CliError> {
         let (exit, message) = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(job)) {
-            Ok(Ok(ended)) => return ended,
+            Ok(Ok(ended)) => return Ok(ended),
+            Ok(Err(error @ CliError::Write(_))) => return Err(error),
             Ok(Err(error)) => (error.exit(), error.to_string()),
             Err(panic) => (Exit::Bug, format!("this is a bug in benchdog: {}", panic_message(&*panic))),
         };
-        Self { outcome: Outcome::Crashed { name: name.to_owned(), message }, exit }
+        let outcome = Outcome::Crashed { name: name.to_owned(), message };
+        Ok(Self { outcome, exit, wall_s: None })
+    }
+
+    /// A scenario that is not run.
+    pub fn skipped(name: &str, reason: SkipReason) -> Self {
+        let exit = if reason == SkipReason::Interrupted { Exit::Interrupted } else { Exit::Met };
+        Self { outcome: Outcome::Skipped { name: name.to_owned(), reason }, exit, wall_s: None }
     }
 }
 
@@ -41,7 +54,29 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".into())
 }
 
-/// Writes plan, verdict and recording of a run into a folder of its name.
+/// The reports on a whole run.
+const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
+
+/// Sees that results can be written, and takes away what an earlier run left of those that this one will write: if it is
+/// killed, nothing must be there that could be taken for its result.
+///
+/// # Errors
+/// When the folder cannot be written.
+pub fn prepare<'a>(args: &ReportArgs, names: impl Iterator<Item = &'a str>) -> Result<(), CliError> {
+    report::file::check_folder(&args.out)?;
+    for name in REPORTS {
+        report::file::remove(&args.out.join(name))?;
+    }
+    if let Some(path) = &args.junit {
+        report::file::remove(path)?;
+    }
+    for name in names {
+        report::file::remove(&args.out.join(name).join("verdict.json"))?;
+    }
+    Ok(())
+}
+
+/// Writes plan, recording and, last, verdict of a run into a folder of its name.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -61,9 +96,11 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
     let recording = recorded.then(|| folder.join("recording.rrd"));
     Ok(Ended {
         exit: Exit::of(&run.verdict),
+        wall_s: None,
         outcome: Outcome::Judged {
+            measures: run.simulated.map(|(_, judgement)| Box::new(judgement.measures)),
             predicted_load_factor: run.plan.and_then(|plan| plan.stability).map(|s| s.compliant_load_factor),
-            verdict: run.verdict,
+            verdict: Box::new(run.verdict),
             recording,
         },
     })
@@ -73,19 +110,14 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
 fn write_or_remove(path: &Path, bytes: Option<Vec<u8>>) -> Result<(), CliError> {
     match bytes {
         Some(bytes) => report::file::write_whole(path, &bytes)?,
-        None => match std::fs::remove_file(path) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(report::file::WriteError { path: path.to_owned(), source }.into());
-            }
-            _ => {}
-        },
+        None => report::file::remove(path)?,
     }
     Ok(())
 }
 
 /// The table; a single run is shown with its checks.
-fn for_people(outcomes: &[Outcome]) -> String {
-    let mut text = report::console::table(outcomes);
+fn for_people(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
+    let mut text = report::console::table(outcomes, wall_s);
     if let [Outcome::Judged { verdict, recording, .. }] = outcomes {
         text.push('\n');
         text.push_str(&report::console::details(verdict, recording.as_deref()));
@@ -93,26 +125,54 @@ fn for_people(outcomes: &[Outcome]) -> String {
     text
 }
 
-/// Reports runs on standard output and in the JUnit file, and says how the command ended.
+/// All that ended, as the reports need it.
+pub struct Ending {
+    /// What became of each.
+    pub outcomes: Vec<Outcome>,
+    /// How long each took, s.
+    pub wall_s: Vec<Option<f64>>,
+    /// How the command ends.
+    pub exit: Exit,
+}
+
+impl From<Vec<Ended>> for Ending {
+    fn from(ended: Vec<Ended>) -> Self {
+        let exit = ended.iter().map(|ended| ended.exit).max().unwrap_or(Exit::Met);
+        let (outcomes, wall_s) = ended.into_iter().map(|ended| (ended.outcome, ended.wall_s)).unzip();
+        Self { outcomes, wall_s, exit }
+    }
+}
+
+/// Reports on standard output and in the file of `--junit`.
 ///
 /// # Errors
 /// When the report cannot be written.
-pub fn report(ended: Vec<Ended>, args: &ReportArgs) -> Result<Exit, CliError> {
-    let exit = ended.iter().map(|ended| ended.exit).max().unwrap_or(Exit::Met);
-    let outcomes: Vec<_> = ended.into_iter().map(|ended| ended.outcome).collect();
+pub fn report(ending: &Ending, args: &ReportArgs) -> Result<(), CliError> {
     match args.format {
-        Format::Human => output::print(&for_people(&outcomes))?,
-        Format::Json => output::print(&report::json::verdicts(&outcomes))?,
-    }
-    for outcome in &outcomes {
-        if let Outcome::Crashed { name, message } = outcome {
-            output::complain(&format!("error: {name}: {message}"));
-        }
+        Format::Human => output::print(&for_people(&ending.outcomes, &ending.wall_s))?,
+        Format::Json => output::print(&report::json::verdicts(&ending.outcomes))?,
     }
     if let Some(path) = &args.junit {
-        report::file::write_whole(path, report::junit::document(&outcomes)?.as_bytes())?;
+        report::file::write_whole(path, report::junit::document(&ending.outcomes)?.as_bytes())?;
     }
-    Ok(exit)
+    Ok(())
+}
+
+/// Writes the reports on a whole run into its folder.
+///
+/// # Errors
+/// When one cannot be written.
+pub fn write_reports(outcomes: &[Outcome], out: &Path) -> Result<(), CliError> {
+    let bytes = [
+        report::html::page(outcomes).into_bytes(),
+        report::summary::csv(outcomes)?,
+        report::summary::json(outcomes).into_bytes(),
+        report::junit::document(outcomes)?.into_bytes(),
+    ];
+    for (name, bytes) in REPORTS.iter().zip(bytes) {
+        report::file::write_whole(&out.join(name), &bytes)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -121,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_panic_in_one_run_is_a_bug_with_its_message() {
-        let ended = Ended::catch("bad-luck", || panic!("{}", "out of cheese"));
+        let ended = Ended::catch("bad-luck", || panic!("{}", "out of cheese")).unwrap();
         assert_eq!(ended.exit, Exit::Bug);
         let Outcome::Crashed { name, message } = ended.outcome else { panic!("a panic is a crash") };
         assert_eq!((name.as_str(), message.as_str()), ("bad-luck", "this is a bug in benchdog: out of cheese"));

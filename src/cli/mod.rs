@@ -2,15 +2,22 @@
 //! written, and turn what happened into an exit code. Nothing below this module knows any of these.
 
 mod args;
+mod completions;
 mod curve;
+mod doctor;
 mod exit;
 mod export;
 mod finish;
+mod help;
+#[cfg(feature = "recording")]
+mod inspect;
+mod interrupt;
 mod maps;
 mod margin;
 mod output;
 mod pipeline;
 mod plan;
+mod progress;
 #[cfg(feature = "recording")]
 mod recording;
 #[cfg(not(feature = "recording"))]
@@ -18,8 +25,11 @@ mod recording;
 mod recording;
 mod run;
 mod schema;
+mod select;
 mod simulate;
 mod versions;
+#[cfg(feature = "recording")]
+mod view;
 
 use std::process::ExitCode;
 
@@ -46,6 +56,12 @@ pub fn main() -> ExitCode {
         Command::Schema(args) => schema::schema(args),
         Command::Margin(args) => margin::margin(args),
         Command::Export(args) => export::export(args),
+        #[cfg(feature = "recording")]
+        Command::Inspect(args) => inspect::inspect(args),
+        #[cfg(feature = "recording")]
+        Command::View(args) => view::view(args),
+        Command::Doctor => doctor::doctor(),
+        Command::Completions(args) => completions::completions(args),
     });
     match outcome {
         Ok(Ok(exit)) => exit.into(),

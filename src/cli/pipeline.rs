@@ -26,7 +26,6 @@ pub struct Run {
     /// The plan that was judged; none when there is none.
     pub plan: Option<Plan>,
     /// The simulation, with what the judge made of it; none when there was nothing to simulate.
-    #[cfg_attr(not(feature = "recording"), expect(dead_code, reason = "only a recording needs more than the verdict"))]
     pub simulated: Option<(Trace, Judgement)>,
 }
 

@@ -1,5 +1,7 @@
 //! The recording of a run: what the recorder needs of the person is computed here, since it knows no bodies.
 
+use nalgebra::Point3;
+
 use super::{exit::CliError, pipeline::Run};
 use crate::{
     human::{BodyPart, Human},
@@ -17,12 +19,14 @@ pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Ve
     let person = match &plan.human {
         Some(posture) => {
             let human = Human::new(&posture.person(), &scenario.tool)?;
-            Some(person_shape(&human.capsules_w(&posture.x_wb, &posture.q_rad)))
+            let points_w = human.body_points_w(&posture.x_wb, &posture.q_rad).to_vec();
+            Some(person_shape(&human.capsules_w(&posture.x_wb, &posture.q_rad), points_w))
         }
         None => None,
     };
     let input = RecordingInput {
         robot,
+        scenario,
         plan,
         trace,
         measures: &judgement.measures,
@@ -34,11 +38,12 @@ pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Ve
 }
 
 /// The person without the tool, which the recorder draws from the palm to the board.
-fn person_shape(capsules: &[crate::human::Capsule]) -> PersonShape {
+fn person_shape(capsules: &[crate::human::Capsule], points_w: Vec<Point3<f64>>) -> PersonShape {
     let (tool, body): (Vec<&crate::human::Capsule>, Vec<_>) =
         capsules.iter().partition(|capsule| capsule.name == BodyPart::Tool);
     PersonShape {
-        palm_w: tool.first().map_or_else(nalgebra::Point3::origin, |tool| tool.p0_w),
+        points_w,
+        palm_w: tool.first().map_or_else(Point3::origin, |tool| tool.p0_w),
         capsules: body
             .iter()
             .map(|capsule| Capsule { ends_w: [capsule.p0_w, capsule.p1_w], radius_m: capsule.radius_m })

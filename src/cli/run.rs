@@ -1,54 +1,103 @@
 //! `benchdog run`: the main job, on one scenario or many.
 
 use std::{
-    collections::BTreeMap,
     num::NonZero,
-    path::Path,
     sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
+        Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
     },
+    time::Instant,
 };
 
 use super::{
     args::RunArgs,
     exit::{CliError, Exit},
-    finish::{Ended, finish, report},
+    finish::{self, Ended, Ending},
+    interrupt,
     maps::Maps,
     pipeline,
+    progress::Progress,
+    select::{self, Selected},
 };
-use crate::scenario::{self, LoadedScenario};
+use crate::{report::SkipReason, scenario::LoadedScenario};
 
-/// Runs scenarios: all are read and checked before the first is planned.
+/// Runs scenarios: all are read and checked, and the folder for the results too, before the first is planned.
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
-    let scenarios = load_all(args)?;
-    let maps = Maps::default();
+    let scenarios = select::scenarios(&args.scenarios, &args.filter, args.seed)?;
+    let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
+    finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
+    interrupt::listen()?;
+    let turns = Turns {
+        args,
+        maps: Maps::default(),
+        progress: Progress::new(wanted.len()),
+        failed: AtomicBool::new(false),
+        broken: Mutex::new(None),
+    };
     let jobs = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
-    let ended = in_parallel(jobs, &scenarios, |loaded| {
-        Ended::catch(&loaded.scenario.name, || {
-            let run = pipeline::run_scenario(loaded, &maps)?;
-            finish(run, &loaded.scenario, &loaded.robot, &args.report)
-        })
-    });
-    report(ended, &args.report)
+    let ended = in_parallel(jobs, &scenarios, |selected| turns.take(selected));
+    turns.progress.finish();
+    if let Some(error) = turns.broken.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        return Err(error);
+    }
+    let ending = Ending::from(ended);
+    // The table first: a disk that has become full must not cost it.
+    finish::report(&ending, &args.report)?;
+    finish::write_reports(&ending.outcomes, &args.report.out)?;
+    Ok(ending.exit)
 }
 
-fn load_all(args: &RunArgs) -> Result<Vec<LoadedScenario>, CliError> {
-    let mut scenarios = Vec::with_capacity(args.scenarios.len());
-    let mut names = BTreeMap::<String, &Path>::new();
-    for path in &args.scenarios {
-        let mut loaded = scenario::load(path)?;
-        if let Some(seed) = args.seed {
-            loaded.scenario.planner.seed = seed;
+/// What the scenarios of a run share.
+struct Turns<'a> {
+    args: &'a RunArgs,
+    maps: Maps,
+    progress: Progress,
+    /// True once an expectation was not met.
+    failed: AtomicBool,
+    /// The first error that leaves no sense in going on: a disk that takes no more is full for all.
+    broken: Mutex<Option<CliError>>,
+}
+
+impl Turns<'_> {
+    /// Runs a scenario, or says why not.
+    fn take(&self, selected: &Selected) -> Ended {
+        let name = &selected.loaded.scenario.name;
+        if let Some(reason) = self.reason_to_skip(selected) {
+            return Ended::skipped(name, reason);
         }
-        let name = loaded.scenario.name.clone();
-        if let Some(other) = names.insert(name.clone(), path) {
-            let (path, other) = (path.display(), other.display());
-            return Err(CliError::Usage(format!("{path}: name: found \"{name}\", which is the name of {other} too")));
-        }
-        scenarios.push(loaded);
+        self.progress.begins(name);
+        let start = Instant::now();
+        let mut ended = match Ended::catch(name, || self.run(&selected.loaded)) {
+            Ok(ended) => ended,
+            Err(error) => {
+                self.broken.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                return Ended::skipped(name, SkipReason::AfterFailure);
+            }
+        };
+        let wall_s = start.elapsed().as_secs_f64();
+        ended.wall_s = Some(wall_s);
+        self.failed.fetch_or(ended.exit != Exit::Met, Ordering::SeqCst);
+        self.progress.ends(&ended.outcome, wall_s);
+        ended
     }
-    Ok(scenarios)
+
+    fn run(&self, loaded: &LoadedScenario) -> Result<Ended, CliError> {
+        let run = pipeline::run_scenario(loaded, &self.maps)?;
+        finish::finish(run, &loaded.scenario, &loaded.robot, &self.args.report)
+    }
+
+    fn reason_to_skip(&self, selected: &Selected) -> Option<SkipReason> {
+        let broken = || self.broken.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+        if !selected.wanted {
+            Some(SkipReason::Filtered)
+        } else if interrupt::requested() {
+            Some(SkipReason::Interrupted)
+        } else if broken() || self.args.fail_fast && self.failed.load(Ordering::SeqCst) {
+            Some(SkipReason::AfterFailure)
+        } else {
+            None
+        }
+    }
 }
 
 /// The results of a job on every item, in the order of the items, worked off by so many threads.
@@ -63,12 +112,12 @@ fn in_parallel<T: Sync, R: Send>(jobs: usize, items: &[T], job: impl Fn(&T) -> R
                     items.get(index).map(|item| (index, item))
                 } {
                     let result = job(item);
-                    done.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((index, result));
+                    done.lock().unwrap_or_else(PoisonError::into_inner).push((index, result));
                 }
             });
         }
     });
-    let mut done = done.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
     done.sort_by_key(|&(index, _)| index);
     done.into_iter().map(|(_, result)| result).collect()
 }

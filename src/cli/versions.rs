@@ -1,9 +1,20 @@
 //! Versions of Benchdog and of the engines that decide a verdict.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::LazyLock};
 
 /// The engines, with the versions that `Cargo.lock` holds; a test compares the two.
 const ENGINES: [(&str, &str); 3] = [("clarabel", "0.11.1"), ("parry3d-f64", "0.31.1"), ("rapier3d-f64", "0.36.1")];
+
+/// The version of rerun whose files are written, and whose viewer shows them.
+pub const RERUN: &str = "0.36.3";
+
+/// What `--version` says: Benchdog, the engines that decide a verdict, and what writes recordings.
+pub static LONG: LazyLock<String> = LazyLock::new(|| {
+    let engines = ENGINES.iter().map(|(name, version)| format!("\n{name} {version}"));
+    let rerun =
+        if cfg!(feature = "recording") { format!("\nrerun {RERUN}") } else { "\nrerun: built without".to_owned() };
+    format!("{}{}{rerun}", env!("CARGO_PKG_VERSION"), engines.collect::<String>())
+});
 
 /// Name to version, for verdicts and recordings.
 pub fn versions() -> BTreeMap<String, String> {
@@ -19,7 +30,7 @@ mod tests {
     fn engine_versions_are_those_of_the_lock_file() {
         let lock: toml::Table = toml::from_str(include_str!("../../Cargo.lock")).unwrap();
         let packages = lock["package"].as_array().unwrap();
-        for (name, version) in ENGINES {
+        for (name, version) in ENGINES.into_iter().chain([("rerun", RERUN)]) {
             let found = packages.iter().find(|package| package["name"].as_str() == Some(name)).unwrap();
             assert_eq!(found["version"].as_str(), Some(version), "{name}");
         }

@@ -20,7 +20,8 @@ pub(super) fn events(trace: &Trace, judged: &[Sample], findings: &[Finding]) -> 
 pub(super) fn events_without_verdict(trace: &Trace, reason: &str) -> Vec<Event> {
     let mut events = phase_events(trace);
     let time_s = trace.samples.last().map_or(0.0, |sample| sample.time_s);
-    events.push(Event { time_s, kind: EventKind::BrokeDown, text: format!("no verdict: {reason}") });
+    let text = format!("no verdict: {reason}");
+    events.push(Event { time_s, kind: EventKind::BrokeDown, text, what: String::new() });
     in_order(events)
 }
 
@@ -38,6 +39,7 @@ fn phase_events(trace: &Trace) -> Vec<Event> {
         .map(|sample| Event {
             time_s: sample.time_s,
             kind: EventKind::Phase,
+            what: String::new(),
             text: match sample.phase {
                 Phase::Settle => "settle: the board's weight alone".to_owned(),
                 Phase::Ramp => format!("ramp: the load grows; the tool point sagged {:.2} mm", sag_mm(trace, sample)),
@@ -76,5 +78,6 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
     };
     let what = if crossing.what.is_empty() { String::new() } else { format!("{} ", crossing.what) };
     let text = format!("{what}{happened} {}{unit} at load factor {:.2}", finding.check.limit, sample.load_factor);
-    Some(Event { time_s: sample.time_s, kind: EventKind::LimitCrossed, text })
+    let kind = EventKind::LimitCrossed(finding.check.name);
+    Some(Event { time_s: sample.time_s, kind, text, what: crossing.what.clone() })
 }

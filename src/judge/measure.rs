@@ -21,6 +21,7 @@ pub(super) fn measures(trace: &Trace, reference: usize) -> Measures {
     };
     Measures {
         time_s: samples.iter().map(|sample| sample.time_s).collect(),
+        load_factor: samples.iter().map(|sample| sample.load_factor).collect(),
         hands: (0..trace.arms.len()).map(|arm| hand_measures(trace, samples, arm)).collect(),
         deflection_mm: samples.iter().map(deflection_mm).collect(),
         joints: (0..trace.arms.len()).flat_map(|arm| joint_measures(trace, samples, arm)).collect(),

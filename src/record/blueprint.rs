@@ -9,8 +9,8 @@ use rerun::{
         re_log_types::BlueprintActivationCommand,
         re_sdk_types::blueprint::{
             archetypes::{
-                Background, ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TextLogColumns,
-                TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
+                Background, ContainerBlueprint, EntityBehavior, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend,
+                ScalarAxis, TextLogColumns, TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
             },
             components::{BackgroundKind, ContainerKind, Corner2D, LoopMode, PanelState, PlayState, RootContainer},
             datatypes::{TextLogColumn, TextLogColumnKind},
@@ -24,7 +24,8 @@ use super::{
     RecordError, RecordingInput, TIMELINE,
     chunks::Messages,
     entity, palette,
-    plots::{JOINTS_SHOWN, LIMIT, PLOTS, hardest_first},
+    plots::{FAILURE, JOINTS_SHOWN, LIMIT, LOAD, PLOTS, hardest_first, top},
+    scene::POINTS,
 };
 use crate::model::verdict::CheckKind;
 
@@ -50,6 +51,7 @@ pub(super) fn messages(messages: Messages, input: &RecordingInput) -> Result<Vec
     for (plot, kind) in PLOTS {
         middle.push(layout.plot(input, plot, kind)?);
     }
+    middle.push(layout.load()?);
     let middle = layout.container(ContainerKind::Vertical, &middle, 0.28)?;
     let right = layout.view("TextDocument", "summary", &["+ /summary"], 0.24)?;
     let root = layout.container(ContainerKind::Horizontal, &[left, middle, right], 1.0)?;
@@ -114,6 +116,11 @@ impl Layout {
         self.log(&child(&view.path, "LineGrid3D"), &LineGrid3D::new().with_plane(floor))?;
         let background = Background::new(BackgroundKind::SolidColor).with_color(palette::background());
         self.log(&child(&view.path, "Background"), &background)?;
+        for whose in ["person", "robot"] {
+            let points = entity(&["scene", POINTS, whose]);
+            let overrides = ViewContents::blueprint_base_visualizer_path_for_entity(view.id, &points);
+            self.log(&overrides, &EntityBehavior::new().with_visible(false))?;
+        }
         Ok(view)
     }
 
@@ -133,16 +140,34 @@ impl Layout {
                 let joints = hardest_first(input);
                 let mut queries: Vec<String> =
                     joints.iter().take(JOINTS_SHOWN).map(|(joint, _)| query(plot, &joint.name)).collect();
-                queries.push(query(plot, LIMIT));
+                queries.extend([query(plot, LIMIT), query(plot, FAILURE)]);
                 ("joint torque / limit, hardest joints".to_owned(), queries)
             }
             CheckKind::SlipRotation => (format!("rotation of the hands on the board, {unit}"), vec![query(plot, "**")]),
             CheckKind::Slip => (format!("slip of the hands on the board, {unit}"), vec![query(plot, "**")]),
             _ => (format!("{plot} of the tool point, {unit}"), vec![query(plot, "**")]),
         };
-        let view = self.view("TimeSeries", &name, &queries, 0.22)?;
-        self.log(&child(&view.path, "PlotLegend"), &PlotLegend::new().with_corner(Corner2D::LeftTop))?;
+        let view = self.view("TimeSeries", &name, &queries, 0.19)?;
+        self.legend(&view)?;
+        self.range(&view, top(input, kind))?;
         Ok(view)
+    }
+
+    /// The load that acts.
+    fn load(&mut self) -> Result<Placed, RecordError> {
+        let view = self.view("TimeSeries", "load factor", &[query(LOAD, "**")], 0.12)?;
+        self.legend(&view)?;
+        Ok(view)
+    }
+
+    fn legend(&mut self, view: &Placed) -> Result<(), RecordError> {
+        self.log(&child(&view.path, "PlotLegend"), &PlotLegend::new().with_corner(Corner2D::LeftTop))
+    }
+
+    /// The axis from zero to `top`.
+    fn range(&mut self, view: &Placed, top: f64) -> Result<(), RecordError> {
+        let range = rerun::datatypes::Range1D([0.0, top]);
+        self.log(&child(&view.path, "ScalarAxis"), &ScalarAxis::new().with_range(range))
     }
 
     fn panels(&mut self, root_id: Uuid) -> Result<(), RecordError> {

@@ -7,18 +7,25 @@
 //! | entity | what it shows |
 //! |---|---|
 //! | `scene/...` | robot, board, operation, person, tool, pads and forces, in W |
-//! | `plots/...` | slip, rotation, deflection, torque ratios, each beside its limit |
+//! | `plots/...` | slip, rotation, deflection, torque ratios, each beside its limit; load factor |
 //! | `phases`, `events` | what happened when |
 //! | `summary` | the verdict and the plan for a reader |
-//! | `verdict` | the verdict's JSON, for [`read_summary`] |
+//! | `about`, `verdict` | the format's number and the verdict's JSON, for [`read_summary`] |
+//! | `scenario`, `plan`, `trace/...` | the run itself, for [`read_run`] |
+//!
+//! The moment at which a limit is first crossed is marked at the same time stamp in four places: as a warning in `events`,
+//! as a point on the series in `plots`, as a labelled point in the scene, and by the colour of the pads or the board
+//! that crossed it.
 
 mod blueprint;
 mod chunks;
+mod crossings;
 mod palette;
 mod plots;
 mod read;
 mod rrd;
 mod scene;
+mod stored;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -26,7 +33,7 @@ mod tests;
 use std::path::PathBuf;
 
 use nalgebra::Point3;
-pub use read::{Peaks, RecordedPhase, RecordedSummary, read_summary};
+pub use read::{Peaks, RecordedPhase, RecordedRun, RecordedSummary, read_run, read_summary};
 use rerun::{EntityPath, StoreId, StoreKind};
 
 use self::chunks::Messages;
@@ -34,6 +41,7 @@ use crate::{
     model::{
         measures::{Event, Measures},
         plan::Plan,
+        scenario::Scenario,
         trace::Trace,
         verdict::Verdict,
     },
@@ -51,6 +59,8 @@ const TIMELINE: &str = "time";
 pub struct RecordingInput<'a> {
     /// The robot of the plan.
     pub robot: &'a Robot,
+    /// The scenario under which the plan was simulated.
+    pub scenario: &'a Scenario,
     /// The plan that was simulated.
     pub plan: &'a Plan,
     /// What happened.
@@ -72,6 +82,8 @@ pub struct PersonShape {
     pub capsules: Vec<Capsule>,
     /// Middle of the palm that holds the tool, in W, m.
     pub palm_w: Point3<f64>,
+    /// The points of the body from which the distance to the robot is measured, in W, m.
+    pub points_w: Vec<Point3<f64>>,
 }
 
 /// A cylinder with round ends.
@@ -116,6 +128,11 @@ pub enum RecordError {
 }
 
 impl RecordError {
+    /// True when a file is to blame and not what was to be recorded.
+    pub fn is_about_a_file(&self) -> bool {
+        matches!(self, Self::Read { .. } | Self::Invalid { .. })
+    }
+
     fn encode(source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
         Self::Encode(source.into())
     }
@@ -132,6 +149,7 @@ pub fn encode(input: &RecordingInput) -> Result<Vec<u8>, RecordError> {
     scene::log(&mut recording, input)?;
     plots::log(&mut recording, input)?;
     summary::log(&mut recording, input)?;
+    stored::log(&mut recording, input)?;
     let layout = Messages::new(StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-blueprint")));
     let layout = blueprint::messages(layout, input)?;
     rrd::bytes(recording.into_messages().into_iter().chain(layout))

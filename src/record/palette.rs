@@ -7,7 +7,7 @@ pub(super) fn background() -> Color {
     Color::from_rgb(28, 30, 34)
 }
 
-/// Any limit.
+/// Any limit, and what has crossed one.
 pub(super) fn limit() -> Color {
     Color::from_rgb(213, 94, 0)
 }
@@ -44,4 +44,9 @@ pub(super) fn shade(arm: usize, darker: f32) -> Color {
     let [r, g, b, _] = hand(arm).to_array();
     let dim = |channel: u8| (f32::from(channel) * (1.0 - darker)) as u8;
     Color::from_rgb(dim(r), dim(g), dim(b))
+}
+
+/// The points between which distances are measured.
+pub(super) fn points() -> Color {
+    Color::from_rgb(255, 255, 255)
 }

@@ -1,10 +1,12 @@
 //! Everything over time that is no picture: the judge's series beside their limits, the phases, the events.
 
-use rerun::{Scalars, SeriesLines, StateChange, StateConfiguration, TextLog, TextLogLevel};
+use rerun::{
+    Scalars, SeriesLines, SeriesPoints, StateChange, StateConfiguration, TextLog, TextLogLevel, components::MarkerShape,
+};
 
 use super::{RecordError, RecordingInput, chunks::Messages, entity, palette};
 use crate::model::{
-    measures::{EventKind, JointMeasures},
+    measures::{EventKind, JointMeasures, Measures, axis_top},
     trace::{Phase, Sample},
     verdict::CheckKind,
 };
@@ -15,7 +17,13 @@ pub(super) const JOINTS_SHOWN: usize = 4;
 /// Name of the series that is a limit.
 pub(super) const LIMIT: &str = "limit";
 
-/// The four plots: the folder of their series, and the check that they explain.
+/// Name of the series that is the first crossing of a limit.
+pub(super) const FAILURE: &str = "first crossing";
+
+/// The plot of the load, which has no limit.
+pub(super) const LOAD: &str = "load";
+
+/// The plots of what is judged: the folder of their series, and the check that they explain.
 pub(super) const PLOTS: [(&str, CheckKind); 4] = [
     ("slip", CheckKind::Slip),
     ("rotation", CheckKind::SlipRotation),
@@ -39,8 +47,12 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     for (joint, colour) in hardest_first(input) {
         series("torque", &joint.name, colour, &joint.torque_ratio)?;
     }
+    if !measures.load_factor.is_empty() {
+        series(LOAD, "load factor", palette::load(), &measures.load_factor)?;
+    }
     for (plot, kind) in PLOTS {
         log_limit(messages, input, plot, kind)?;
+        log_failure(messages, input, plot, kind)?;
     }
     log_phases(messages, &input.trace.samples)?;
     log_events(messages, input)
@@ -89,6 +101,54 @@ fn log_limit(messages: &mut Messages, input: &RecordingInput, plot: &str, kind: 
     log_series(messages, [plot, LIMIT], &[*first_s, *last_s], &ends, (palette::limit(), 1.5, LIMIT))
 }
 
+/// The series that a check is about, all of them.
+fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
+    match kind {
+        CheckKind::Slip => measures.hands.iter().map(|hand| hand.slip_mm.as_slice()).collect(),
+        CheckKind::SlipRotation => measures.hands.iter().map(|hand| hand.slip_deg.as_slice()).collect(),
+        CheckKind::Deflection => vec![&measures.deflection_mm],
+        CheckKind::TorqueRatio => measures.joints.iter().map(|joint| joint.torque_ratio.as_slice()).collect(),
+        CheckKind::Creep
+        | CheckKind::PadOpen
+        | CheckKind::ContactLost
+        | CheckKind::Drop
+        | CheckKind::Penetration
+        | CheckKind::EnergyCreated
+        | CheckKind::ForceResidual
+        | CheckKind::CouplingDrift => Vec::new(),
+    }
+}
+
+/// The top of a plot's axis: its limit must be seen even when a board that is lost takes its series far away.
+pub(super) fn top(input: &RecordingInput, kind: CheckKind) -> f64 {
+    let peak = judged_series(input.measures, kind).into_iter().flatten().copied().fold(0.0, f64::max);
+    axis_top(peak, input.verdict.check(kind).map(|check| check.limit))
+}
+
+/// A point where the first limit of all was crossed, on the worst of the series.
+fn log_failure(
+    messages: &mut Messages,
+    input: &RecordingInput,
+    plot: &str,
+    kind: CheckKind,
+) -> Result<(), RecordError> {
+    let Some(failure) = input.verdict.first_failure.as_ref().filter(|failure| failure.check == kind) else {
+        return Ok(());
+    };
+    let Some(index) = input.measures.time_s.iter().position(|&time_s| time_s == failure.time_s) else { return Ok(()) };
+    let worst = judged_series(input.measures, kind).into_iter().filter_map(|series| series.get(index)).copied();
+    let worst = worst.fold(0.0, f64::max);
+    let path = entity(&["plots", plot, FAILURE]);
+    let point = SeriesPoints::new()
+        .with_colors([palette::limit()])
+        .with_marker_sizes([6.0])
+        .with_markers([MarkerShape::Diamond])
+        .with_names([FAILURE]);
+    messages.log_static(&path, &point)?;
+    let scalar = Scalars::new([worst]).columns_of_unit_batches().map_err(RecordError::encode)?;
+    messages.log_columns(&path, &[failure.time_s], scalar)
+}
+
 fn log_phases(messages: &mut Messages, samples: &[Sample]) -> Result<(), RecordError> {
     let path = entity(&["phases"]);
     let phases = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release];
@@ -106,7 +166,7 @@ fn log_events(messages: &mut Messages, input: &RecordingInput) -> Result<(), Rec
     let times_s: Vec<f64> = input.events.iter().map(|event| event.time_s).collect();
     let level = |kind| match kind {
         EventKind::Phase => TextLogLevel::INFO,
-        EventKind::LimitCrossed => TextLogLevel::WARN,
+        EventKind::LimitCrossed(_) => TextLogLevel::WARN,
         EventKind::BrokeDown => TextLogLevel::ERROR,
     };
     let log = TextLog::update_fields()

@@ -4,19 +4,26 @@ use std::{collections::BTreeMap, io::Cursor, path::Path};
 
 use rerun::{
     ComponentDescriptor,
-    external::re_log_encoding::DecoderApp,
+    external::re_log_encoding::{DecoderApp, StreamHeader},
     log::{Chunk, LogMsg},
 };
 
 use super::{
     APPLICATION, RecordError, TIMELINE, entity,
-    plots::{LIMIT, without_time},
-    rrd,
+    plots::{FAILURE, LIMIT, without_time},
+    rrd, stored,
+    summary::{ABOUT, About},
 };
-use crate::model::verdict::Verdict;
+use crate::model::{FORMAT, plan::Plan, scenario::Scenario, trace::Trace, verdict::Verdict};
 
 /// The first bytes of every rerun recording that this version reads.
 const MAGIC: &[u8] = b"RRF2";
+
+/// The minor version of rerun whose files are read: its releases change what the columns mean.
+const RERUN_MINOR: u8 = 36;
+
+/// The versions of rerun whose files are read, in words.
+const RERUN: &str = "0.36";
 
 /// What a recording says.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,27 +62,72 @@ pub struct RecordedPhase {
     pub start_s: f64,
 }
 
+/// The run that a recording holds, enough to judge it again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedRun {
+    /// The scenario under which the plan was simulated.
+    pub scenario: Scenario,
+    /// The plan.
+    pub plan: Plan,
+    /// The verdict, as it was recorded.
+    pub verdict: Verdict,
+    /// What happened, bit by bit as the simulation had it.
+    pub trace: Trace,
+}
+
+/// Reads the run that a recording of ours holds.
+///
+/// # Errors
+/// As for [`read_summary`].
+pub fn read_run(path: &Path) -> Result<RecordedRun, RecordError> {
+    read(path, |chunks| {
+        let (scenario, plan) = stored::scenario_and_plan(chunks)?;
+        Ok(RecordedRun { scenario, plan, verdict: stored::json(chunks, "verdict")?, trace: stored::trace(chunks)? })
+    })
+}
+
 /// Reads what a recording of ours says.
 ///
 /// # Errors
 /// When the file cannot be read, is no rerun recording, is one of another program, or was cut short.
 pub fn read_summary(path: &Path) -> Result<RecordedSummary, RecordError> {
-    let bytes = std::fs::read(path).map_err(|source| RecordError::Read { path: path.to_owned(), source })?;
-    summary(&bytes).map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
+    read(path, summary)
 }
 
-fn summary(bytes: &[u8]) -> Result<RecordedSummary, String> {
-    let chunks = chunks(bytes)?;
-    let json = documents(&chunks, "verdict").ok_or("found no verdict, expected a recording made by benchdog")?;
-    let verdict = serde_json::from_str(&json).map_err(|error| format!("found a malformed verdict: {error}"))?;
-    let phases: Vec<RecordedPhase> = texts(&chunks, "phases", &rerun::StateChange::descriptor_state())
+/// Reads a file, sees whether it is one of ours, and takes from it what is wanted.
+fn read<T>(path: &Path, take: impl FnOnce(&[Chunk]) -> Result<T, String>) -> Result<T, RecordError> {
+    let bytes = std::fs::read(path).map_err(|source| RecordError::Read { path: path.to_owned(), source })?;
+    let taken = chunks(&bytes).and_then(|chunks| {
+        check_format(&chunks)?;
+        take(&chunks)
+    });
+    taken.map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
+}
+
+/// The format's number is looked at before anything that may have another form in another format.
+fn check_format(chunks: &[Chunk]) -> Result<(), String> {
+    let about = document(chunks, ABOUT).and_then(|json| serde_json::from_str::<About>(&json).ok());
+    let own = env!("CARGO_PKG_VERSION");
+    let expected = format!("expected format {FORMAT}, the only one that benchdog {own} reads");
+    match about {
+        Some(About { format: FORMAT, .. }) => Ok(()),
+        Some(About { format, benchdog }) => {
+            Err(format!("found a recording of format {format}, made by benchdog {benchdog}, {expected}"))
+        }
+        None => Err(format!("found a recording that does not say its format, {expected}")),
+    }
+}
+
+fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
+    let verdict = stored::json(chunks, "verdict")?;
+    let phases: Vec<RecordedPhase> = texts(chunks, "phases", &rerun::StateChange::descriptor_state())
         .map(|(start_s, name)| RecordedPhase { name, start_s })
         .collect();
     let release_s = phases.iter().find(|phase| phase.name == "release").map_or(f64::INFINITY, |phase| phase.start_s);
     Ok(RecordedSummary {
         verdict,
-        peaks: peaks(&chunks, release_s),
-        events: texts(&chunks, "events", &rerun::TextLog::descriptor_text())
+        peaks: peaks(chunks, release_s),
+        events: texts(chunks, "events", &rerun::TextLog::descriptor_text())
             .map(|(time_s, text)| (time_s, without_time(&text)))
             .collect(),
         end_s: chunks.iter().flat_map(times_s).fold(0.0, f64::max),
@@ -84,10 +136,8 @@ fn summary(bytes: &[u8]) -> Result<RecordedSummary, String> {
 }
 
 /// The chunks of the recording itself, without those of its blueprint.
-fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
-    if !bytes.starts_with(MAGIC) {
-        return Err("found no rerun recording, expected a file that starts with \"RRF2\"".to_owned());
-    }
+pub(super) fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
+    check_header(bytes)?;
     if !rrd::is_complete(bytes) {
         return Err("the recording was cut short".to_owned());
     }
@@ -104,13 +154,28 @@ fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
     if ours { Ok(chunks) } else { Err("found no recording of benchdog, expected one".to_owned()) }
 }
 
+/// The header says whether this is a rerun recording, and of which version.
+fn check_header(bytes: &[u8]) -> Result<(), String> {
+    let no_recording = "found no rerun recording, expected a file that starts with \"RRF2\"";
+    let header = bytes.get(..StreamHeader::ENCODED_SIZE_BYTES).ok_or(no_recording)?;
+    let (magic, [major, minor, patch, _]) = (&header[..4], [header[4], header[5], header[6], header[7]]);
+    let found = || format!("found a recording of rerun {major}.{minor}.{patch}, expected one of {RERUN}");
+    match magic {
+        MAGIC if (major, minor) == (0, RERUN_MINOR) => Ok(()),
+        MAGIC => Err(found()),
+        // RRF0, RRF1: files of rerun before 0.23.
+        [b'R', b'R', b'F', _] => Err(found()),
+        _ => Err(no_recording.to_owned()),
+    }
+}
+
 fn of<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'a Chunk> {
     let path = entity(&[path]);
     chunks.iter().filter(move |chunk| *chunk.entity_path() == path)
 }
 
 /// The text of a document.
-fn documents(chunks: &[Chunk], path: &str) -> Option<String> {
+pub(super) fn document(chunks: &[Chunk], path: &str) -> Option<String> {
     let component = rerun::TextDocument::descriptor_text().component;
     let batch = |chunk: &Chunk| chunk.component_batch::<rerun::Text>(component, 0)?.ok()?.pop();
     of(chunks, path).find_map(batch).map(|text| text.to_string())
@@ -134,7 +199,7 @@ fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
     for chunk in chunks {
         let parts: Vec<String> = chunk.entity_path().iter().map(|part| part.unescaped_str().to_owned()).collect();
         let [folder, plot, series] = parts.as_slice() else { continue };
-        if folder != "plots" || series == LIMIT {
+        if folder != "plots" || [LIMIT, FAILURE].contains(&series.as_str()) {
             continue;
         }
         let Some(peak) = peak(chunk, end_s) else { continue };
@@ -143,7 +208,8 @@ fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
             "slip" => drop(peaks.slip_mm.insert(hand(), peak)),
             "rotation" => drop(peaks.rotation_deg.insert(hand(), peak)),
             "deflection" => peaks.deflection_mm = peak,
-            _ => drop(peaks.torque_ratio.insert(series.clone(), peak)),
+            "torque" => drop(peaks.torque_ratio.insert(series.clone(), peak)),
+            _ => {}
         }
     }
     peaks

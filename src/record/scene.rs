@@ -2,13 +2,17 @@
 
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 use rerun::{
-    Arrows3D, Boxes3D, Capsules3D, Cylinders3D, Ellipsoids3D, EntityPath, FillMode, Points3D, Transform3D,
-    ViewCoordinates,
+    Arrows3D, Boxes3D, Capsules3D, Cylinders3D, Ellipsoids3D, EntityPath, FillMode, LineStrips3D, Points3D,
+    Transform3D, ViewCoordinates,
 };
 
-use super::{Capsule, RecordError, RecordingInput, chunks::Messages, entity, palette};
+use super::{Capsule, RecordError, RecordingInput, chunks::Messages, crossings, entity, palette};
 use crate::{
-    model::{frames::Pose, operation::Operation, trace::Sample},
+    model::{
+        frames::Pose,
+        operation::{Operation, OperationKind},
+        trace::Sample,
+    },
     robot::{ArmState, PlacedShape, Robot, Shape},
 };
 
@@ -24,10 +28,18 @@ const PAD_PLATE_M: f64 = 0.004;
 /// Radius of the tool's parts, m: to be seen, no property of the tool.
 const TOOL_RADIUS_M: f64 = 0.008;
 
+/// The folder of the points between which distances are measured; the layout hides it.
+pub(super) const POINTS: &str = "points";
+
+/// Radius of the ring that marks a hole, m, and half the length of the line that marks a cut.
+const HOLE_RADIUS_M: f64 = 0.012;
+const HALF_CUT_M: f64 = 0.05;
+
 /// The samples that become pictures, and the poses of the robot's links in them.
-struct Frames<'a> {
+pub(super) struct Frames<'a> {
     samples: Vec<&'a Sample>,
-    times_s: Vec<f64>,
+    /// Their times, s.
+    pub times_s: Vec<f64>,
     /// One entry a frame, in it one entry a link.
     x_wl: Vec<Vec<Pose>>,
 }
@@ -40,6 +52,8 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     log_robot(messages, input.robot, &frames)?;
     log_board(messages, input, &frames)?;
     log_person(messages, input)?;
+    log_points(messages, input, &frames)?;
+    crossings::log_mark(messages, input, &arms)?;
     for (arm, &robot_arm) in arms.iter().enumerate() {
         log_pads(messages, input, &frames, arm, robot_arm)?;
     }
@@ -145,15 +159,53 @@ fn log_shapes(messages: &mut Messages, path: &EntityPath, shapes: &[PlacedShape]
 fn log_board(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
     let path = entity(&["scene", "board"]);
     let half = input.plan.object.size_m.map(|side| side as f32 / 2.0);
-    let board = Boxes3D::from_half_sizes([half]).with_colors([palette::board()]).with_fill_mode(FillMode::Solid);
-    messages.log_static(&path, &board)?;
+    messages.log_static(&path, &Boxes3D::from_half_sizes([half]).with_fill_mode(FillMode::Solid))?;
+    crossings::log_box_colour(messages, &path, frames, palette::board(), crossings::board_crossed_s(input))?;
     log_poses(messages, &path, &frames.times_s, frames.samples.iter().map(|sample| sample.x_wo))?;
     let operation = &input.plan.operation;
-    let mark = Points3D::new([vec3(&operation.x_ot.translation.vector)])
-        .with_radii([0.008])
-        .with_colors([palette::load()])
-        .with_labels([operation_label(operation)]);
-    messages.log_static(&entity(&["scene", "board", "operation"]), &mark)
+    let point =
+        Points3D::new([vec3(&operation.x_ot.translation.vector)]).with_radii([0.004]).with_colors([palette::load()]);
+    messages.log_static(&entity(&["scene", "board", "operation"]), &point)?;
+    let lines = marks_o(operation, input.plan.object.size_m[2]);
+    let marks = LineStrips3D::new(lines.iter().map(|line| line.iter().map(|p_o| vec3(&p_o.coords))))
+        .with_radii([0.0025])
+        .with_colors([palette::load()]);
+    messages.log_static(&entity(&["scene", "board", "operation", "mark"]), &marks)
+}
+
+/// What the operation leaves on the board, in O: rings on both faces where it drills, a line along the blade where it cuts,
+/// nothing for a mere wrench.
+fn marks_o(operation: &Operation, thickness_m: f64) -> Vec<Vec<Point3<f64>>> {
+    let on_board = |x: f64, y: f64, z: f64| operation.x_ot * Point3::new(x, y, z);
+    match operation.kind {
+        OperationKind::Drill => {
+            let ring = |depth_m| {
+                let point = |k: u32| {
+                    let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 24.0);
+                    on_board(HOLE_RADIUS_M * cos, HOLE_RADIUS_M * sin, depth_m)
+                };
+                (0..=24).map(point).collect()
+            };
+            // z_T points into the board; a line in a face would be half hidden in it.
+            vec![ring(-0.001), ring(thickness_m + 0.001)]
+        }
+        OperationKind::Cut => vec![vec![on_board(-HALF_CUT_M, 0.0, -0.001), on_board(HALF_CUT_M, 0.0, -0.001)]],
+        OperationKind::Wrench => Vec::new(),
+    }
+}
+
+/// The points of body and robot between which the peripersonal metric measures.
+fn log_points(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
+    let points = |points_w: Vec<[f32; 3]>| Points3D::new(points_w).with_radii([0.01]).with_colors([palette::points()]);
+    if let Some(person) = input.person {
+        let body = points(person.points_w.iter().map(|point| vec3(&point.coords)).collect());
+        messages.log_static(&entity(&["scene", POINTS, "person"]), &body)?;
+    }
+    // Where the plan has them: the metric is one of the planned pose.
+    let Some(x_wl) = frames.x_wl.first() else { return Ok(()) };
+    let point_w = |point: &crate::robot::BodyPoint| vec3(&(x_wl[point.link] * point.p_l).coords);
+    let robot = points(input.robot.body_points.iter().map(point_w).collect());
+    messages.log_static(&entity(&["scene", POINTS, "robot"]), &robot)
 }
 
 /// `drill, 15 N`.
@@ -206,10 +258,10 @@ fn log_pads(
         let samples = || frames.samples.iter().map(|sample| &sample.arms[arm].pads[pad]);
         let path = entity(&["scene", "pads", &names.name, name]);
         let [x_m, z_m] = gripper.fingers[pad % gripper.fingers.len()].pad.size_m;
-        let plate = Boxes3D::from_sizes([[x_m as f32, PAD_PLATE_M as f32, z_m as f32]])
-            .with_colors([palette::hand(arm)])
-            .with_fill_mode(FillMode::Solid);
+        let plate = Boxes3D::from_sizes([[x_m as f32, PAD_PLATE_M as f32, z_m as f32]]).with_fill_mode(FillMode::Solid);
         messages.log_static(&path, &plate)?;
+        let crossed_s = crossings::pad_crossed_s(input, &names.name, name);
+        crossings::log_box_colour(messages, &path, frames, palette::hand(arm), crossed_s)?;
         let poses = samples()
             .zip(&frames.x_wl)
             .map(|(sample, x_wl)| Pose::from_parts(sample.p_wp_m.into(), x_wl[gripper.frame_link].rotation));
@@ -217,7 +269,8 @@ fn log_pads(
 
         let forces = samples().map(|sample| (sample.p_wp_m, sample.wrench_w.force_n));
         let path = entity(&["scene", "forces", &names.name, name]);
-        let style = Arrows3D::update_fields().with_colors([palette::hand(arm)]).with_radii([0.006]);
+        let style =
+            Arrows3D::update_fields().with_colors([palette::hand(arm)]).with_radii([0.006]).with_show_labels(false);
         log_forces(messages, &path, &frames.times_s, forces, &style)?;
     }
     Ok(())
@@ -227,11 +280,11 @@ fn log_pads(
 fn log_load(messages: &mut Messages, frames: &Frames) -> Result<(), RecordError> {
     let tool_point_w = |sample: &Sample| (sample.x_wo * Point3::from(sample.p_ot_m)).coords;
     let forces = frames.samples.iter().map(|sample| (tool_point_w(sample), sample.tool_wrench_w.force_n));
-    let style = Arrows3D::update_fields().with_colors([palette::load()]).with_radii([0.009]);
+    let style = Arrows3D::update_fields().with_colors([palette::load()]).with_radii([0.009]).with_show_labels(true);
     log_forces(messages, &entity(&["scene", "forces", "tool"]), &frames.times_s, forces, &style)
 }
 
-/// Forces as arrows that end where the force acts, so that they do not vanish in the board.
+/// Forces as arrows that end where the force acts, so that they do not vanish in the board; labelled in newtons.
 fn log_forces(
     messages: &mut Messages,
     path: &EntityPath,
@@ -239,14 +292,15 @@ fn log_forces(
     forces: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>,
     style: &Arrows3D,
 ) -> Result<(), RecordError> {
-    let (origins, vectors): (Vec<_>, Vec<_>) = forces
-        .map(|(point_w, force_n)| {
-            let arrow = force_n * ARROW_M_PER_N;
-            (vec3(&(point_w - arrow)), vec3(&arrow))
-        })
-        .unzip();
+    let (mut origins, mut vectors, mut labels) = (Vec::new(), Vec::new(), Vec::new());
+    for (point_w, force_n) in forces {
+        let arrow = force_n * ARROW_M_PER_N;
+        origins.push(vec3(&(point_w - arrow)));
+        vectors.push(vec3(&arrow));
+        labels.push(format!("{:.1} N", force_n.norm()));
+    }
     messages.log_static(path, style)?;
-    let arrows = Arrows3D::from_vectors(vectors).with_origins(origins);
+    let arrows = Arrows3D::from_vectors(vectors).with_origins(origins).with_labels(labels);
     messages.log_columns(path, times_s, arrows.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
@@ -267,7 +321,7 @@ fn transform(pose: &Pose) -> Transform3D {
 }
 
 /// rerun's numbers are single precision.
-fn vec3(vector: &Vector3<f64>) -> [f32; 3] {
+pub(super) fn vec3(vector: &Vector3<f64>) -> [f32; 3] {
     vector.map(|v| v as f32).into()
 }
 

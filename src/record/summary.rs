@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use rerun::TextDocument;
+use serde::{Deserialize, Serialize};
 
 use super::{
     RecordError, RecordingInput,
@@ -10,10 +11,25 @@ use super::{
     entity,
     scene::{ARROW_M_PER_N, operation_label},
 };
-use crate::model::{plan::Plan, verdict::Verdict};
+use crate::model::{FORMAT, plan::Plan, verdict::Verdict};
 
-/// Logs both documents.
+/// The entity that says what the file is.
+pub(super) const ABOUT: &str = "about";
+
+/// What a file is, for readers of other versions.
+#[derive(Serialize, Deserialize)]
+pub(super) struct About {
+    /// The format's number.
+    pub format: u32,
+    /// The version of Benchdog that made it.
+    pub benchdog: String,
+}
+
+/// Logs the documents.
 pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
+    let about = About { format: FORMAT, benchdog: env!("CARGO_PKG_VERSION").to_owned() };
+    let about = serde_json::to_string(&about).map_err(RecordError::encode)?;
+    messages.log_static(&entity(&[ABOUT]), &TextDocument::new(about).with_media_type("application/json"))?;
     let text = markdown(input.plan, input.verdict);
     messages.log_static(&entity(&["summary"]), &TextDocument::new(text).with_media_type("text/markdown"))?;
     let json = serde_json::to_string_pretty(input.verdict).map_err(RecordError::encode)?;
@@ -52,8 +68,12 @@ fn colours(text: &mut String, plan: &Plan) {
     push(text, format_args!("- yellow: board"));
     push(text, format_args!("- violet: tool and load"));
     push(text, format_args!("- green: person"));
-    push(text, format_args!("- red: limits"));
-    push(text, format_args!("\nArrows are forces on the board, {scale_mm:.0} mm/N."));
+    push(text, format_args!("- red: limits, and what has crossed one"));
+    push(text, format_args!("- white: points of body and robot between which distances are measured; hidden at first"));
+    push(
+        text,
+        format_args!("\nArrows are forces on the board, {scale_mm:.0} mm/N: 10 N are {:.0} mm.", 10.0 * scale_mm),
+    );
 }
 
 fn versions(verdict: &Verdict) -> String {

@@ -25,6 +25,7 @@ const SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
 /// All that a recording is made of.
 struct Example {
     robot: Robot,
+    scenario: Scenario,
     plan: Plan,
     trace: Trace,
     measures: Measures,
@@ -37,6 +38,7 @@ impl Example {
     fn input(&self) -> RecordingInput<'_> {
         RecordingInput {
             robot: &self.robot,
+            scenario: &self.scenario,
             plan: &self.plan,
             trace: &self.trace,
             measures: &self.measures,
@@ -54,11 +56,12 @@ fn example() -> Example {
     let trace = trace(&robot, &plan);
     let measures = measures(&trace);
     let verdict = verdict(&trace, &measures);
-    let event = |time_s, kind, text: &str| Event { time_s, kind, text: text.into() };
+    let event = |time_s, kind, what: &str, text: &str| Event { time_s, kind, text: text.into(), what: what.into() };
+    let turned = EventKind::LimitCrossed(CheckKind::SlipRotation);
     let events = vec![
-        event(0.0, EventKind::Phase, "settle: the board's weight alone"),
-        event(0.1, EventKind::Phase, "ramp: the load grows"),
-        event(0.27, EventKind::LimitCrossed, "left hand turns past 2 deg at load factor 0.86"),
+        event(0.0, EventKind::Phase, "", "settle: the board's weight alone"),
+        event(0.1, EventKind::Phase, "", "ramp: the load grows"),
+        event(0.276, turned, "left hand", "left hand turns past 2 deg at load factor 0.88"),
     ];
     let capsule = |a: [f64; 3], b: [f64; 3], radius_m| Capsule { ends_w: [a.into(), b.into()], radius_m };
     let person = PersonShape {
@@ -72,8 +75,10 @@ fn example() -> Example {
             capsule([1.25, -0.1, 0.0], [1.25, -0.1, -0.85], 0.07),
         ],
         palm_w: Point3::new(0.78, 0.15, 0.27),
+        points_w: vec![Point3::new(1.2, 0.0, 0.3)],
     };
-    Example { robot, plan, trace, measures, events, verdict, person }
+    let scenario = crate::scenario::for_plan(&plan, &robot);
+    Example { robot, scenario, plan, trace, measures, events, verdict, person }
 }
 
 fn plan(robot: &Robot) -> Plan {
@@ -178,6 +183,7 @@ fn measures(trace: &Trace) -> Measures {
     };
     Measures {
         time_s: of(&|s| s.time_s),
+        load_factor: of(&|s| s.load_factor),
         hands: ["left", "right"]
             .into_iter()
             .zip([0.04_f64, 0.002])
@@ -217,7 +223,7 @@ fn verdict(trace: &Trace, measures: &Measures) -> Verdict {
             check(CheckKind::TorqueRatio, 8.0 / 15.0, 1.0),
         ],
         self_checks: Vec::new(),
-        first_failure: Some(Failure { check: CheckKind::SlipRotation, time_s: 0.274, load_factor: 0.88 }),
+        first_failure: Some(Failure { check: CheckKind::SlipRotation, time_s: 0.276, load_factor: 0.88 }),
         peak_torque_ratio: measures.joints.iter().map(|j| (j.name.clone(), peak(&j.torque_ratio))).collect(),
         reason: None,
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into()), ("rapier3d-f64".into(), "0.36.1".into())]),
@@ -311,4 +317,89 @@ fn runs_without_person_verdict_or_samples_are_recorded_too() {
     (example.trace.samples, example.measures, example.events) = (Vec::new(), Measures::default(), Vec::new());
     let bytes = encode(&RecordingInput { person: None, ..example.input() }).unwrap();
     assert_eq!(read(&bytes).unwrap().verdict, example.verdict);
+}
+
+#[test]
+fn the_stored_run_is_read_back_bit_by_bit() {
+    let example = example();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.rrd");
+    fs::write(&path, encode(&example.input()).unwrap()).unwrap();
+    let run = read_run(&path).unwrap();
+    // Equality of numbers: stored as they are.
+    assert_eq!(run.trace, example.trace);
+    assert_eq!((run.plan, run.scenario, run.verdict), (example.plan, example.scenario, example.verdict));
+}
+
+#[test]
+fn the_time_that_a_search_took_is_not_recorded() {
+    let mut example = example();
+    let record = |wall_ms| {
+        let kind = crate::model::scenario::PlannerKind::Comfort;
+        Some(crate::model::plan::PlannerRecord { kind, seed: 1, wall_ms, map_ms: wall_ms, evaluations: 7 })
+    };
+    example.plan.planner = record(Some(1234.5));
+    let one = encode(&example.input()).unwrap();
+    example.plan.planner = record(Some(2345.6));
+    assert!(one == encode(&example.input()).unwrap(), "two recordings of one run differ");
+}
+
+/// The times of an entity's rows, ns, and how many there are of this component.
+fn times_ns(bytes: &[u8], path: &[&str], component: &str) -> Vec<i64> {
+    let path = entity(path);
+    let chunks = read::chunks(bytes).unwrap();
+    let rows = chunks.iter().filter(|chunk| *chunk.entity_path() == path);
+    rows.filter(|chunk| chunk.components_identifiers().any(|found| found.as_str() == component))
+        .filter_map(|chunk| chunk.timelines().get(&TIMELINE.into()))
+        .flat_map(|column| column.times_raw().to_vec())
+        .collect()
+}
+
+#[test]
+fn the_moment_of_failure_has_one_time_stamp_in_scene_plot_and_log() {
+    let example = example();
+    let bytes = encode(&example.input()).unwrap();
+    let failure_s = example.verdict.first_failure.as_ref().unwrap().time_s;
+    let moment = (failure_s * 1e9).round() as i64;
+    assert_eq!(times_ns(&bytes, &["scene", "first crossing"], "Points3D:labels"), [moment]);
+    assert_eq!(times_ns(&bytes, &["plots", "rotation", "first crossing"], "Scalars:scalars"), [moment]);
+    assert!(times_ns(&bytes, &["events"], "TextLog:text").contains(&moment));
+    // The pads of the hand that turned change their colour, those of the other do not.
+    for pad in ["upper", "lower"] {
+        assert_eq!(times_ns(&bytes, &["scene", "pads", "left", pad], "Boxes3D:colors"), [0, moment]);
+        assert_eq!(times_ns(&bytes, &["scene", "pads", "right", pad], "Boxes3D:colors"), [0]);
+    }
+    assert_eq!(times_ns(&bytes, &["scene", "board"], "Boxes3D:colors"), [0]);
+}
+
+#[test]
+fn a_hold_that_stands_has_no_moment_of_failure() {
+    let mut example = example();
+    example.verdict.first_failure = None;
+    example.events.truncate(2);
+    let bytes = encode(&example.input()).unwrap();
+    assert!(times_ns(&bytes, &["scene", "first crossing"], "Points3D:labels").is_empty());
+    assert!(times_ns(&bytes, &["plots", "rotation", "first crossing"], "Scalars:scalars").is_empty());
+    assert_eq!(times_ns(&bytes, &["scene", "pads", "left", "upper"], "Boxes3D:colors"), [0]);
+}
+
+#[test]
+fn recordings_of_other_versions_are_refused_with_theirs() {
+    let bytes = encode(&example().input()).unwrap();
+    let with_header = |header: [u8; 8]| {
+        let mut bytes = bytes.clone();
+        bytes[..8].copy_from_slice(&header);
+        read(&bytes).unwrap_err().to_string()
+    };
+    let expected = |version: &str| format!("found a recording of rerun {version}, expected one of 0.36");
+    assert!(with_header([b'R', b'R', b'F', b'2', 0, 40, 1, 0]).ends_with(&expected("0.40.1")));
+    assert!(with_header([b'R', b'R', b'F', b'1', 0, 20, 0, 0]).ends_with(&expected("0.20.0")));
+
+    let mut later = Messages::new(StoreId::new(StoreKind::Recording, APPLICATION, "run"));
+    let about = rerun::TextDocument::new("{\"format\":2,\"benchdog\":\"9.9.9\"}");
+    later.log_static(&entity(&["about"]), &about).unwrap();
+    let message = read(&rrd::bytes(later.into_messages()).unwrap()).unwrap_err().to_string();
+    let expected =
+        "found a recording of format 2, made by benchdog 9.9.9, expected format 1, the only one that benchdog";
+    assert!(message.contains(expected), "{message}");
 }

@@ -2,24 +2,44 @@
 
 use std::path::Path;
 
-use super::{Outcome, explanation};
+use super::{Outcome, Status, explanation, number_of};
 use crate::model::verdict::{Check, CheckKind, Verdict};
 
 /// What a table says where there is nothing to say.
 const NOTHING: &str = "-";
 
+/// What happened, in one line: `FAIL  cut-03: expected holds, found deflects: ...`.
+pub fn line(outcome: &Outcome) -> String {
+    let told = match outcome {
+        Outcome::Judged { verdict, .. } if verdict.met => format!("{}: {}", verdict.verdict, explanation(verdict)),
+        _ => outcome.sentence(),
+    };
+    format!("{:<5} {}: {told}", outcome.status().mark(), outcome.name())
+}
+
 /// One line a scenario, then a line for every one that was not as expected, then the count.
 ///
-/// The load column is the multiple of the operation that the plan predicts compliant arms to hold.
-pub fn table(outcomes: &[Outcome]) -> String {
-    let header =
-        ["scenario", "verdict", "expected", "result", "slip mm", "slip deg", "deflection mm", "torque", "load"];
+/// The load column is the multiple of the operation that the plan predicts compliant arms to hold; `wall_s` is how long each
+/// outcome took, s, as far as it is known.
+pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
+    let header = [
+        "scenario",
+        "verdict",
+        "expected",
+        "result",
+        "slip mm",
+        "slip deg",
+        "deflection mm",
+        "torque",
+        "load",
+        "time s",
+    ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    rows.extend(outcomes.iter().map(row));
+    let times = wall_s.iter().copied().chain(std::iter::repeat(None));
+    rows.extend(outcomes.iter().zip(times).map(|(outcome, wall_s)| row(outcome, wall_s)));
     let mut text = aligned(&rows, 4);
-    for line in outcomes.iter().filter_map(complaint) {
-        text.push_str(&line);
-        text.push('\n');
+    for outcome in outcomes.iter().filter(|outcome| matches!(outcome.status(), Status::Failed | Status::Crashed)) {
+        text.push_str(&format!("{} {}: {}\n", outcome.status().mark(), outcome.name(), outcome.sentence()));
     }
     text.push_str(&count(outcomes));
     text
@@ -49,32 +69,29 @@ fn met(verdict: &Verdict) -> &'static str {
     if verdict.met { "ok" } else { "FAIL" }
 }
 
-fn row(outcome: &Outcome) -> Vec<String> {
-    let (verdict, load) = match outcome {
-        Outcome::Judged { verdict, predicted_load_factor, .. } => (verdict, *predicted_load_factor),
-        Outcome::Crashed { name, .. } => return nothing_but(name, "ERROR"),
-        Outcome::Skipped { name } => return nothing_but(name, "skipped"),
-    };
+fn row(outcome: &Outcome, wall_s: Option<f64>) -> Vec<String> {
     let figure = |value: Option<f64>| value.map_or(NOTHING.to_owned(), |value| format!("{value:.2}"));
+    let time = wall_s.map_or(NOTHING.to_owned(), |wall_s| format!("{wall_s:.1}"));
+    let Outcome::Judged { verdict, predicted_load_factor, .. } = outcome else {
+        let mut row = vec![NOTHING.to_owned(); 9];
+        outcome.name().clone_into(&mut row[0]);
+        outcome.status().mark().clone_into(&mut row[3]);
+        row.push(time);
+        return row;
+    };
     let checked = |kind| figure(verdict.check(kind).map(|check| check.value));
     vec![
         verdict.name.clone(),
         verdict.verdict.to_string(),
         verdict.expected.to_string(),
-        met(verdict).to_owned(),
+        outcome.status().mark().to_owned(),
         checked(CheckKind::Slip),
         checked(CheckKind::SlipRotation),
         checked(CheckKind::Deflection),
         checked(CheckKind::TorqueRatio),
-        figure(load),
+        figure(*predicted_load_factor),
+        time,
     ]
-}
-
-fn nothing_but(name: &str, result: &str) -> Vec<String> {
-    let mut row = vec![NOTHING.to_owned(); 9];
-    name.clone_into(&mut row[0]);
-    result.clone_into(&mut row[3]);
-    row
 }
 
 fn check_row(check: &Check) -> Vec<String> {
@@ -89,29 +106,9 @@ fn check_row(check: &Check) -> Vec<String> {
     ]
 }
 
-/// The line that explains an outcome which was not as expected.
-fn complaint(outcome: &Outcome) -> Option<String> {
-    match outcome {
-        Outcome::Judged { verdict, .. } if !verdict.met => Some(format!(
-            "FAIL {}: expected {}, found {}: {}",
-            verdict.name,
-            verdict.expected,
-            verdict.verdict,
-            explanation(verdict)
-        )),
-        Outcome::Crashed { name, message } => Some(format!("ERROR {name}: {message}")),
-        _ => None,
-    }
-}
-
-fn count(outcomes: &[Outcome]) -> String {
-    let number = |is: fn(&Outcome) -> bool| outcomes.iter().filter(|outcome| is(outcome)).count();
-    let parts = [
-        (number(|outcome| matches!(outcome, Outcome::Judged { verdict, .. } if verdict.met)), "ok"),
-        (number(|outcome| matches!(outcome, Outcome::Judged { verdict, .. } if !verdict.met)), "failed"),
-        (number(|outcome| matches!(outcome, Outcome::Crashed { .. })), "crashed"),
-        (number(|outcome| matches!(outcome, Outcome::Skipped { .. })), "skipped"),
-    ];
+/// `5 scenarios: 1 ok, 2 failed, 1 crashed, 1 skipped`.
+pub fn count(outcomes: &[Outcome]) -> String {
+    let parts = Status::ALL.map(|status| (number_of(outcomes, status), status.name()));
     let told: Vec<_> =
         parts.iter().filter(|part| part.0 > 0).map(|(number, what)| format!("{number} {what}")).collect();
     let plural = if outcomes.len() == 1 { "" } else { "s" };
@@ -128,7 +125,7 @@ fn hardest_joints(verdict: &Verdict) -> Option<String> {
 }
 
 /// Rows as text with two spaces between columns: the first `left` columns aligned left, the others right.
-fn aligned(rows: &[Vec<String>], left: usize) -> String {
+pub(crate) fn aligned(rows: &[Vec<String>], left: usize) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
     let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();

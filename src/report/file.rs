@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why a file could not be written.
+/// Why a file or a folder could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("failed to write {}: {source}", path.display())]
 pub struct WriteError {
@@ -23,6 +23,32 @@ pub struct WriteError {
 /// When the disk refuses; the file is then as it was before.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })
+}
+
+/// Makes a folder and finds out whether files can be written into it, before the work whose results go there.
+///
+/// # Errors
+/// When the folder cannot be made or nothing can be written into it.
+pub fn check_folder(folder: &Path) -> Result<(), WriteError> {
+    let probe = || {
+        if folder.exists() && !folder.is_dir() {
+            return Err(io::Error::other("found a file, expected a folder"));
+        }
+        fs::create_dir_all(folder)?;
+        beside().tempfile_in(folder).map(drop)
+    };
+    probe().map_err(|source| WriteError { path: folder.to_owned(), source })
+}
+
+/// Removes a file, if it is there: what an earlier run left must not be taken for this one's.
+///
+/// # Errors
+/// When it is there and cannot be removed.
+pub fn remove(path: &Path) -> Result<(), WriteError> {
+    match fs::remove_file(path) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(WriteError { path: path.to_owned(), source }),
+        _ => Ok(()),
+    }
 }
 
 fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -42,12 +68,19 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 #[cfg(unix)]
 fn beside() -> tempfile::Builder<'static, 'static> {
     use std::os::unix::fs::PermissionsExt as _;
-    let mut builder = tempfile::Builder::new();
+    let mut builder = named();
     builder.permissions(fs::Permissions::from_mode(0o666));
     builder
 }
 
 #[cfg(not(unix))]
 fn beside() -> tempfile::Builder<'static, 'static> {
-    tempfile::Builder::new()
+    named()
+}
+
+/// What a killed process leaves behind is hidden and says what it is.
+fn named() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".benchdog-").suffix(".part");
+    builder
 }

@@ -17,16 +17,12 @@ pub fn verdict(verdict: &Verdict) -> String {
 
 /// The verdicts of a run as an array, in its order. What crashed or was skipped has no verdict and is not in it.
 pub fn verdicts(outcomes: &[Outcome]) -> String {
-    let judged = |outcome: &'_ Outcome| match outcome {
-        Outcome::Judged { verdict, .. } => Some(verdict.clone()),
-        Outcome::Crashed { .. } | Outcome::Skipped { .. } => None,
-    };
-    pretty(&outcomes.iter().filter_map(judged).collect::<Vec<_>>())
+    pretty(&outcomes.iter().filter_map(Outcome::verdict).collect::<Vec<_>>())
 }
 
-fn pretty(value: &impl Serialize) -> String {
-    // Serialisation into a string fails only for maps with keys that are no strings, and these have none.
-    let mut text = serde_json::to_string_pretty(value).expect("plans and verdicts have only string keys");
+pub(super) fn pretty(value: &impl Serialize) -> String {
+    // Serialisation into a string fails only for maps with keys that are no strings, and ours have none.
+    let mut text = serde_json::to_string_pretty(value).expect("reports have only string keys");
     text.push('\n');
     text
 }

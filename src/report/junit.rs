@@ -2,8 +2,7 @@
 
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
-use super::{Outcome, explanation};
-use crate::model::verdict::Verdict;
+use super::Outcome;
 
 /// The outcomes of a run as one test suite. Times are left out: they are the one thing that two equal runs do not
 /// share.
@@ -21,13 +20,17 @@ pub fn document(outcomes: &[Outcome]) -> Result<String, SerializeError> {
 fn test_case(outcome: &Outcome) -> TestCase {
     let status = match outcome {
         Outcome::Judged { verdict, .. } if verdict.met => TestCaseStatus::success(),
-        Outcome::Judged { verdict, .. } => failure(verdict),
+        Outcome::Judged { verdict, .. } => failure(verdict.verdict.name(), &outcome.sentence()),
         Outcome::Crashed { message, .. } => {
             let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
             status.set_message(message.as_str());
             status
         }
-        Outcome::Skipped { .. } => TestCaseStatus::skipped(),
+        Outcome::Skipped { reason, .. } => {
+            let mut status = TestCaseStatus::skipped();
+            status.set_message(reason.to_string());
+            status
+        }
     };
     let mut case = TestCase::new(outcome.name(), status);
     case.set_classname("benchdog");
@@ -40,9 +43,9 @@ fn test_case(outcome: &Outcome) -> TestCase {
     case
 }
 
-fn failure(verdict: &Verdict) -> TestCaseStatus {
+fn failure(kind: &str, message: &str) -> TestCaseStatus {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-    status.set_type(verdict.verdict.name());
-    status.set_message(format!("expected {}, found {}: {}", verdict.expected, verdict.verdict, explanation(verdict)));
+    status.set_type(kind);
+    status.set_message(message);
     status
 }

@@ -1,4 +1,6 @@
-//! What a run tells its reader: a table for the console, JSON for programs, JUnit for a CI job. One file a format.
+//! What a run tells its reader: a table for the console, a page with plots for a reviewer, JSON and CSV for programs,
+//! JUnit for a CI job. One file a format. How long something took is told on the console alone: all that goes to a file is
+//! the same for equal runs.
 //!
 //! Pure functions from outcomes to text; only [`mod@file`] touches the disk. Nothing here may change a verdict, print, or
 //! look at a clock.
@@ -6,14 +8,20 @@
 pub mod console;
 pub mod curve;
 pub mod file;
+pub mod html;
 pub mod json;
 pub mod junit;
+mod plot;
+pub mod summary;
 #[cfg(test)]
 mod tests;
 
 use std::path::PathBuf;
 
-use crate::model::verdict::{CheckKind, Verdict, VerdictKind};
+use crate::model::{
+    measures::Measures,
+    verdict::{CheckKind, Verdict, VerdictKind},
+};
 
 /// What became of one scenario or plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,9 +29,11 @@ pub enum Outcome {
     /// It was planned and judged, or proved to have no plan.
     Judged {
         /// The verdict.
-        verdict: Verdict,
+        verdict: Box<Verdict>,
         /// The compliant load factor that the plan predicts; none for a plan without one.
         predicted_load_factor: Option<f64>,
+        /// The judge's series; none when nothing was simulated.
+        measures: Option<Box<Measures>>,
         /// Where the recording was written.
         recording: Option<PathBuf>,
     },
@@ -34,11 +44,72 @@ pub enum Outcome {
         /// What went wrong.
         message: String,
     },
-    /// It was left out by a filter.
+    /// It was not run.
     Skipped {
         /// The scenario's name.
         name: String,
+        /// Why not.
+        reason: SkipReason,
     },
+}
+
+/// Why a scenario was not run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SkipReason {
+    /// `--filter` left it out.
+    Filtered,
+    /// `--fail-fast`, and another failed before its turn.
+    AfterFailure,
+    /// The run was interrupted before its turn.
+    Interrupted,
+}
+
+impl std::fmt::Display for SkipReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Filtered => "left out by --filter",
+            Self::AfterFailure => "not run after a failure, by --fail-fast",
+            Self::Interrupted => "not run before the interruption",
+        })
+    }
+}
+
+/// How an outcome counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// As expected.
+    Ok,
+    /// Judged, and not as expected.
+    Failed,
+    /// It could not be judged.
+    Crashed,
+    /// It was not run.
+    Skipped,
+}
+
+impl Status {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 4] = [Self::Ok, Self::Failed, Self::Crashed, Self::Skipped];
+
+    /// The name in files, and in the count of a table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Failed => "failed",
+            Self::Crashed => "crashed",
+            Self::Skipped => "skipped",
+        }
+    }
+
+    /// The word in a table, loud where something is wrong.
+    pub fn mark(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Failed => "FAIL",
+            Self::Crashed => "ERROR",
+            Self::Skipped => "skipped",
+        }
+    }
 }
 
 impl Outcome {
@@ -46,9 +117,44 @@ impl Outcome {
     pub fn name(&self) -> &str {
         match self {
             Self::Judged { verdict, .. } => &verdict.name,
-            Self::Crashed { name, .. } | Self::Skipped { name } => name,
+            Self::Crashed { name, .. } | Self::Skipped { name, .. } => name,
         }
     }
+
+    /// How it counts.
+    pub fn status(&self) -> Status {
+        match self {
+            Self::Judged { verdict, .. } if verdict.met => Status::Ok,
+            Self::Judged { .. } => Status::Failed,
+            Self::Crashed { .. } => Status::Crashed,
+            Self::Skipped { .. } => Status::Skipped,
+        }
+    }
+
+    /// The verdict, where there is one.
+    pub fn verdict(&self) -> Option<&Verdict> {
+        match self {
+            Self::Judged { verdict, .. } => Some(verdict),
+            Self::Crashed { .. } | Self::Skipped { .. } => None,
+        }
+    }
+
+    /// What a reader must know of it, in a line: `expected holds, found slips: ...` of a failure.
+    pub fn sentence(&self) -> String {
+        match self {
+            Self::Judged { verdict, .. } if verdict.met => explanation(verdict),
+            Self::Judged { verdict, .. } => {
+                format!("expected {}, found {}: {}", verdict.expected, verdict.verdict, explanation(verdict))
+            }
+            Self::Crashed { message, .. } => message.clone(),
+            Self::Skipped { reason, .. } => reason.to_string(),
+        }
+    }
+}
+
+/// How many outcomes have this status.
+fn number_of(outcomes: &[Outcome], status: Status) -> usize {
+    outcomes.iter().filter(|outcome| outcome.status() == status).count()
 }
 
 /// What decided the verdict, in words: `deflection 16.20 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of the

@@ -58,32 +58,37 @@ fn infeasible() -> Verdict {
 }
 
 fn outcomes() -> Vec<Outcome> {
-    let judged = |verdict, predicted_load_factor| Outcome::Judged { verdict, predicted_load_factor, recording: None };
+    let judged = |verdict, predicted_load_factor| Outcome::Judged {
+        verdict: Box::new(verdict),
+        predicted_load_factor,
+        measures: None,
+        recording: None,
+    };
     vec![
         judged(holding(), Some(3.7)),
         judged(deflecting(), None),
         judged(infeasible(), None),
         Outcome::Crashed { name: "bad.toml".into(), message: "line 3: found \"x\", expected a number".into() },
-        Outcome::Skipped { name: "cut-04".into() },
+        Outcome::Skipped { name: "cut-04".into(), reason: SkipReason::Filtered },
     ]
 }
 
 #[test]
 fn the_table_lists_complains_and_counts() {
     let expected = "\
-scenario      verdict     expected  result   slip mm  slip deg  deflection mm  torque  load
-drill-center  holds       holds     ok          0.12      0.50           1.50    0.75  3.70
-cut-03        deflects    holds     FAIL        0.12      0.50          16.25    0.75     -
-too-heavy     infeasible  holds     FAIL           -         -              -       -     -
-bad.toml      -           -         ERROR          -         -              -       -     -
-cut-04        -           -         skipped        -         -              -       -     -
+scenario      verdict     expected  result   slip mm  slip deg  deflection mm  torque  load  time s
+drill-center  holds       holds     ok          0.12      0.50           1.50    0.75  3.70     2.3
+cut-03        deflects    holds     FAIL        0.12      0.50          16.25    0.75     -    10.0
+too-heavy     infeasible  holds     FAIL           -         -              -       -     -       -
+bad.toml      -           -         ERROR          -         -              -       -     -       -
+cut-04        -           -         skipped        -         -              -       -     -       -
 FAIL cut-03: expected holds, found deflects: deflection 16.25 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of \
          the load
 FAIL too-heavy: expected holds, found infeasible: no candidate of 400 is stable
 ERROR bad.toml: line 3: found \"x\", expected a number
 5 scenarios: 1 ok, 2 failed, 1 crashed, 1 skipped
 ";
-    assert_eq!(console::table(&outcomes()), expected);
+    assert_eq!(console::table(&outcomes(), &[Some(2.34), Some(9.96)]), expected);
 }
 
 #[test]
@@ -114,7 +119,7 @@ fn junit_tells_failures_from_errors() {
             <error message="line 3: found &quot;x&quot;, expected a number"/>
         </testcase>
         <testcase name="cut-04" classname="benchdog">
-            <skipped/>
+            <skipped message="left out by --filter"/>
         </testcase>
     </testsuite>
 </testsuites>

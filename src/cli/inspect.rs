@@ -1,0 +1,144 @@
+//! `benchdog inspect`: what a recording says, from the file alone, and what other limits would say of its trace.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::{
+    args::{Format, InspectArgs, LimitArgs},
+    exit::{CliError, Exit},
+    output,
+    versions::versions,
+};
+use crate::{
+    judge::judge,
+    model::{
+        scenario::{Expectation, Limits},
+        verdict::Verdict,
+    },
+    record::{self, RecordError, RecordedRun, RecordedSummary},
+    report::console,
+    scenario,
+};
+
+/// Prints what a recording says; on request judges its trace again, which decides the exit code then.
+pub fn inspect(args: &InspectArgs) -> Result<Exit, CliError> {
+    let summary = record::read_summary(&args.recording)?;
+    let again = if asks_for_check(args) { Some(judge_again(args)?) } else { None };
+    match args.format {
+        Format::Human => output::print(&for_people(&summary, again.as_ref()))?,
+        Format::Json => output::print(&for_programs(&summary, again.as_ref()))?,
+    }
+    Ok(again.as_ref().map_or(Exit::Met, Exit::of))
+}
+
+fn asks_for_check(args: &InspectArgs) -> bool {
+    let LimitArgs { slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio } = args.limits;
+    let limits = [slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio];
+    args.check || args.scenario.is_some() || limits.iter().any(Option::is_some)
+}
+
+/// The verdict on the stored trace under the limits asked for.
+fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
+    let RecordedRun { scenario, verdict, trace, .. } = record::read_run(&args.recording)?;
+    let (limits, expect) = match &args.scenario {
+        Some(path) => {
+            let given = scenario::load(path)?.scenario;
+            (given.limits, given.expect)
+        }
+        None => (scenario.limits, Expectation { verdict: verdict.expected }),
+    };
+    let judgement = judge(&trace, &with(limits, args.limits));
+    if judgement.fingerprint != verdict.fingerprint {
+        let (found, expected) = (judgement.fingerprint, verdict.fingerprint);
+        let problem = format!("found a trace of fingerprint {found}, expected the one that was judged, {expected}");
+        return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
+    }
+    Ok(judgement.to_verdict(&verdict.name, expect.verdict, verdict.seed, versions()))
+}
+
+fn with(limits: Limits, given: LimitArgs) -> Limits {
+    Limits {
+        slip_mm: given.slip_mm.unwrap_or(limits.slip_mm),
+        slip_deg: given.slip_deg.unwrap_or(limits.slip_deg),
+        deflection_mm: given.deflection_mm.unwrap_or(limits.deflection_mm),
+        creep_mm_s: given.creep_mm_s.unwrap_or(limits.creep_mm_s),
+        torque_ratio: given.torque_ratio.unwrap_or(limits.torque_ratio),
+        load_factor: limits.load_factor,
+    }
+}
+
+fn for_people(summary: &RecordedSummary, again: Option<&Verdict>) -> String {
+    let mut text = console::details(&summary.verdict, None);
+    let peaks = &summary.peaks;
+    let by_hand = |figures: &BTreeMap<String, f64>, unit: &str| {
+        let told: Vec<_> = figures.iter().map(|(hand, figure)| format!("{hand} {figure:.3} {unit}")).collect();
+        told.join(", ")
+    };
+    let phases: Vec<_> = summary.phases.iter().map(|phase| format!("{} {:.3} s", phase.name, phase.start_s)).collect();
+    let made_by: Vec<_> = summary.verdict.versions.iter().map(|(name, version)| format!("{name} {version}")).collect();
+    let rows = [
+        ("slip peaks", by_hand(&peaks.slip_mm, "mm")),
+        ("rotation peaks", by_hand(&peaks.rotation_deg, "deg")),
+        ("deflection peak", format!("{:.3} mm", peaks.deflection_mm)),
+        ("phases from", format!("{}, end {:.3} s", phases.join(", "), summary.end_s)),
+        ("made by", made_by.join(", ")),
+        ("trace", summary.verdict.fingerprint.clone()),
+    ];
+    text.push('\n');
+    text.push_str(&console::aligned(&rows.map(|(name, value)| vec![name.to_owned(), value]), 2));
+    text.push_str("\nevents\n");
+    for (time_s, event) in &summary.events {
+        text.push_str(&format!("{time_s:>7.3} s  {event}\n"));
+    }
+    if let Some(verdict) = again {
+        text.push_str("\njudged again\n");
+        text.push_str(&console::details(verdict, None));
+    }
+    text
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    verdict: &'a Verdict,
+    peaks: Peaks<'a>,
+    phases: Vec<Moment<'a>>,
+    events: Vec<Moment<'a>>,
+    end_s: f64,
+    /// The verdict under other limits; null when none were asked for.
+    judged_again: Option<&'a Verdict>,
+}
+
+#[derive(Serialize)]
+struct Peaks<'a> {
+    slip_mm: &'a BTreeMap<String, f64>,
+    rotation_deg: &'a BTreeMap<String, f64>,
+    deflection_mm: f64,
+    torque_ratio: &'a BTreeMap<String, f64>,
+}
+
+#[derive(Serialize)]
+struct Moment<'a> {
+    time_s: f64,
+    text: &'a str,
+}
+
+fn for_programs(summary: &RecordedSummary, judged_again: Option<&Verdict>) -> String {
+    let peaks = &summary.peaks;
+    let document = Document {
+        verdict: &summary.verdict,
+        peaks: Peaks {
+            slip_mm: &peaks.slip_mm,
+            rotation_deg: &peaks.rotation_deg,
+            deflection_mm: peaks.deflection_mm,
+            torque_ratio: &peaks.torque_ratio,
+        },
+        phases: summary.phases.iter().map(|phase| Moment { time_s: phase.start_s, text: &phase.name }).collect(),
+        events: summary.events.iter().map(|(time_s, text)| Moment { time_s: *time_s, text }).collect(),
+        end_s: summary.end_s,
+        judged_again,
+    };
+    // Serialisation into a string fails only for maps with keys that are no strings.
+    let text = serde_json::to_string_pretty(&document).expect("a recording's summary has only string keys");
+    format!("{text}\n")
+}

@@ -1,0 +1,147 @@
+//! Which scenarios a run is about: files, folders and patterns become scenarios that have been read and checked.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use glob::Pattern;
+
+use super::exit::CliError;
+use crate::scenario::{self, LoadedScenario};
+
+/// A scenario, and whether `--filter` lets it through.
+#[derive(Debug)]
+pub struct Selected {
+    /// The scenario.
+    pub loaded: LoadedScenario,
+    /// False when it is only to be listed.
+    pub wanted: bool,
+}
+
+/// Reads and checks every scenario that the arguments name, in their order; folders and patterns in the order of names.
+///
+/// # Errors
+/// When an argument names no scenario, a scenario cannot be used, two have one name, or no name passes the filters.
+pub fn scenarios(arguments: &[PathBuf], filters: &[String], seed: Option<u64>) -> Result<Vec<Selected>, CliError> {
+    let asked = filters.join(", ");
+    let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
+    let mut names = BTreeMap::<String, PathBuf>::new();
+    let mut selected = Vec::new();
+    for path in files(arguments)? {
+        let mut loaded = scenario::load(&path)?;
+        if let Some(seed) = seed {
+            loaded.scenario.planner.seed = seed;
+        }
+        let name = loaded.scenario.name.clone();
+        if let Some(other) = names.insert(name.clone(), path.clone()) {
+            let (path, other) = (path.display(), other.display());
+            return Err(CliError::Usage(format!("{path}: name: found \"{name}\", which is the name of {other} too")));
+        }
+        let wanted = filters.is_empty() || filters.iter().any(|filter| filter.passes(&name));
+        selected.push(Selected { loaded, wanted });
+    }
+    if selected.iter().any(|scenario| scenario.wanted) {
+        return Ok(selected);
+    }
+    let known: Vec<_> = names.into_keys().collect();
+    Err(CliError::Usage(format!(
+        "--filter {asked}: found no scenario that passes, expected one of {}",
+        known.join(", ")
+    )))
+}
+
+/// The files that the arguments name. A path that exists is taken as it is, whatever characters it has.
+fn files(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
+    let mut files = Vec::new();
+    for argument in arguments {
+        let text = argument.to_string_lossy();
+        if argument.is_dir() {
+            files.extend(scenarios_in(argument)?);
+        } else if !argument.exists() && is_pattern(&text) {
+            files.extend(matches(&text)?);
+        } else {
+            files.push(argument.clone());
+        }
+    }
+    Ok(files)
+}
+
+fn is_pattern(text: &str) -> bool {
+    text.contains(['*', '?', '['])
+}
+
+/// The `.toml` files of a folder, without those of folders in it.
+fn scenarios_in(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+    let failed = |error| CliError::Usage(format!("failed to read {}: {error}", folder.display()));
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.is_file() && path.extension().is_some_and(|extension| extension == "toml") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(CliError::Usage(format!("{}: found no .toml file, expected scenarios", folder.display())));
+    }
+    Ok(files)
+}
+
+/// The files that match a pattern.
+fn matches(pattern: &str) -> Result<Vec<PathBuf>, CliError> {
+    let paths = glob::glob(pattern).map_err(|error| CliError::Usage(format!("{pattern}: {error}")))?;
+    let mut files = Vec::new();
+    for path in paths {
+        let path = path.map_err(|error| {
+            CliError::Usage(format!("failed to read {}: {}", error.path().display(), error.error()))
+        })?;
+        if path.is_file() {
+            files.push(path);
+        }
+    }
+    if files.is_empty() {
+        return Err(CliError::Usage(format!("{pattern}: found no file that matches, expected scenarios")));
+    }
+    Ok(files)
+}
+
+/// A `--filter`.
+enum Filter {
+    Contains(String),
+    Matches(Pattern),
+}
+
+impl Filter {
+    fn new(text: &str) -> Result<Self, CliError> {
+        match is_pattern(text) {
+            false => Ok(Self::Contains(text.to_owned())),
+            true => {
+                let failed = |error| CliError::Usage(format!("--filter {text}: {error}"));
+                Pattern::new(text).map(Self::Matches).map_err(failed)
+            }
+        }
+    }
+
+    fn passes(&self, name: &str) -> bool {
+        match self {
+            Self::Contains(text) => name.contains(text.as_str()),
+            Self::Matches(pattern) => pattern.matches(name),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_is_part_of_a_name_or_a_pattern_of_the_whole() {
+        let passes = |text: &str, name| Filter::new(text).unwrap().passes(name);
+        assert!(passes("cut", "short-cut-3") && !passes("cut", "drill"));
+        assert!(passes("cut-*", "cut-3") && !passes("cut-*", "short-cut-3"));
+        assert!(passes("cut-0[1-3]", "cut-02") && !passes("cut-0[1-3]", "cut-04"));
+        let Err(CliError::Usage(message)) = Filter::new("cut-[") else { panic!("an open bracket is no pattern") };
+        assert!(message.starts_with("--filter cut-[: "), "{message}");
+    }
+}

@@ -1,0 +1,92 @@
+//! Where in the scene a limit was first crossed, at the time stamp of the event: by the colour of what crossed it, and by a
+//! labelled point for the first limit of all.
+
+use nalgebra::{Point3, Vector3};
+use rerun::{Boxes3D, Color, EntityPath, Points3D};
+
+use super::{
+    RecordError, RecordingInput,
+    chunks::Messages,
+    entity, palette,
+    scene::{Frames, vec3},
+};
+use crate::model::{
+    measures::{Event, EventKind},
+    trace::Sample,
+    verdict::CheckKind,
+};
+
+/// The entity of the labelled point.
+pub(super) const MARK: &str = "first crossing";
+
+/// The events at which a limit was crossed, with the check.
+fn crossings<'a>(input: &RecordingInput<'a>) -> impl Iterator<Item = (&'a Event, CheckKind)> {
+    input.events.iter().filter_map(|event| match event.kind {
+        EventKind::LimitCrossed(check) => Some((event, check)),
+        EventKind::Phase | EventKind::BrokeDown => None,
+    })
+}
+
+/// When a pad, or the hand that it belongs to, first crossed a limit, s.
+pub(super) fn pad_crossed_s(input: &RecordingInput, arm: &str, pad: &str) -> Option<f64> {
+    let names = [format!("{arm} hand"), format!("{arm} {pad} pad")];
+    crossings(input).find(|(event, _)| names.contains(&event.what)).map(|(event, _)| event.time_s)
+}
+
+/// When the board as a whole first crossed a limit, s.
+pub(super) fn board_crossed_s(input: &RecordingInput) -> Option<f64> {
+    let first = |&(event, check): &(&Event, CheckKind)| event.what.is_empty() || check == CheckKind::Drop;
+    crossings(input).find(first).map(|(event, _)| event.time_s)
+}
+
+/// Logs the colour of boxes: their own from the beginning, that of a limit from the time at which they crossed one.
+pub(super) fn log_box_colour(
+    messages: &mut Messages,
+    path: &EntityPath,
+    frames: &Frames,
+    own: Color,
+    crossed_s: Option<f64>,
+) -> Result<(), RecordError> {
+    let Some(&start_s) = frames.times_s.first() else {
+        return messages.log_static(path, &Boxes3D::update_fields().with_colors([own]));
+    };
+    // What is static hides what changes, so the colour at the beginning is a change as well.
+    let changes = std::iter::once((start_s, own)).chain(crossed_s.map(|time_s| (time_s, palette::limit())));
+    let (times_s, colours): (Vec<f64>, Vec<Color>) = changes.unzip();
+    let colours = Boxes3D::update_fields().with_colors(colours);
+    messages.log_columns(path, &times_s, colours.columns_of_unit_batches().map_err(RecordError::encode)?)
+}
+
+/// Logs a point with a label where the first limit of all was crossed, from that time on.
+pub(super) fn log_mark(messages: &mut Messages, input: &RecordingInput, arms: &[usize]) -> Result<(), RecordError> {
+    let Some(failure) = &input.verdict.first_failure else { return Ok(()) };
+    let Some((event, _)) = crossings(input).find(|&(_, check)| check == failure.check) else { return Ok(()) };
+    let Some(sample) = input.trace.samples.iter().find(|sample| sample.time_s == event.time_s) else { return Ok(()) };
+    let place = place_w(input, sample, &event.what, arms);
+    let mark = Points3D::new([vec3(&place)])
+        .with_radii([0.02])
+        .with_colors([palette::limit()])
+        .with_labels([event.text.as_str()]);
+    let path = entity(&["scene", MARK]);
+    messages.log_columns(&path, &[event.time_s], mark.columns_of_unit_batches().map_err(RecordError::encode)?)
+}
+
+/// Where a hand, a pad or a joint was in a sample, in W, m; the tool point when it was the board.
+fn place_w(input: &RecordingInput, sample: &Sample, what: &str, arms: &[usize]) -> Vector3<f64> {
+    for ((arm, state), &robot_arm) in input.trace.arms.iter().zip(&sample.arms).zip(arms) {
+        if what == format!("{} hand", arm.name) {
+            return (sample.x_wo * Point3::from(state.x_oc.translation.vector)).coords;
+        }
+        let pads = arm.pads.iter().zip(&state.pads);
+        if let Some((_, pad)) = pads.into_iter().find(|(pad, _)| what == format!("{} {pad} pad", arm.name)) {
+            return pad.p_wp_m;
+        }
+        if let Some(joint) = arm.joints.iter().position(|joint| joint == what) {
+            let robot = input.robot;
+            let link = robot.joints[robot.arms[robot_arm].joints[joint]].child_link;
+            let state = crate::robot::ArmState { arm: robot_arm, q_rad: &state.q_rad, finger_travel_m: [0.0; 2] };
+            return robot.link_poses(&robot.positions(&[state]))[link].translation.vector;
+        }
+    }
+    (sample.x_wo * Point3::from(input.trace.p_ot_m)).coords
+}

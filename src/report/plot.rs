@@ -1,0 +1,203 @@
+//! A series over time as inline SVG: coloured by the page's style sheet, so that it is readable on light and dark ground.
+
+use std::fmt::Write as _;
+
+use crate::model::measures::axis_top;
+
+/// Size of a plot, px.
+const SIZE_PX: [f64; 2] = [460.0, 200.0];
+
+/// The plot's area inside the picture, px: left, right, top, bottom.
+const AREA_PX: [f64; 4] = [44.0, 450.0, 26.0, 172.0];
+
+/// How many columns a series is thinned to; each keeps its smallest and its largest value, so no peak is lost.
+const COLUMNS: usize = 203;
+
+/// One line of a plot.
+pub(super) struct Line<'a> {
+    /// Its name in the legend.
+    pub name: &'a str,
+    /// The class of the style sheet that colours it.
+    pub class: &'static str,
+    /// One value a time.
+    pub values: &'a [f64],
+}
+
+/// A plot of several lines over the same times, s.
+pub(super) struct Plot<'a> {
+    /// What is plotted, with its unit.
+    pub title: &'a str,
+    /// The times, s.
+    pub time_s: &'a [f64],
+    /// The lines.
+    pub lines: Vec<Line<'a>>,
+    /// The limit that is drawn across.
+    pub limit: Option<f64>,
+    /// When this limit was the first to be crossed, s.
+    pub failed_s: Option<f64>,
+}
+
+impl Plot<'_> {
+    /// The picture.
+    pub fn svg(&self) -> String {
+        let [width, height] = SIZE_PX;
+        let mut body = String::new();
+        let peak = self.lines.iter().flat_map(|line| line.values).copied().fold(0.0, f64::max);
+        let top = axis_top(peak, self.limit);
+        let (Some(&start_s), Some(&end_s)) = (self.time_s.first(), self.time_s.last()) else { return body };
+        let scale = Scale { start_s, end_s: end_s.max(start_s + f64::EPSILON), top };
+        scale.grid(&mut body);
+        label(&mut body, "title", AREA_PX[0], 16.0, "start", self.title);
+        // Writing to a string does not fail.
+        let [left, right, above, below] = AREA_PX;
+        let (w, h) = (right - left, below - above);
+        let _ = write!(
+            body,
+            "<svg x=\"{left}\" y=\"{above}\" width=\"{w}\" height=\"{h}\" viewBox=\"{left} {above} {w} {h}\">"
+        );
+        for line in &self.lines {
+            let _ = write!(body, "<polyline class=\"{}\" points=\"{}\"/>", line.class, scale.points(self.time_s, line));
+        }
+        if let Some(limit) = self.limit {
+            let y = scale.y_px(limit);
+            let _ = write!(body, "<line class=\"limit\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>");
+        }
+        if let Some(failed_s) = self.failed_s {
+            let x = scale.x_px(failed_s);
+            let _ = write!(body, "<line class=\"failed\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{above}\" y2=\"{below}\"/>");
+        }
+        body.push_str("</svg>");
+        self.legend(&mut body);
+        let name = escape(self.title);
+        format!(
+            "<svg class=\"plot\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{name}\">{body}</svg>\n"
+        )
+    }
+
+    fn legend(&self, body: &mut String) {
+        let mut x = AREA_PX[0] + 4.0;
+        let limit = self.limit.map(|_| ("limit", "limit"));
+        let failed = self.failed_s.map(|_| ("first crossing", "failed"));
+        let lines = self.lines.iter().map(|line| (line.name, line.class));
+        for (name, class) in lines.chain(limit).chain(failed) {
+            let y = 192.0;
+            let _ =
+                write!(body, "<line class=\"{class}\" x1=\"{x:.1}\" x2=\"{:.1}\" y1=\"{y}\" y2=\"{y}\"/>", x + 14.0);
+            label(body, "key", x + 18.0, y + 4.0, "start", name);
+            // As wide as the text is in a common sans-serif of 11 px, and a gap.
+            x += 34.0 + 5.6 * name.chars().count() as f64;
+        }
+    }
+}
+
+/// From times and values to pixels.
+struct Scale {
+    start_s: f64,
+    end_s: f64,
+    top: f64,
+}
+
+impl Scale {
+    fn x_px(&self, time_s: f64) -> f64 {
+        let [left, right, ..] = AREA_PX;
+        left + (right - left) * (time_s - self.start_s) / (self.end_s - self.start_s)
+    }
+
+    fn y_px(&self, value: f64) -> f64 {
+        let [.., above, below] = AREA_PX;
+        // What lies far above is clipped; the bound keeps the coordinates short.
+        below - (below - above) * (value / self.top).clamp(-1.0, 10.0)
+    }
+
+    fn grid(&self, body: &mut String) {
+        let [left, right, _, below] = AREA_PX;
+        for value in ticks(0.0, self.top) {
+            let y = self.y_px(value);
+            let _ = write!(body, "<line class=\"grid\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>");
+            label(body, "tick", left - 5.0, y + 4.0, "end", &number(value));
+        }
+        for time_s in ticks(self.start_s, self.end_s) {
+            label(body, "tick", self.x_px(time_s), below + 13.0, "middle", &format!("{} s", number(time_s)));
+        }
+    }
+
+    /// The coordinates of a line, thinned to the smallest and the largest value of each column.
+    fn points(&self, time_s: &[f64], line: &Line) -> String {
+        let samples: Vec<(f64, f64)> =
+            time_s.iter().copied().zip(line.values.iter().copied()).filter(|(_, value)| value.is_finite()).collect();
+        let mut text = String::new();
+        for column in samples.chunks(samples.len().div_ceil(COLUMNS).max(1)) {
+            let extreme = |wanted: std::cmp::Ordering| {
+                (1..column.len())
+                    .fold(0, |best, i| if column[i].1.total_cmp(&column[best].1) == wanted { i } else { best })
+            };
+            let (low, high) = (extreme(std::cmp::Ordering::Less), extreme(std::cmp::Ordering::Greater));
+            let pair = [low.min(high), low.max(high)];
+            for &index in &pair[..if low == high { 1 } else { 2 }] {
+                let (time_s, value) = column[index];
+                let gap = if text.is_empty() { "" } else { " " };
+                let _ = write!(text, "{gap}{:.1},{:.1}", self.x_px(time_s), self.y_px(value));
+            }
+        }
+        text
+    }
+}
+
+/// Round values from `from` to `to`: three to seven of them.
+fn ticks(from: f64, to: f64) -> Vec<f64> {
+    let rough = (to - from) / 6.0;
+    let decade = 10_f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade).into_iter().find(|step| *step >= rough);
+    let step = step.unwrap_or(rough);
+    // A tick within a rounding of the end is one.
+    let first = (from / step - 1e-9).ceil();
+    (0..=8).map(|k| (first + f64::from(k)) * step).take_while(|value| *value <= to + 1e-9 * step).collect()
+}
+
+/// A tick's number without the zeros that rounding leaves.
+fn number(value: f64) -> String {
+    let text = format!("{value:.4}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text.is_empty() || text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+fn label(body: &mut String, class: &str, x: f64, y: f64, anchor: &str, text: &str) {
+    let text = escape(text);
+    let _ = write!(body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
+}
+
+/// Text as it may stand in an element or an attribute.
+pub(super) fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_few_and_inside() {
+        assert_eq!(ticks(0.0, 1.05), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        assert_eq!(ticks(0.5, 3.0), [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]);
+        for top in [0.003, 0.1, 2.1, 5.25, 8.4, 99.0, 1234.0] {
+            let ticks = ticks(0.0, top);
+            assert!((3..=8).contains(&ticks.len()) && ticks.iter().all(|tick| *tick <= top), "{top}: {ticks:?}");
+        }
+        assert_eq!([0.0, 0.6000000000000001, -0.0, 20.0].map(number), ["0", "0.6", "0", "20"]);
+    }
+
+    #[test]
+    fn thinning_keeps_the_peak_and_the_ends_of_the_axis() {
+        let time_s: Vec<f64> = (0..=10_000).map(|i| f64::from(i) * 1e-3).collect();
+        let mut values = vec![0.0; time_s.len()];
+        values[7_531] = 2.0;
+        let line = Line { name: "left hand", class: "hand-0", values: &values };
+        let svg =
+            Plot { title: "slip, mm", time_s: &time_s, lines: vec![line], limit: Some(1.0), failed_s: None }.svg();
+        // The peak is 2 of an axis up to 2.2: y = 172 - 146 * 2 / 2.2.
+        assert!(svg.contains(&format!(",{:.1}", 172.0 - 146.0 * 2.0 / 2.2)), "{svg}");
+        assert!(svg.matches(',').count() < 2 * COLUMNS + 20);
+        // The limit's line lies inside the plot.
+        assert!(svg.contains(&format!("y1=\"{:.1}\"", 172.0 - 146.0 / 2.2)));
+    }
+}

@@ -1,0 +1,194 @@
+//! Every message that a user meets, to the letter. The expected texts are under `tests/snapshots`; after a change that is
+//! meant, `INSTA_UPDATE=always cargo test --release --test messages` writes them again, and `git diff` shows what changed.
+
+#![cfg(feature = "recording")]
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+/// A scenario whose plan is given, so that it runs within a second.
+const SCENARIO: &str = include_str!("../scenarios/fails-weak-grip.toml");
+const PLAN: &str = include_str!("../scenarios/plans/cut-rim-weak-grip.json");
+
+/// A folder with scenarios that run fast.
+fn folder(names: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("plans")).unwrap();
+    fs::write(folder.path().join("plans/cut-rim-weak-grip.json"), PLAN).unwrap();
+    for (name, expected) in names {
+        let text = SCENARIO.replace("fails-weak-grip", name).replace("\"slips\"", &format!("\"{expected}\""));
+        fs::write(folder.path().join(format!("{name}.toml")), text).unwrap();
+    }
+    folder
+}
+
+fn benchdog(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_benchdog"));
+    command.args(arguments).current_dir(folder);
+    // No viewer is to be found, whatever this machine has.
+    command.env("PATH", folder.join("bin")).output().unwrap()
+}
+
+/// All that the user sees, without what differs between machines and runs.
+fn seen(folder: &Path, arguments: &[&str]) -> String {
+    let output = benchdog(folder, arguments);
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap().replace(folder.to_str().unwrap(), "FOLDER");
+    let (stdout, stderr) = (without_times(&text(&output.stdout)), without_times(&text(&output.stderr)));
+    let part = |title: &str, text: &str| if text.is_empty() { String::new() } else { format!("--- {title}\n{text}") };
+    format!(
+        "$ benchdog {}\n{}{}--- exit code {}\n",
+        arguments.join(" "),
+        part("standard output", &stdout),
+        part("standard error", &stderr),
+        output.status.code().unwrap()
+    )
+}
+
+/// How long something took is replaced by `T`: in the last column of the table, and at the end of a progress line.
+fn without_times(text: &str) -> String {
+    let mut in_table = false;
+    let line = |line: &str| {
+        if line.starts_with("scenario ") {
+            in_table = true;
+            return format!("{}  T", line.trim_end_matches("time s").trim_end());
+        }
+        in_table &= line.contains("  ");
+        match line.rsplit_once(' ') {
+            Some((before, time)) if in_table && (time == "-" || time.parse::<f64>().is_ok()) => {
+                format!("{}  T", before.trim_end())
+            }
+            _ if line.ends_with(" s)") => format!("{}(T s)", &line[..line.rfind('(').unwrap()]),
+            _ => line.to_owned(),
+        }
+    };
+    let lines: Vec<String> = text.lines().map(line).collect();
+    if lines.is_empty() { String::new() } else { format!("{}\n", lines.join("\n")) }
+}
+
+fn assert_seen(name: &str, folder: &Path, arguments: &[&str]) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, seen(folder, arguments)));
+}
+
+#[test]
+fn the_help_of_every_command() {
+    let folder = folder(&[]);
+    assert_seen("help", folder.path(), &["--help"]);
+    for command in ["run", "plan", "simulate", "curve", "schema", "inspect", "view", "doctor", "completions"] {
+        assert_seen(&format!("help-{command}"), folder.path(), &["help", command]);
+    }
+}
+
+#[test]
+fn every_command_has_an_example() {
+    let folder = folder(&[]);
+    let help = String::from_utf8(benchdog(folder.path(), &["--help"]).stdout).unwrap();
+    let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    for command in commands
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
+        .filter(|command| !["help", ""].contains(command))
+    {
+        let help = String::from_utf8(benchdog(folder.path(), &["help", command]).stdout).unwrap();
+        assert!(help.contains("Example") && help.contains(&format!("  benchdog {command}")), "{help}");
+    }
+}
+
+#[test]
+fn versions_and_the_doctor() {
+    let folder = folder(&[]);
+    assert_seen("version", folder.path(), &["--version"]);
+    assert_seen("doctor", folder.path(), &["doctor"]);
+}
+
+#[test]
+fn usage_errors() {
+    let folder = folder(&[("a", "slips")]);
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    assert_seen("error-no-command", folder.path(), &[]);
+    assert_seen("error-unknown-command", folder.path(), &["fly"]);
+    assert_seen("error-no-scenario", folder.path(), &["run"]);
+    assert_seen("error-unknown-option", folder.path(), &["run", "a.toml", "--fast"]);
+    assert_seen("error-no-jobs", folder.path(), &["run", "a.toml", "--jobs", "0"]);
+    assert_seen("error-missing-file", folder.path(), &["run", "b.toml"]);
+    assert_seen("error-empty-folder", folder.path(), &["run", "empty"]);
+    assert_seen("error-pattern-without-match", folder.path(), &["run", "b*.toml"]);
+    assert_seen("error-broken-pattern", folder.path(), &["run", "b[.toml"]);
+    assert_seen("error-filter-without-match", folder.path(), &["run", "a.toml", "--filter", "b"]);
+    assert_seen("error-one-name-twice", folder.path(), &["run", "a.toml", "."]);
+    assert_seen("error-output-is-a-file", folder.path(), &["run", "a.toml", "--out", "a.toml"]);
+    assert_seen("error-nothing-to-plan", folder.path(), &["plan", "a.toml"]);
+    assert_seen("error-no-circle", folder.path(), &["curve", "no-such.toml"]);
+    assert_seen("error-limit", folder.path(), &["inspect", "a.rrd", "--slip-mm", "-1"]);
+}
+
+#[test]
+fn what_a_run_says() {
+    let folder = folder(&[("a", "slips"), ("b", "holds"), ("c", "slips")]);
+    let run = |name, more: &[&str]| {
+        let arguments = [&["run", ".", "--jobs", "1", "--record", "never"], more].concat();
+        assert_seen(name, folder.path(), &arguments);
+    };
+    run("run-all", &[]);
+    run("run-filter", &["--filter", "a", "--filter", "[c]"]);
+    run("run-fail-fast", &["--fail-fast"]);
+    assert_seen("run-one", folder.path(), &["run", "b.toml"]);
+    assert_seen("simulate", folder.path(), &["simulate", "plans/cut-rim-weak-grip.json", "--record", "never"]);
+}
+
+#[test]
+fn what_is_said_of_a_recording() {
+    let folder = folder(&[("a", "slips")]);
+    assert_eq!(benchdog(folder.path(), &["run", "a.toml"]).status.code(), Some(0));
+    let recording = "out/a/recording.rrd";
+    assert_seen("inspect", folder.path(), &["inspect", recording]);
+    let limits = ["--slip-mm", "9999", "--slip-deg", "360"];
+    assert_seen("inspect-other-limits", folder.path(), &[&["inspect", recording], &limits[..]].concat());
+
+    let bytes = fs::read(folder.path().join(recording)).unwrap();
+    let spoilt = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    spoilt("cut-short.rrd", &bytes[..bytes.len() / 2]);
+    spoilt("other-version.rrd", &[b"RRF2\x00\x28\x01\x00", &bytes[8..]].concat());
+    spoilt("no-recording.rrd", b"a text");
+    for name in ["cut-short", "other-version", "no-recording", "missing"] {
+        assert_seen(&format!("inspect-{name}"), folder.path(), &["inspect", &format!("{name}.rrd")]);
+    }
+    assert_seen("view-cut-short", folder.path(), &["view", "cut-short.rrd"]);
+    assert_seen("view-without-viewer", folder.path(), &["view", recording]);
+}
+
+#[cfg(unix)]
+#[test]
+fn the_viewer_is_started_with_the_file() {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    let folder = folder(&[("a", "slips")]);
+    assert_eq!(benchdog(folder.path(), &["run", "a.toml"]).status.code(), Some(0));
+    let bin = folder.path().join("bin");
+    fs::create_dir(&bin).unwrap();
+    let viewer = |version: &str| {
+        let script = format!(
+            "#!/bin/sh\nif [ \"$1\" = --version ]; then echo rerun-cli {version} more; else echo shows \"$@\"; fi\n"
+        );
+        fs::write(bin.join("rerun"), script).unwrap();
+        fs::set_permissions(bin.join("rerun"), fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    viewer("0.36.3");
+    assert_seen("view", folder.path(), &["view", "out/a/recording.rrd"]);
+    viewer("0.35.0");
+    assert_seen("view-other-version", folder.path(), &["view", "out/a/recording.rrd"]);
+}
+
+#[test]
+fn completions_know_the_commands() {
+    let folder = folder(&[]);
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let output = benchdog(folder.path(), &["completions", shell]);
+        let script = String::from_utf8(output.stdout).unwrap();
+        assert!(["inspect", "fail-fast"].iter().all(|word| script.contains(word)), "{shell}");
+    }
+}
