@@ -92,6 +92,12 @@ impl Tally {
         self.candidates += 1;
     }
 
+    /// Counts so many candidates that one thing removed.
+    pub fn remove_all(&mut self, count: u64, why: Rejection) {
+        self.candidates += count;
+        *self.removed.entry(why).or_default() += count;
+    }
+
     /// Counts what removed a candidate.
     pub fn remove(&mut self, why: Rejection) {
         *self.removed.entry(why).or_default() += 1;

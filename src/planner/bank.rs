@@ -37,17 +37,21 @@ pub struct KnownHold {
     pub holds: Vec<Hold>,
 }
 
-/// So many holds of a board of this size, or fewer where they are rare.
-pub fn holds(map: &RobotMap, wanted: usize) -> Vec<KnownHold> {
+/// So many holds of the map's size of board, or fewer where they are rare, and how often one was looked for.
+pub fn holds(map: &RobotMap, wanted: usize) -> (Vec<KnownHold>, u64) {
     let mut random = Pcg64::new(SEED, 0);
     let mut found = Vec::with_capacity(wanted);
-    for _ in 0..DRAWS_A_HOLD * wanted {
-        if found.len() == wanted {
-            break;
-        }
+    let mut drawn = 0;
+    while found.len() < wanted && drawn < most_draws(wanted, found.len()) {
+        drawn += 1;
         found.extend(draw(map, &mut random));
     }
-    found
+    (found, drawn)
+}
+
+/// Where nothing at all is found the search for holds ends sooner.
+fn most_draws(wanted: usize, found: usize) -> u64 {
+    (DRAWS_A_HOLD * if found == 0 { wanted / 20 } else { wanted }) as u64
 }
 
 fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<KnownHold> {

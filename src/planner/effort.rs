@@ -24,18 +24,25 @@ pub struct Effort {
 impl Effort {
     /// The numbers of a budget.
     pub fn of(budget: Budget) -> Self {
-        let default = Self {
-            postures: 20_000,
-            postures_a_cell: 4,
-            disposed: 500,
-            starts: 8,
-            first_steps: 5,
-            finalists: 2,
-            last_steps: 30,
-        };
         match budget {
-            Budget::Fast => Self { postures: 5_000, disposed: 200, starts: 2, finalists: 1, ..default },
-            Budget::Default => default,
+            Budget::Fast => Self {
+                postures: 10_000,
+                postures_a_cell: 4,
+                disposed: 300,
+                starts: 4,
+                first_steps: 5,
+                finalists: 1,
+                last_steps: 25,
+            },
+            Budget::Default => Self {
+                postures: 20_000,
+                postures_a_cell: 8,
+                disposed: 500,
+                starts: 12,
+                first_steps: 6,
+                finalists: 3,
+                last_steps: 30,
+            },
             Budget::Exhaustive => Self {
                 postures: 200_000,
                 postures_a_cell: 100,

@@ -1,13 +1,13 @@
-//! The search for a hold that is comfortable for the person and stable against the tool (METHOD section 3).
+//! The search for a hold that is comfortable for the person and stable against the tool's force (METHOD section 3).
 //!
-//! The muscular comfort of a person depends on the posture of the arm alone: the tool's force is fixed in the tool, and
-//! gravity does not change when the person turns on the spot. So the search starts from postures of the arm, which fix
-//! the board's pose relative to the person, then places the two of them before the robot, chooses the grasps, and asks
-//! the arms' inverse kinematics. Cheap tests come first and the stability program last. The best of many draws are
-//! refined by small random steps that must keep every constraint. With `comfort.person = "average"` the best of the holds
-//! found that way are ranked by the mean comfort of all answers to them.
+//! Two maps propose: what a robot can hold with boards of one size ([`RobotMap`], made once for all operations), and how
+//! comfortable the person's postures are, by what they ask of the board's pose. Exact kinematics, collisions and stability
+//! dispose of their best pairs, cheap tests first; sequential quadratic steps refine what is left, stability included.
+//! The random planner draws instead. With `comfort.person = "average"` the best of the holds found are ranked by the mean
+//! comfort of all answers to them. Every plan is checked from scratch before it is returned.
 //!
-//! This module never sees a simulation's result; nothing here knows the clock.
+//! Effort is counted in candidates, never in time: the same scenario and seed give the same plan, bit by bit. This module
+//! never sees a simulation's result; nothing here knows the clock.
 
 mod answer;
 mod assess;

@@ -51,6 +51,9 @@ pub fn best_candidates(
 ) -> Vec<Feasible> {
     let person = PersonMap::new(problem, effort.postures, effort.postures_a_cell, random);
     let map = problem.map;
+    if map.bank.is_empty() {
+        tally.remove_all(map.drawn, Rejection::RobotReach);
+    }
     let mut proposals = Vec::new();
     for known in &map.bank {
         if tally.is_exhausted() {

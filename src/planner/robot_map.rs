@@ -25,6 +25,8 @@ pub struct RobotMap {
     pub(super) holding: Vec<usize>,
     pub(super) collision: CollisionModel,
     pub(super) bank: Vec<KnownHold>,
+    /// How often a hold was looked for.
+    pub(super) drawn: u64,
 }
 
 /// An arm as the search needs it.
@@ -61,8 +63,9 @@ impl RobotMap {
             holding: (0..robot.arms.len()).collect(),
             collision: CollisionModel::new(robot),
             bank: Vec::new(),
+            drawn: 0,
         };
-        map.bank = bank::holds(&map, HOLDS);
+        (map.bank, map.drawn) = bank::holds(&map, HOLDS);
         map
     }
 

@@ -5,7 +5,9 @@
 //! redundancy; the arms' joints follow the board. A quadratic program then asks for the best move within a trust region
 //! that keeps all linearised constraints; its objective's curvature is learned from step to step. The move is made exactly,
 //! by inverse kinematics, and accepted when it is better and keeps every constraint; one that curvature has led across a
-//! constraint is bent back once or twice before the region shrinks.
+//! constraint is bent back once or twice before the region shrinks. Stability costs a hundred times as much as all other
+//! constraints together: it is linearised when a step has broken it, and its gradient then carried along by Broyden's
+//! update and worked out anew when the climb stalls.
 
 mod linear;
 mod moves;

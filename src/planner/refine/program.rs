@@ -24,19 +24,20 @@ const MAX_CHANGES: usize = 200;
 /// leave no room or the curvature is not positive definite.
 pub fn best_move(gradient: &DVector<f64>, curvature: &DMatrix<f64>, rows: &[Row], radius: f64) -> Option<DVector<f64>> {
     let inverse = curvature.clone().cholesky()?.inverse();
-    let program = Program { rows: normalised(rows), radius, count: gradient.len() };
+    let program = Program { rows: live(rows, radius), radius, count: gradient.len() };
     let mut d = &inverse * gradient;
     let mut active: Vec<Active> = Vec::new();
     let mut changes = 0;
     while let Some(broken) = program.most_broken(&d) {
         let normal = program.normal(broken);
+        let along = &inverse * &normal;
         let mut multiplier = 0.0;
         loop {
             changes += 1;
             if changes > MAX_CHANGES {
                 return None;
             }
-            let Direction { primal, dual } = direction(&inverse, &active, &normal)?;
+            let Direction { primal, dual } = direction(&active, &normal, &along)?;
             let curvature_along = primal.dot(&normal);
             let full = if curvature_along > TOLERANCE * inverse.amax() {
                 -program.margin(broken, &d) / curvature_along
@@ -60,7 +61,7 @@ pub fn best_move(gradient: &DVector<f64>, curvature: &DMatrix<f64>, rows: &[Row]
             }
             active.remove(first);
         }
-        active.push(Active { normal, multiplier });
+        active.push(Active { normal, along, multiplier });
     }
     Some(d)
 }
@@ -68,6 +69,8 @@ pub fn best_move(gradient: &DVector<f64>, curvature: &DMatrix<f64>, rows: &[Row]
 /// A constraint that holds with equality.
 struct Active {
     normal: DVector<f64>,
+    /// The inverse curvature times the normal.
+    along: DVector<f64>,
     multiplier: f64,
 }
 
@@ -78,11 +81,13 @@ struct Program {
     count: usize,
 }
 
-/// Rows with gradients of length 1; those that no move changes are left out.
-fn normalised(rows: &[Row]) -> Vec<Row> {
-    let lengths = rows.iter().map(|row| (row, row.gradient.norm()));
-    let moved = lengths.filter(|(_, length)| *length > 0.0);
-    moved.map(|(row, length)| Row { gradient: &row.gradient / length, margin: row.margin / length }).collect()
+/// Rows with gradients of length 1; those that no move within the trust region can break are left out.
+fn live(rows: &[Row], radius: f64) -> Vec<Row> {
+    let live = rows.iter().filter(|row| row.margin < radius * row.gradient.lp_norm(1));
+    live.map(|row| (row, row.gradient.norm()))
+        .filter(|(_, length)| *length > 0.0)
+        .map(|(row, length)| Row { gradient: &row.gradient / length, margin: row.margin / length })
+        .collect()
 }
 
 impl Program {
@@ -127,17 +132,20 @@ struct Direction {
     dual: DVector<f64>,
 }
 
-/// With H the inverse curvature and N the active normals: `dual = (N' H N)^-1 N' H n`, `primal = H (n - N dual)`.
-fn direction(inverse: &DMatrix<f64>, active: &[Active], normal: &DVector<f64>) -> Option<Direction> {
-    let along = inverse * normal;
+/// With H the inverse curvature, N the active normals and `along` = H n: `dual = (N' H N)^-1 N' H n`,
+/// `primal = H (n - N dual)`.
+fn direction(active: &[Active], normal: &DVector<f64>, along: &DVector<f64>) -> Option<Direction> {
     if active.is_empty() {
-        return Some(Direction { primal: along, dual: DVector::zeros(0) });
+        return Some(Direction { primal: along.clone(), dual: DVector::zeros(0) });
     }
-    let normals = DMatrix::from_columns(&active.iter().map(|active| active.normal.clone()).collect::<Vec<_>>());
-    let moved = inverse * &normals;
-    let gram = normals.tr_mul(&moved).cholesky()?;
-    let dual = gram.solve(&normals.tr_mul(&along));
-    Some(Direction { primal: along - moved * &dual, dual })
+    let gram = DMatrix::from_fn(active.len(), active.len(), |a, b| active[a].normal.dot(&active[b].along));
+    let mut dual = DVector::from_fn(active.len(), |a, _| active[a].along.dot(normal));
+    gram.cholesky()?.solve_mut(&mut dual);
+    let mut primal = along.clone();
+    for (active, rate) in active.iter().zip(dual.iter()) {
+        primal.axpy(-rate, &active.along, 1.0);
+    }
+    Some(Direction { primal, dual })
 }
 
 /// The active constraint whose multiplier reaches zero first, and the step at which it does.
