@@ -35,7 +35,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (plan, robot) = scenario::read_plan(Path::new("scenarios/plans/cut-rim-weak-grip.json"), None)?;
 //! let scenario = scenario::for_plan(&plan, &robot);
-//! let trace = sim::simulate(&robot, &plan, scenario.grip.friction, &scenario.simulation)?;
+//! let trace = sim::simulate(&robot, &plan, &sim::Conditions::of(&scenario))?;
 //! let judgement = judge::judge(&trace, &scenario.limits);
 //! assert_eq!(judgement.verdict, VerdictKind::Slips);
 //! for check in judgement.checks.iter().filter(|check| !check.passed) {

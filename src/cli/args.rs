@@ -138,6 +138,7 @@ pub struct SchemaArgs {
 
 /// `benchdog margin`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = help::MARGIN)]
 pub struct MarginArgs {
     /// Plan file
     pub plan: PathBuf,
@@ -151,6 +152,7 @@ pub struct MarginArgs {
 
 /// `benchdog export`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = help::EXPORT)]
 pub struct ExportArgs {
     /// Plan file
     pub plan: PathBuf,

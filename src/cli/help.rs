@@ -38,6 +38,17 @@ Examples:
   benchdog simulate plan.json
   benchdog simulate plan.json --scenario scenarios/cut-rim.toml --format json";
 
+/// `benchdog margin --help`.
+pub const MARGIN: &str = "\
+Examples:
+  benchdog margin plan.json
+  benchdog margin plan.json --scenario scenarios/cut-rim.toml --format json";
+
+/// `benchdog export --help`.
+pub const EXPORT: &str = "\
+Example:
+  benchdog export plan.json --mjcf scene.xml";
+
 /// `benchdog curve --help`.
 pub const CURVE: &str = "\
 Examples:

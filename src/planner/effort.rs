@@ -28,7 +28,7 @@ impl Effort {
             Budget::Fast => Self {
                 postures: 10_000,
                 postures_a_cell: 4,
-                disposed: 300,
+                disposed: 400,
                 starts: 4,
                 first_steps: 5,
                 finalists: 1,
@@ -37,7 +37,7 @@ impl Effort {
             Budget::Default => Self {
                 postures: 20_000,
                 postures_a_cell: 8,
-                disposed: 500,
+                disposed: 800,
                 starts: 12,
                 first_steps: 6,
                 finalists: 3,

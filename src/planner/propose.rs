@@ -13,7 +13,7 @@ use rand_pcg::Pcg64;
 
 use super::{
     Problem,
-    assess::{self, Feasible, Rejection, Tally},
+    assess::{self, Configured, Feasible, Rejection, Tally},
     bank::KnownHold,
     candidate::Candidate,
     effort::Effort,
@@ -74,27 +74,42 @@ pub fn best_candidates(
     dispose(problem, effort, &proposals, tally)
 }
 
-/// The first proposals that keep every constraint, the best first.
+/// Makes the most promising proposals fit, and returns those worth most then that keep every constraint, one a hold, the
+/// best first.
 fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>], tally: &mut Tally) -> Vec<Feasible> {
+    let mut fitting = Vec::with_capacity(effort.disposed);
+    for proposal in proposals.iter().take(effort.disposed) {
+        match fit(problem, proposal) {
+            Some(candidate) => {
+                let configured = Configured::new(problem, &candidate);
+                let worth = assess::comfort(problem, &candidate, &configured).objective;
+                fitting.push((worth, proposal.known, candidate));
+            }
+            None => {
+                tally.draw();
+                tally.remove(Rejection::PersonReach);
+            }
+        }
+    }
+    fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<Feasible> = Vec::new();
     let mut used: Vec<&KnownHold> = Vec::new();
-    for proposal in proposals.iter().take(effort.disposed) {
-        if kept.len() == effort.starts {
+    for (_, known, candidate) in fitting {
+        if kept.len() == effort.starts || tally.is_exhausted() {
             break;
         }
-        if used.iter().any(|known| std::ptr::eq(*known, proposal.known)) {
+        if used.iter().any(|other| std::ptr::eq(*other, known)) {
             continue;
         }
         tally.draw();
-        match fit(problem, proposal).ok_or(Rejection::PersonReach).and_then(|fit| assess::feasible(problem, fit)) {
+        match assess::feasible(problem, candidate) {
             Ok(found) => {
                 kept.push(found);
-                used.push(proposal.known);
+                used.push(known);
             }
             Err(why) => tally.remove(why),
         }
     }
-    kept.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     kept
 }
 

@@ -99,6 +99,9 @@ impl Climb {
     fn step(&mut self, problem: &mut Problem<'_>, tally: &mut Tally) -> bool {
         let mut rows = self.linear.rows.clone();
         for _ in 0..=CORRECTIONS {
+            if tally.is_exhausted() {
+                return false;
+            }
             let Some(d) = best_move(&self.linear.gradient, &self.curvature, &rows, self.radius) else { break };
             let gain = self.linear.gradient.dot(&d) - 0.5 * d.dot(&(&self.curvature * &d));
             if gain < LEAST_GAIN * self.here.worth.abs() {
