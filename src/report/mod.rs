@@ -8,9 +8,12 @@
 pub mod console;
 pub mod curve;
 pub mod file;
+pub mod front;
 pub mod html;
 pub mod json;
 pub mod junit;
+mod picture;
+pub mod plans;
 mod plot;
 pub mod summary;
 #[cfg(test)]
