@@ -49,8 +49,8 @@ pub fn near(hold: &Hold<'_>, x_wb: &Pose, q_rad: &ArmAngles) -> Option<Answer> {
         branch: if q_rad[1] > FRAC_PI_2 { ShoulderBranch::High } else { ShoulderBranch::Low },
     };
     let around = || neighbours(hold, &choice, 1.0).into_iter().filter_map(|choice| answers::answer(hold, &choice));
-    let start = answers::answer(hold, &choice)
-        .or_else(|| around().max_by(|a, b| a.objective.total_cmp(&b.objective)))?;
+    let start =
+        answers::answer(hold, &choice).or_else(|| around().max_by(|a, b| a.objective.total_cmp(&b.objective)))?;
     Some(refined(hold, start))
 }
 

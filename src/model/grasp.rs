@@ -35,7 +35,8 @@ impl Edge {
     /// that it is least deep inside. A grasp turns by 45 degrees at most, so its own edge is always among them.
     pub fn of(x_og: &Pose, size_m: [f64; 3]) -> Option<Self> {
         let backward_o = x_og.rotation * -Vector3::z();
-        let depth_m = |edge: &Self| edge.reach_and_half_length_m(size_m).0 - edge.outward_o().dot(&x_og.translation.vector);
+        let depth_m =
+            |edge: &Self| edge.reach_and_half_length_m(size_m).0 - edge.outward_o().dot(&x_og.translation.vector);
         let behind = Self::ALL.into_iter().filter(|edge| edge.outward_o().dot(&backward_o) > 0.375);
         behind.min_by(|a, b| depth_m(a).total_cmp(&depth_m(b)))
     }

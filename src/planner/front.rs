@@ -175,9 +175,7 @@ impl Sweep<'_> {
 
     /// The plan of the best hold of the pool that the check from scratch confirms.
     fn best(&mut self, scenario: &Scenario) -> Result<Option<Plan>, HumanError> {
-        let mut onlooker = super::nobody;
-        let count = Count::of_at_most(None);
-        let mut problem = Problem::new(scenario, self.map, Watch::new(count, &mut onlooker))?;
+        let mut problem = Problem::new(scenario, self.map, Watch::unseen())?;
         while let Some(index) = self.index_of_best(scenario) {
             if let Some(plan) = assemble(&mut problem, &self.pool[index], 0)
                 && verify(&plan, scenario, &self.map.robot)?.is_empty()

@@ -44,12 +44,12 @@ use crate::{
 use assess::{Configured, Feasible, Placed, Rejection, Tally};
 use candidate::Candidate;
 use effort::Effort;
-pub use robot_map::RobotMap;
 pub use front::{Front, FrontOutcome, FrontPoint, front};
+pub use robot_map::RobotMap;
 pub use top::{TopOutcome, differ, top};
 pub use verify::{Flaw, first_touch, verify};
-pub use watch::{Onlooker, Progress, nobody};
 use watch::{Count, Watch};
+pub use watch::{Onlooker, Progress, nobody};
 
 /// What the search came to.
 #[derive(Clone, Debug)]

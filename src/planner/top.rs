@@ -1,8 +1,6 @@
 //! Several good holds that differ, for somebody who wants a choice.
 
-use super::{
-    Count, Effort, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, assemble, search, verify,
-};
+use super::{Count, Effort, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, assemble, search, verify};
 use crate::{
     human::HumanError,
     model::{

@@ -64,13 +64,18 @@ impl Count {
 pub(super) struct Watch<'a> {
     count: Rc<Count>,
     best: f64,
-    onlooker: &'a mut Onlooker<'a>,
+    onlooker: Option<&'a mut Onlooker<'a>>,
 }
 
 impl<'a> Watch<'a> {
     /// An onlooker of what is counted here.
     pub fn new(count: Rc<Count>, onlooker: &'a mut Onlooker<'a>) -> Self {
-        Self { count, best: f64::NEG_INFINITY, onlooker }
+        Self { count, best: f64::NEG_INFINITY, onlooker: Some(onlooker) }
+    }
+
+    /// Nobody looks on, and there is no limit.
+    pub fn unseen() -> Self {
+        Self { count: Count::of_at_most(None), best: f64::NEG_INFINITY, onlooker: None }
     }
 
     /// True when the candidate drawn last may be looked at; the onlooker is asked.
@@ -92,7 +97,9 @@ impl<'a> Watch<'a> {
 
     fn tell(&mut self, better: Option<&Comfort>) {
         let progress = Progress { evaluations: self.count.looked_at(), better };
-        if (self.onlooker)(&progress).is_break() {
+        if let Some(onlooker) = &mut self.onlooker
+            && onlooker(&progress).is_break()
+        {
             self.count.stopped.set(true);
         }
     }

@@ -56,7 +56,8 @@ pub fn table(rows: &[Row], optima: [f64; 2]) -> String {
     let mut lines = vec![header.map(str::to_owned).to_vec()];
     for (index, row) in rows.iter().enumerate() {
         let [muscular, peripersonal] = row.kept(optima).map(|kept| format!("{:.1}", 100.0 * kept));
-        let figures = [format!("{:.2}", row.share), format!("{:.2}", row.muscular), format!("{:.3}", row.peripersonal_m)];
+        let figures =
+            [format!("{:.2}", row.share), format!("{:.2}", row.muscular), format!("{:.3}", row.peripersonal_m)];
         lines.push([vec![row.name(index)], figures.to_vec(), vec![muscular, peripersonal]].concat());
     }
     aligned(&lines, 1)
@@ -104,14 +105,22 @@ pub fn svg(rows: &[Row], optima: [f64; 2]) -> String {
 
 fn legend(body: &mut String, rows: &[Row], optima: [f64; 2]) {
     let [left, right, top, bottom] = AREA_PX;
-    label(body, left, 20.0, "start", "Peripersonal comfort, m, over muscular comfort 1 / (sum of squared activations + 0.01)");
+    label(
+        body,
+        left,
+        20.0,
+        "start",
+        "Peripersonal comfort, m, over muscular comfort 1 / (sum of squared activations + 0.01)",
+    );
     label(body, (left + right) / 2.0, bottom + 40.0, "middle", "muscular comfort");
     circle(body, left + 8.0, top - 17.0, 4.0, FRONT, false);
     label(body, left + 18.0, top - 13.0, "start", "front");
     let Some(own) = rows.iter().find(|row| row.own) else { return };
     let [muscular, peripersonal] = own.kept(optima).map(|kept| 100.0 * kept);
     circle(body, left + 78.0, top - 17.0, 6.0, OWN, true);
-    let told = format!("the scenario's weights: {muscular:.0} % of the muscular, {peripersonal:.0} % of the peripersonal optimum");
+    let told = format!(
+        "the scenario's weights: {muscular:.0} % of the muscular, {peripersonal:.0} % of the peripersonal optimum"
+    );
     label(body, left + 92.0, top - 13.0, "start", &told);
 }
 
@@ -121,7 +130,12 @@ mod tests {
 
     fn rows() -> Vec<Row> {
         let row = |share, muscular, peripersonal_m, own| Row { share, muscular, peripersonal_m, own };
-        vec![row(0.0, 80.0, 0.5, false), row(0.5, 60.0, 1.0, false), row(1.0, 20.0, 1.25, false), row(0.4, 60.0, 1.0, true)]
+        vec![
+            row(0.0, 80.0, 0.5, false),
+            row(0.5, 60.0, 1.0, false),
+            row(1.0, 20.0, 1.25, false),
+            row(0.4, 60.0, 1.0, true),
+        ]
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! Pure functions from outcomes to text; only [`mod@file`] touches the disk. Nothing here may change a verdict, print, or
 //! look at a clock.
 
+pub mod circle;
 pub mod console;
 pub mod curve;
 pub mod file;
