@@ -17,7 +17,7 @@ use crate::{
     },
     planner::{
         RobotMap,
-        circle::{self, PlansByPoint, Sequence},
+        circle::{self, Continuous, MotionStep, PlansByPoint},
     },
     report,
 };
@@ -33,7 +33,7 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     report::file::check_folder(&args.out)?;
     interrupt::listen("what was found of the circle is written")?;
     let size_m = loaded.scenario.object.size_m;
-    let (ways, sequence) = Maps::default().with(&loaded.robot, size_m, |map, _| three_ways(&points, map))?;
+    let (ways, motions) = Maps::default().with(&loaded.robot, size_m, |map, _| three_ways(&points, map))?;
     for (name, plans) in &ways {
         for (index, plan) in plans.iter().enumerate() {
             let path = args.out.join(format!("{name}-{}.json", index + 1));
@@ -44,13 +44,8 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
         }
     }
     let joints = ways.iter().flat_map(|(_, plans)| plans).flatten().next().map_or_else(Vec::new, joints);
-    let motions: Vec<Vec<_>> = sequence
-        .iter()
-        .flat_map(|sequence| &sequence.motions)
-        .map(|motion| {
-            motion.iter().map(|step| report::circle::Step { x_wo: step.x_wo, q_rad: step.q_rad.concat() }).collect()
-        })
-        .collect();
+    let step = |step: &MotionStep| report::circle::Step { x_wo: step.x_wo, q_rad: step.q_rad.concat() };
+    let motions: Vec<Vec<_>> = motions.iter().map(|motion| motion.iter().map(step).collect()).collect();
     report::file::write_whole(&args.out.join("motion.csv"), report::circle::motion_csv(&joints, &motions).as_bytes())?;
     let ways: Vec<_> = ways.iter().map(|(name, plans)| (*name, plans.as_slice())).collect();
     report::file::write_whole(&args.out.join("circle.csv"), report::circle::csv(&ways).as_bytes())?;
@@ -71,10 +66,8 @@ fn joints(plan: &Plan) -> Vec<String> {
 
 type Ways = Vec<(&'static str, PlansByPoint)>;
 
-fn three_ways(points: &[Scenario], map: &RobotMap) -> Result<(Ways, Option<Sequence>), HumanError> {
-    let hold = circle::one_hold(points, map, &mut until_interrupted)?;
-    let sequence = circle::sequence(points, map, &mut until_interrupted)?;
-    let moved = sequence.as_ref().map_or_else(|| vec![None; points.len()], |sequence| sequence.plans.clone());
+fn three_ways(points: &[Scenario], map: &RobotMap) -> Result<(Ways, Vec<Vec<MotionStep>>), HumanError> {
+    let Continuous { hold, sequence, motions } = circle::continuous(points, map, &mut until_interrupted)?;
     let separate = circle::separate(points, map, &mut until_interrupted)?;
-    Ok((vec![("hold", hold), ("sequence", moved), ("separate", separate)], sequence))
+    Ok((vec![("hold", hold), ("sequence", sequence), ("separate", separate)], motions))
 }

@@ -21,8 +21,9 @@ use crate::{
     },
 };
 
-/// Shares of the peripersonal comfort in the sweep, besides the scenario's own: from 0 to 1 in tenths.
-const STEPS: u32 = 10;
+/// Shares of the peripersonal comfort in the sweep, besides the scenario's own: closer together towards either end, where
+/// one comfort buys much of the other.
+const SHARES: [f64; 13] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0];
 
 /// A hold of the front.
 #[derive(Clone, Debug)]
@@ -82,8 +83,7 @@ pub fn front(scenario: &Scenario, map: &RobotMap, onlooker: &mut Onlooker<'_>) -
     }
     let optima = sweep.optima();
     let own = weighted(scenario, [scenario.comfort.weight_muscular, scenario.comfort.weight_peripersonal]);
-    let shares = (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS));
-    let swept: Vec<_> = shares.map(|share| weighted(scenario, normalised(share, optima))).collect();
+    let swept: Vec<_> = SHARES.into_iter().map(|share| weighted(scenario, normalised(share, optima))).collect();
     let all = || std::iter::once(&own).chain(&swept);
     for scenario in all().filter(|scenario| !is_alone(scenario)) {
         sweep.search(scenario, true, onlooker)?;

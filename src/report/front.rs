@@ -92,8 +92,10 @@ pub fn svg(rows: &[Row], optima: [f64; 2]) -> String {
     }
     let front: Vec<&Row> = rows.iter().filter(|row| !row.own).collect();
     for pair in front.windows(2) {
+        // A corner, not a slope: between two holds there is no mixture of them.
         let [a, b] = [pair[0], pair[1]].map(|row| [x_px(row.muscular), y_px(row.peripersonal_m)]);
-        line(&mut body, [a[0], a[1], b[0], b[1]], FRONT, 1.5);
+        line(&mut body, [a[0], a[1], b[0], a[1]], FRONT, 1.5);
+        line(&mut body, [b[0], a[1], b[0], b[1]], FRONT, 1.5);
     }
     for row in rows {
         let (colour, radius_px) = if row.own { (OWN, 6.0) } else { (FRONT, 4.0) };
@@ -119,7 +121,7 @@ fn legend(body: &mut String, rows: &[Row], optima: [f64; 2]) {
     let [muscular, peripersonal] = own.kept(optima).map(|kept| 100.0 * kept);
     circle(body, left + 78.0, top - 17.0, 6.0, OWN, true);
     let told = format!(
-        "the scenario's weights: {muscular:.0} % of the muscular, {peripersonal:.0} % of the peripersonal optimum"
+        "the scenario's weights: {muscular:.0} % muscular, {peripersonal:.0} % peripersonal kept"
     );
     label(body, left + 92.0, top - 13.0, "start", &told);
 }
@@ -150,8 +152,8 @@ mod tests {
         let text = svg(&rows(), [80.0, 1.25]);
         // Three holds of the front and the scenario's own, and one of each in the legend.
         assert_eq!(text.matches("<circle").count(), 6);
-        // Two segments between three holds.
-        assert_eq!(text.matches("stroke-width=\"1.5\"").count(), 2);
+        // Two corners between three holds.
+        assert_eq!(text.matches("stroke-width=\"1.5\"").count(), 4);
         // The best muscular hold stands 6 parts of 112 from the right end of its axis.
         let x = 620.0 - (620.0 - 64.0) * 0.06 / 1.12;
         assert!(text.contains(&format!("cx=\"{x:.1}\"")), "{text}");

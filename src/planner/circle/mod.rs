@@ -2,8 +2,9 @@
 //!
 //! A cut along a circle is 16 operations (METHOD section 2). Three ways to hold the board for them, each with the person's
 //! best answer to every point:
-//! 1. [`one_hold`]: one hold that stays as it is;
-//! 2. [`sequence`]: the hands keep their grasp and the arms move the board from point to point;
+//! 1. [`Continuous::hold`]: one hold that stays as it is; the most points, and then the worst of them, decide;
+//! 2. [`Continuous::sequence`]: the hands keep their grasp and the arms move the board from point to point; the most points,
+//!    and then the sum of what they are worth, decide;
 //! 3. [`separate`]: a plan for every point as if it were the only one, which no robot can do without letting go: what the
 //!    other two are compared with.
 //!
@@ -16,12 +17,12 @@ mod sequence;
 mod serve;
 
 pub use motion::{MotionStep, STEP_RAD};
-pub use one::one_hold;
-pub use sequence::{Sequence, sequence};
 
-use super::{Onlooker, PlanOutcome, RobotMap, plan_until};
+use serve::Circle;
+
+use super::{Onlooker, PlanOutcome, RobotMap, bank::KnownHold, plan_until};
 use crate::{
-    comfort::curve,
+    comfort::{Answer, curve},
     human::HumanError,
     model::{operation::Operation, plan::Plan, scenario::Scenario},
 };
@@ -44,6 +45,49 @@ pub fn points(scenario: &Scenario) -> Option<Vec<Scenario>> {
         ..scenario.clone()
     };
     Some((0..POINTS).map(point).collect())
+}
+
+/// Both ways to cut the circle without letting go.
+#[derive(Clone, Debug)]
+pub struct Continuous {
+    /// One hold: the plans have the same arms and the same board, and each has the person's answer to its point.
+    pub hold: PlansByPoint,
+    /// The sequence: the grasps of all plans are the same.
+    pub sequence: PlansByPoint,
+    /// The sequence's motion of arms and board from each point to the next, both ends included; also to and from points
+    /// that are not served. Empty when there is no hold at all.
+    pub motions: Vec<Vec<MotionStep>>,
+}
+
+/// Searches for one hold and for a sequence that starts from it; how, and what that does not guarantee, stands in the
+/// modules of the two. The onlooker may end the search; the best so far is the result then.
+///
+/// # Errors
+/// As [`super::plan`].
+pub fn continuous(points: &[Scenario], map: &RobotMap, onlooker: &mut Onlooker<'_>) -> Result<Continuous, HumanError> {
+    let nothing =
+        || Continuous { hold: vec![None; points.len()], sequence: vec![None; points.len()], motions: Vec::new() };
+    let Some(mut circle) = Circle::new(points, map)? else { return Ok(nothing()) };
+    let holds = one::holds(&mut circle, onlooker);
+    let Some(best) = holds.first() else { return Ok(nothing()) };
+    let hold = plans(&mut circle, best.answers.iter().map(|answer| (&best.hold, *answer)))?;
+    let stops = sequence::best(&mut circle, &holds, onlooker).unwrap_or_default();
+    let sequence = plans(&mut circle, stops.iter().map(|stop| (&stop.hold, stop.answer)))?;
+    let motions = sequence::motions(&circle, &stops);
+    Ok(Continuous { hold, sequence, motions })
+}
+
+/// The plans of holds and answers, each with the best answer of all.
+fn plans<'h>(
+    circle: &mut Circle<'_>,
+    answered: impl Iterator<Item = (&'h KnownHold, Option<Answer>)>,
+) -> Result<PlansByPoint, HumanError> {
+    let plan = |(point, (hold, answer)): (usize, (&KnownHold, Option<Answer>))| {
+        let Some(answer) = answer else { return Ok(None) };
+        let answer = circle.best_answer(hold, point, answer);
+        circle.plan(hold, point, &answer)
+    };
+    answered.enumerate().map(plan).collect()
 }
 
 /// A plan for every point by itself: [`plan_until`] on each.

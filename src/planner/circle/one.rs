@@ -8,15 +8,14 @@ use nalgebra::Vector3;
 
 use super::{
     super::{
-        Onlooker, RobotMap, assess,
+        Onlooker, assess,
         bank::KnownHold,
         candidate::Hold,
         propose::{ANGLE_RAD, DEPTH_M, uniform},
     },
-    PlansByPoint,
     serve::{Circle, Score, Served, nudged},
 };
-use crate::{comfort::Answer, human::HumanError, model::scenario::Scenario};
+use crate::comfort::Answer;
 
 /// Holds of the bank that are rated exactly for each start of a plan's search.
 const RATED_A_START: usize = 4;
@@ -32,33 +31,17 @@ const JOINTS_RAD: f64 = 0.2;
 const WIDER: f64 = 1.3;
 const NARROWER: f64 = 0.96;
 
-/// One hold for all points: the plans have the same arms and the same board, and each has the person's answer to its point.
-/// The onlooker may end the search; the best so far is the result then.
-///
-/// # Errors
-/// As [`crate::planner::plan`].
-pub fn one_hold(points: &[Scenario], map: &RobotMap, onlooker: &mut Onlooker<'_>) -> Result<PlansByPoint, HumanError> {
-    let Some(mut circle) = Circle::new(points, map)? else { return Ok(Vec::new()) };
-    let mut starts = promising(&mut circle, onlooker);
+/// The best holds that are found for all points, the best first; each climbed to.
+pub fn holds(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served> {
+    let mut starts = promising(circle, onlooker);
     starts.truncate(circle.effort.finalists);
-    let climbed: Vec<_> = starts.into_iter().map(|start| climb(&mut circle, start, onlooker)).collect();
-    let best = climbed.into_iter().min_by(|a, b| a.score.order(&b.score));
-    let Some(best) = best else { return Ok(vec![None; points.len()]) };
-    let mut plans = Vec::with_capacity(points.len());
-    for (point, answer) in best.answers.iter().enumerate() {
-        plans.push(match answer {
-            Some(answer) => {
-                let answer = circle.best_answer(&best.hold, point, *answer);
-                circle.plan(&best.hold, point, &answer)?
-            }
-            None => None,
-        });
-    }
-    Ok(plans)
+    let mut climbed: Vec<_> = starts.into_iter().map(|start| climb(circle, start, onlooker)).collect();
+    climbed.sort_by(|a, b| a.score.order(&b.score));
+    climbed
 }
 
 /// The holds of the bank that serve the circle best, rated exactly, the best first.
-pub fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served> {
+fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served> {
     let map = circle.map;
     let rough = |hold: &'_ KnownHold| Score::of(circle.estimates(hold).into_iter());
     let mut holds: Vec<_> = map.bank.iter().map(|hold| (rough(hold), hold)).collect();

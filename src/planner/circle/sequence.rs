@@ -10,13 +10,11 @@
 use nalgebra::Vector3;
 
 use super::{
-    super::{Onlooker, RobotMap, bank::KnownHold, propose::uniform},
-    PlansByPoint,
+    super::{Onlooker, bank::KnownHold, propose::uniform},
     motion::{self, MotionStep},
-    one::promising,
-    serve::{Circle, nudged},
+    serve::{Circle, Served, nudged},
 };
-use crate::{comfort::Answer, human::HumanError, model::scenario::Scenario};
+use crate::comfort::Answer;
 
 /// Poses of a tree.
 const POSES: usize = 48;
@@ -34,63 +32,36 @@ const SERVED: f64 = 1e6;
 /// What a radian of the joint that moves most costs: among equals the arms move less.
 const COST_A_RAD: f64 = 0.01;
 
-/// A board that is moved along the circle.
-#[derive(Clone, Debug)]
-pub struct Sequence {
-    /// For every point its plan; the grasps of all are the same. None where the point is not served; the board then waits
-    /// where it is.
-    pub plans: PlansByPoint,
-    /// The motion of arms and board from each point to the next: 15 of them, each with both ends.
-    pub motions: Vec<Vec<MotionStep>>,
-}
-
-/// A sequence for all points; none when no hold serves any. The onlooker may end the search; the best so far is the
-/// result then.
-///
-/// # Errors
-/// As [`crate::planner::plan`].
-pub fn sequence(
-    points: &[Scenario],
-    map: &RobotMap,
-    onlooker: &mut Onlooker<'_>,
-) -> Result<Option<Sequence>, HumanError> {
-    let Some(mut circle) = Circle::new(points, map)? else { return Ok(None) };
-    let mut roots = promising(&mut circle, onlooker);
-    roots.truncate(1 + circle.effort.finalists);
+/// The best sequence from these holds; none without one. It serves no fewer points than the first of them, whose place is
+/// one of its poses.
+pub fn best(circle: &mut Circle<'_>, roots: &[Served], onlooker: &mut Onlooker<'_>) -> Option<Vec<Stop>> {
     let mut best: Option<(f64, Vec<Stop>)> = None;
     for root in roots {
         if best.is_some() && circle.is_stopped(onlooker) {
             break;
         }
-        let poses = grown(&mut circle, root.hold);
-        let mut stops = Graph::new(&circle, poses).best_path(&mut circle);
-        improve(&mut circle, &mut stops, onlooker);
+        let poses = grown(circle, root.hold.clone());
+        let mut stops = Graph::new(circle, poses, root).best_path(circle);
+        improve(circle, &mut stops, onlooker);
         let worth: f64 = stops.iter().map(Stop::worth).sum();
         if best.as_ref().is_none_or(|(before, _)| worth > *before) {
             best = Some((worth, stops));
         }
     }
-    let Some((_, stops)) = best else { return Ok(None) };
-    let mut plans = Vec::with_capacity(stops.len());
-    for (point, stop) in stops.iter().enumerate() {
-        plans.push(match &stop.answer {
-            Some(answer) => {
-                let answer = circle.best_answer(&stop.hold, point, *answer);
-                circle.plan(&stop.hold, point, &answer)?
-            }
-            None => None,
-        });
-    }
-    let motions: Option<Vec<_>> =
-        stops.windows(2).map(|pair| motion::between(&circle, &pair[0].hold, &pair[1].hold)).collect();
-    // Every motion was made before; a path without one would be no sequence.
-    Ok(motions.map(|motions| Sequence { plans, motions }))
+    best.map(|(_, stops)| stops)
+}
+
+/// The motions from each stop to the next.
+pub fn motions(circle: &Circle<'_>, stops: &[Stop]) -> Vec<Vec<MotionStep>> {
+    // Every motion was found before, so none is left out.
+    stops.windows(2).filter_map(|pair| motion::between(circle, &pair[0].hold, &pair[1].hold)).collect()
 }
 
 /// Where the board is for a point, with the person's answer.
-struct Stop {
-    hold: KnownHold,
-    answer: Option<Answer>,
+#[derive(Clone)]
+pub struct Stop {
+    pub hold: KnownHold,
+    pub answer: Option<Answer>,
 }
 
 impl Stop {
@@ -150,9 +121,11 @@ struct Graph {
 }
 
 impl Graph {
-    fn new(circle: &Circle<'_>, poses: Vec<KnownHold>) -> Self {
+    /// The poses of a tree; what the root is worth is known exactly.
+    fn new(circle: &Circle<'_>, poses: Vec<KnownHold>, root: &Served) -> Self {
         let rough = |pose| circle.estimates(pose).into_iter().map(Value::Rough).collect();
-        let values = poses.iter().map(rough).collect();
+        let mut values: Vec<Vec<_>> = poses.iter().map(rough).collect();
+        values[0] = root.answers.iter().copied().map(Value::Exact).collect();
         let mut motions = vec![vec![None; poses.len()]; poses.len()];
         for (number, row) in motions.iter_mut().enumerate() {
             row[number] = Some(true);
