@@ -1,10 +1,11 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::{num::NonZero, path::PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::{help, versions};
+use crate::model::scenario::{Budget, PlannerKind, PlannerSettings};
 
 /// Plans how a two-armed robot holds a board that a person drills or cuts, and proves by simulation that the hold
 /// stands.
@@ -23,6 +24,10 @@ pub enum Command {
     Run(RunArgs),
     /// Plan a scenario's hold and write it to a file
     Plan(PlanArgs),
+    /// Write the trade-off of the two comforts as a Pareto front, as CSV, SVG and plans
+    Front(FrontArgs),
+    /// Hold a board for a whole circle that is cut: one hold, a sequence of poses, and 16 separate plans
+    Circle(CircleArgs),
     /// Simulate and judge a plan, ours or anybody's
     Simulate(SimulateArgs),
     /// Write the best and worst muscular comfort along a circle that is cut, as CSV and SVG
@@ -78,10 +83,10 @@ pub struct RunArgs {
     pub fail_fast: bool,
     /// How many scenarios run at once; all cores unless given. The results do not depend on it
     #[arg(long, value_name = "N")]
-    pub jobs: Option<std::num::NonZero<usize>>,
-    /// Seed of the planner, in place of the scenario's
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
+    pub jobs: Option<NonZero<usize>>,
+    /// The planner.
+    #[command(flatten)]
+    pub planner: PlannerArgs,
     /// Reports and recordings.
     #[command(flatten)]
     pub report: ReportArgs,
@@ -93,12 +98,87 @@ pub struct RunArgs {
 pub struct PlanArgs {
     /// Scenario file
     pub scenario: PathBuf,
-    /// Where to write the plan; standard output unless given
+    /// Where to write the plan, standard output unless given; with --top the folder for plan-1.json and so on
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Write the best K plans that differ: in an edge, by 50 mm or 15 degrees of the board, or by 30 degrees of a joint
+    #[arg(long, value_name = "K", requires = "output")]
+    pub top: Option<NonZero<usize>>,
+    /// The planner.
+    #[command(flatten)]
+    pub planner: PlannerArgs,
+}
+
+/// What takes the place of the scenario's `[planner]` keys.
+#[derive(Clone, Copy, Debug, Args)]
+#[command(next_help_heading = "Search")]
+pub struct PlannerArgs {
+    /// What the planner looks for, in place of the scenario's
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub planner: Option<PlannerChoice>,
+    /// How long it looks.
+    #[command(flatten)]
+    pub search: SearchArgs,
+}
+
+/// What takes the place of a scenario's seed and budget.
+#[derive(Clone, Copy, Debug, Args)]
+#[command(next_help_heading = "Search")]
+pub struct SearchArgs {
+    /// How much work a search may do, in place of the scenario's
+    #[arg(long, value_enum, value_name = "BUDGET")]
+    pub budget: Option<BudgetChoice>,
+    /// The largest number of candidates that a search may look at, in place of the scenario's
+    #[arg(long, value_name = "N")]
+    pub evaluations: Option<NonZero<u64>>,
     /// Seed of the planner, in place of the scenario's
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+}
+
+impl PlannerArgs {
+    /// Puts what is given in the place of what a scenario says.
+    pub fn apply(&self, settings: &mut PlannerSettings) {
+        settings.kind = self.planner.map_or(settings.kind, PlannerKind::from);
+        self.search.apply(settings);
+    }
+}
+
+impl SearchArgs {
+    /// Puts what is given in the place of what a scenario says.
+    pub fn apply(&self, settings: &mut PlannerSettings) {
+        settings.budget = self.budget.map_or(settings.budget, Budget::from);
+        settings.evaluations = self.evaluations.map(NonZero::get).or(settings.evaluations);
+        settings.seed = self.seed.unwrap_or(settings.seed);
+    }
+}
+
+/// `benchdog front`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::FRONT)]
+pub struct FrontArgs {
+    /// Scenario file
+    pub scenario: PathBuf,
+    /// Folder for `front.csv`, `front.svg` and the plans
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// How long each search looks.
+    #[command(flatten)]
+    pub search: SearchArgs,
+}
+
+/// `benchdog circle`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::CIRCLE)]
+pub struct CircleArgs {
+    /// Scenario of a cut; the circle is that through its point about the middle of the board
+    pub scenario: PathBuf,
+    /// Folder for `circle.csv`, `motion.csv` and the plans
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// How long each search looks.
+    #[command(flatten)]
+    pub search: SearchArgs,
 }
 
 /// `benchdog simulate`.
@@ -232,6 +312,51 @@ pub struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
+}
+
+/// What a planner looks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PlannerChoice {
+    /// The best of both comforts together
+    Comfort,
+    /// The best muscular comfort
+    Muscular,
+    /// The best peripersonal comfort
+    Peripersonal,
+    /// Any hold, drawn uniformly
+    Random,
+}
+
+impl From<PlannerChoice> for PlannerKind {
+    fn from(choice: PlannerChoice) -> Self {
+        match choice {
+            PlannerChoice::Comfort => Self::Comfort,
+            PlannerChoice::Muscular => Self::Muscular,
+            PlannerChoice::Peripersonal => Self::Peripersonal,
+            PlannerChoice::Random => Self::Random,
+        }
+    }
+}
+
+/// How much work a search may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BudgetChoice {
+    /// To replan while the person moves
+    Fast,
+    /// For one plan
+    Default,
+    /// A hundred times the default
+    Exhaustive,
+}
+
+impl From<BudgetChoice> for Budget {
+    fn from(choice: BudgetChoice) -> Self {
+        match choice {
+            BudgetChoice::Fast => Self::Fast,
+            BudgetChoice::Default => Self::Default,
+            BudgetChoice::Exhaustive => Self::Exhaustive,
+        }
+    }
 }
 
 /// Form of what is printed.

@@ -11,8 +11,8 @@ use crate::{
     collision::CollisionModel,
     comfort::curve::{Curve, Cut, POINTS, muscular_curve},
     human::Human,
-    model::operation::OperationKind,
-    report, scenario,
+    report,
+    scenario::{self, LoadedScenario},
 };
 
 /// The cut of METHOD section 2: everything that it leaves out is the default.
@@ -33,12 +33,7 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
         None => scenario::load_text(Path::new("muscular-curve"), PAPERS_CUT)?,
     };
     let scenario = &loaded.scenario;
-    let p_ot_m = scenario.operation.x_ot.translation.vector;
-    let radius_m = libm::hypot(p_ot_m.x, p_ot_m.y);
-    if scenario.operation.kind != OperationKind::Cut || radius_m == 0.0 {
-        let found = format!("{}: found an operation that cuts no circle", loaded.path.display());
-        return Err(CliError::Usage(format!("{found}, expected a cut beside the middle of the board")));
-    }
+    let radius_m = circle_radius_m(&loaded)?;
     let curve = muscular_curve(&Cut {
         human: &Human::new(&scenario.human, &scenario.tool)?,
         collision: &CollisionModel::new(&loaded.robot),
@@ -52,6 +47,14 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
     report::file::write_whole(&args.out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
     output::print(&summary(&curve, &args.out))?;
     Ok(Exit::Met)
+}
+
+/// The radius of the circle that a scenario cuts, m.
+pub fn circle_radius_m(loaded: &LoadedScenario) -> Result<f64, CliError> {
+    loaded.scenario.operation.circle_radius_m().ok_or_else(|| {
+        let found = format!("{}: found an operation that cuts no circle", loaded.path.display());
+        CliError::Usage(format!("{found}, expected a cut beside the middle of the board"))
+    })
 }
 
 fn summary(curve: &Curve, out: &Path) -> String {

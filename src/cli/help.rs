@@ -30,7 +30,28 @@ Ctrl-C ends the run after the scenarios at work and reports; a second one ends i
 pub const PLAN: &str = "\
 Examples:
   benchdog plan scenarios/quickstart.toml -o plan.json
-  benchdog plan scenarios/quickstart.toml --seed 7 | jq .comfort";
+  benchdog plan scenarios/quickstart.toml --seed 7 | jq .comfort
+  benchdog plan scenarios/quickstart.toml --planner muscular --budget fast
+  benchdog plan scenarios/quickstart.toml --top 3 -o plans
+
+Ctrl-C ends the search: the best plan so far is checked and written, and the exit code is 130.";
+
+/// `benchdog front --help`.
+pub const FRONT: &str = "\
+Example:
+  benchdog front scenarios/quickstart.toml --out front
+
+Weights from all on the muscular to all on the peripersonal comfort, each over its own optimum;
+what another plan beats in both is left out. front-1.json and so on are the plans.";
+
+/// `benchdog circle --help`.
+pub const CIRCLE: &str = "\
+Example:
+  benchdog circle scenarios/cut-rim.toml --out circle
+
+circle.csv has the comfort of 16 points for the three ways; the plans are hold-1.json to
+hold-16.json, sequence-1.json to sequence-16.json and separate-1.json to separate-16.json;
+motion.csv is the sequence's path of the arms' joints and the board from point to point.";
 
 /// `benchdog simulate --help`.
 pub const SIMULATE: &str = "\

@@ -10,16 +10,16 @@ use super::{
 /// True once the user has asked for an end.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// Listens from now on.
+/// Listens from now on; `ending` says what is still done after the first signal.
 ///
 /// # Errors
 /// When the system does not let signals be caught.
-pub fn listen() -> Result<(), CliError> {
-    ctrlc::set_handler(|| {
+pub fn listen(ending: &'static str) -> Result<(), CliError> {
+    ctrlc::set_handler(move || {
         if REQUESTED.swap(true, Ordering::SeqCst) {
             std::process::exit(Exit::Interrupted.code().into());
         }
-        output::complain("interrupted: the scenarios at work are finished and reported; once more to end at once");
+        output::complain(&format!("interrupted: {ending}; once more to end at once"));
     })?;
     Ok(())
 }

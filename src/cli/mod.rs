@@ -2,12 +2,14 @@
 //! written, and turn what happened into an exit code. Nothing below this module knows any of these.
 
 mod args;
+mod circle;
 mod completions;
 mod curve;
 mod doctor;
 mod exit;
 mod export;
 mod finish;
+mod front;
 mod help;
 #[cfg(feature = "recording")]
 mod inspect;
@@ -51,6 +53,8 @@ pub fn main() -> ExitCode {
     let outcome = std::panic::catch_unwind(|| match &cli.command {
         Command::Run(args) => run::run(args),
         Command::Plan(args) => plan::plan(args),
+        Command::Front(args) => front::front(args),
+        Command::Circle(args) => circle::circle(args),
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
         Command::Schema(args) => schema::schema(args),

@@ -12,7 +12,7 @@ use crate::{
         trace::Trace,
         verdict::{Verdict, VerdictKind},
     },
-    planner::{self, PlanOutcome},
+    planner::{self, Onlooker, PlanOutcome},
     robot::Robot,
     scenario::LoadedScenario,
     sim::{self, Conditions},
@@ -37,7 +37,7 @@ pub fn run_scenario(loaded: &LoadedScenario, maps: &Maps) -> Result<Run, CliErro
     let scenario = &loaded.scenario;
     let plan = match &loaded.plan {
         Some(plan) => plan.clone(),
-        None => match timed_plan(scenario, &loaded.robot, maps)? {
+        None => match timed_plan(scenario, &loaded.robot, maps, &mut planner::nobody)? {
             PlanOutcome::Found(plan) => *plan,
             PlanOutcome::Infeasible(why) => {
                 let verdict = without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
@@ -64,14 +64,19 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
     Ok(Run { verdict, plan: Some(plan), simulated: Some((trace, judgement)) })
 }
 
-/// Plans a scenario, with the time that it took in the plan.
+/// Plans a scenario, with the time that it took in the plan; the onlooker may end the search.
 ///
 /// # Errors
 /// When the scenario's person or tool is none.
-pub fn timed_plan(scenario: &Scenario, robot: &Robot, maps: &Maps) -> Result<PlanOutcome, CliError> {
+pub fn timed_plan(
+    scenario: &Scenario,
+    robot: &Robot,
+    maps: &Maps,
+    onlooker: &mut Onlooker<'_>,
+) -> Result<PlanOutcome, CliError> {
     maps.with(robot, scenario.object.size_m, |map, map_ms| {
         let start = Instant::now();
-        let mut outcome = planner::plan_on(scenario, map)?;
+        let mut outcome = planner::plan_until(scenario, map, onlooker)?;
         if let PlanOutcome::Found(plan) = &mut outcome
             && let Some(record) = &mut plan.planner
         {

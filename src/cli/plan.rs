@@ -1,38 +1,101 @@
-//! `benchdog plan`: a scenario's hold, written to a file or to standard output.
+//! `benchdog plan`: a scenario's hold, written to a file or to standard output; with `--top` several that differ.
+
+use std::{ops::ControlFlow, path::Path};
 
 use super::{
     args::PlanArgs,
     exit::{CliError, Exit},
+    interrupt,
     maps::Maps,
     output, pipeline,
 };
-use crate::{model::verdict::VerdictKind, planner::PlanOutcome, report, scenario};
+use crate::{
+    model::verdict::VerdictKind,
+    planner::{self, Infeasible, PlanOutcome, Progress, TopOutcome},
+    report,
+    scenario::{self, LoadedScenario},
+};
 
-/// Plans a scenario.
+/// Plans a scenario. Ctrl-C ends the search with the best hold so far.
 pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
-    let mut loaded = scenario::load(&args.scenario)?;
+    let mut loaded = to_be_planned(&args.scenario)?;
+    args.planner.apply(&mut loaded.scenario.planner);
+    interrupt::listen("the best plan so far is checked and written")?;
+    match (args.top, &args.output) {
+        (Some(wanted), Some(folder)) => top(&loaded, wanted.get(), folder),
+        _ => one(&loaded, args.output.as_deref()),
+    }
+}
+
+/// Reads a scenario that does not bring its plan.
+pub fn to_be_planned(path: &Path) -> Result<LoadedScenario, CliError> {
+    let loaded = scenario::load(path)?;
     if loaded.plan.is_some() {
-        let path = args.scenario.display();
+        let path = path.display();
         return Err(CliError::Usage(format!(
             "{path}: planner.plan: the scenario has its plan, there is nothing to plan"
         )));
     }
-    if let Some(seed) = args.seed {
-        loaded.scenario.planner.seed = seed;
-    }
-    let infeasible_expected = loaded.scenario.expect.verdict == VerdictKind::Infeasible;
-    match pipeline::timed_plan(&loaded.scenario, &loaded.robot, &Maps::default())? {
+    Ok(loaded)
+}
+
+/// Ends a search once the user has asked for it.
+pub fn until_interrupted(_: &Progress<'_>) -> ControlFlow<()> {
+    if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError> {
+    let outcome = pipeline::timed_plan(&loaded.scenario, &loaded.robot, &Maps::default(), &mut until_interrupted)?;
+    match outcome {
         PlanOutcome::Found(plan) => {
             let text = report::json::plan(&plan);
-            match &args.output {
+            match output {
                 Some(path) => report::file::write_whole(path, text.as_bytes())?,
                 None => output::print(&text)?,
             }
-            Ok(if infeasible_expected { Exit::NotMet } else { Exit::Met })
+            Ok(found(loaded))
         }
-        PlanOutcome::Infeasible(why) => {
-            output::complain(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
-            Ok(if infeasible_expected { Exit::Met } else { Exit::Infeasible })
+        PlanOutcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
+    }
+}
+
+fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, CliError> {
+    report::file::check_folder(folder)?;
+    let scenario = &loaded.scenario;
+    let outcome = Maps::default().with(&loaded.robot, scenario.object.size_m, |map, _| {
+        planner::top(scenario, map, wanted, &mut until_interrupted)
+    })?;
+    match outcome {
+        TopOutcome::Found(plans) => {
+            for (index, plan) in plans.iter().enumerate() {
+                let path = folder.join(format!("plan-{}.json", index + 1));
+                report::file::write_whole(&path, report::json::plan(plan).as_bytes())?;
+            }
+            output::print(&report::plans::table(&plans))?;
+            Ok(found(loaded))
         }
+        TopOutcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
+    }
+}
+
+fn found(loaded: &LoadedScenario) -> Exit {
+    if interrupt::requested() {
+        Exit::Interrupted
+    } else if loaded.scenario.expect.verdict == VerdictKind::Infeasible {
+        Exit::NotMet
+    } else {
+        Exit::Met
+    }
+}
+
+/// Says that a scenario has no plan, and why.
+pub fn infeasible(loaded: &LoadedScenario, why: &Infeasible) -> Exit {
+    output::complain(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
+    if interrupt::requested() {
+        Exit::Interrupted
+    } else if loaded.scenario.expect.verdict == VerdictKind::Infeasible {
+        Exit::Met
+    } else {
+        Exit::Infeasible
     }
 }

@@ -23,10 +23,10 @@ use crate::{report::SkipReason, scenario::LoadedScenario};
 
 /// Runs scenarios: all are read and checked, and the folder for the results too, before the first is planned.
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
-    let scenarios = select::scenarios(&args.scenarios, &args.filter, args.seed)?;
+    let scenarios = select::scenarios(&args.scenarios, &args.filter, &args.planner)?;
     let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
     finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
-    interrupt::listen()?;
+    interrupt::listen("the scenarios at work are finished and reported")?;
     let turns = Turns {
         args,
         maps: Maps::default(),

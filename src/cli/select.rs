@@ -7,7 +7,7 @@ use std::{
 
 use glob::Pattern;
 
-use super::exit::CliError;
+use super::{args::PlannerArgs, exit::CliError};
 use crate::scenario::{self, LoadedScenario};
 
 /// A scenario, and whether `--filter` lets it through.
@@ -23,16 +23,14 @@ pub struct Selected {
 ///
 /// # Errors
 /// When an argument names no scenario, a scenario cannot be used, two have one name, or no name passes the filters.
-pub fn scenarios(arguments: &[PathBuf], filters: &[String], seed: Option<u64>) -> Result<Vec<Selected>, CliError> {
+pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArgs) -> Result<Vec<Selected>, CliError> {
     let asked = filters.join(", ");
     let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
     let mut names = BTreeMap::<String, PathBuf>::new();
     let mut selected = Vec::new();
     for path in files(arguments)? {
         let mut loaded = scenario::load(&path)?;
-        if let Some(seed) = seed {
-            loaded.scenario.planner.seed = seed;
-        }
+        planner.apply(&mut loaded.scenario.planner);
         let name = loaded.scenario.name.clone();
         if let Some(other) = names.insert(name.clone(), path.clone()) {
             let (path, other) = (path.display(), other.display());

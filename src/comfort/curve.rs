@@ -105,7 +105,7 @@ pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
             human: cut.human,
             collision: cut.collision,
             settings: cut.settings,
-            operation: operation(cut, angle_rad(point)),
+            operation: Operation::cut_on_circle(cut.radius_m, angle_rad(point), cut.force_n, cut.board_size_m[2]),
             floor_z_m: cut.floor_z_m,
             robot_points_w: &[],
             scene: Scene { link_poses: &[], holding: &[], board_size_m: cut.board_size_m, x_wo, person: &[] },
@@ -133,15 +133,9 @@ fn worth(spans: &Spans) -> (usize, f64) {
     (reached().count(), reached().map(|span| span.best.regularised).sum())
 }
 
-fn angle_rad(point: usize) -> f64 {
+/// Direction of a point, counted from 0, from the middle of the board: rad from x_O towards y_O.
+pub fn angle_rad(point: usize) -> f64 {
     TAU * point as f64 / POINTS as f64
-}
-
-/// The cut along the tangent, counter-clockwise (METHOD section 2).
-fn operation(cut: &Cut<'_>, angle_rad: f64) -> Operation {
-    let (sin, cos) = libm::sincos(angle_rad);
-    let point_m = [cut.radius_m * cos, cut.radius_m * sin];
-    Operation::cut(point_m, Vector3::new(-sin, cos, 0.0), cut.force_n, cut.board_size_m[2])
 }
 
 /// The worked face towards +x_W, y_O up.

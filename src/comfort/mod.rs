@@ -14,7 +14,7 @@ mod tests;
 use nalgebra::Point3;
 
 pub use answers::Answer;
-pub use best::most;
+pub use best::{most, near};
 
 use crate::{
     collision::{CollisionModel, Scene},

@@ -31,12 +31,33 @@ impl Edge {
         }
     }
 
+    /// The edge that a gripper at `X_OG` reaches over: of those that its fingers come from within some 68 degrees, the one
+    /// that it is least deep inside. A grasp turns by 45 degrees at most, so its own edge is always among them.
+    pub fn of(x_og: &Pose, size_m: [f64; 3]) -> Option<Self> {
+        let backward_o = x_og.rotation * -Vector3::z();
+        let depth_m =
+            |edge: &Self| edge.reach_and_half_length_m(size_m).0 - edge.outward_o().dot(&x_og.translation.vector);
+        let behind = Self::ALL.into_iter().filter(|edge| edge.outward_o().dot(&backward_o) > 0.375);
+        behind.min_by(|a, b| depth_m(a).total_cmp(&depth_m(b)))
+    }
+
     /// Distance from the board's centre to the edge, and half the edge's length, m.
     pub fn reach_and_half_length_m(self, size_m: [f64; 3]) -> (f64, f64) {
         match self {
             Self::PlusX | Self::MinusX => (size_m[0] / 2.0, size_m[1] / 2.0),
             Self::PlusY | Self::MinusY => (size_m[1] / 2.0, size_m[0] / 2.0),
         }
+    }
+}
+
+impl std::fmt::Display for Edge {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::PlusX => "+x",
+            Self::MinusX => "-x",
+            Self::PlusY => "+y",
+            Self::MinusY => "-y",
+        })
     }
 }
 
@@ -87,6 +108,16 @@ mod tests {
                 assert!((z_g.dot(&-edge.outward_o()) - 0.3_f64.cos()).abs() < 1e-14);
                 assert!((y_g.z.abs() - 1.0).abs() < 1e-14);
                 assert_eq!(x_og.translation.vector.z, 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_grasp_tells_its_edge() {
+        for edge in Edge::ALL {
+            for (angle_rad, along_m) in [(0.0, 0.0), (0.7, 0.1), (-0.7, 0.1), (0.7, -0.1)] {
+                let grasp = EdgeGrasp { edge, along_m, depth_m: 0.04, angle_rad, flipped: false };
+                assert_eq!(Edge::of(&grasp.x_og([0.5, 0.4, 0.03]), [0.5, 0.4, 0.03]), Some(edge));
             }
         }
     }

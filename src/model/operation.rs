@@ -68,6 +68,20 @@ impl Operation {
         Self { kind: OperationKind::Cut, wrench_o: Wrench::from_force(direction_o * force_n), x_ot }
     }
 
+    /// Cutting a circle about the middle of the board counter-clockwise, as the person sees it: `force_n` along the tangent at
+    /// the point `angle_rad` from x_O towards y_O (METHOD section 2).
+    pub fn cut_on_circle(radius_m: f64, angle_rad: f64, force_n: f64, thickness_m: f64) -> Self {
+        let (sin, cos) = libm::sincos(angle_rad);
+        Self::cut([radius_m * cos, radius_m * sin], Vector3::new(-sin, cos, 0.0), force_n, thickness_m)
+    }
+
+    /// The radius of the circle about the middle of the board that this operation cuts, m; none when it cuts none.
+    pub fn circle_radius_m(&self) -> Option<f64> {
+        let p_ot = self.x_ot.translation.vector;
+        let radius_m = libm::hypot(p_ot.x, p_ot.y);
+        (self.kind == OperationKind::Cut && radius_m > 0.0).then_some(radius_m)
+    }
+
     /// The operation with the tool turned by `roll_rad` about its own axis z_T.
     pub fn rolled(&self, roll_rad: f64) -> Self {
         let roll = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), roll_rad);

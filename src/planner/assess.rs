@@ -1,11 +1,11 @@
 //! What a candidate is worth and which constraint it breaks, cheap tests first.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, rc::Rc};
 
 use nalgebra::{Isometry3, Point3, Quaternion, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
 
-use super::{Candidate, Infeasible, Problem, propose::uniform};
+use super::{Candidate, Infeasible, Problem, propose::uniform, watch::Count};
 use crate::{
     collision::{PersonPart, Scene},
     comfort,
@@ -51,6 +51,8 @@ pub enum Rejection {
     Stability,
     /// A result that the check from scratch does not confirm.
     Verification,
+    /// A candidate that was not looked at: the limit of evaluations is reached, or the search was stopped.
+    NotLookedAt,
 }
 
 impl Rejection {
@@ -64,6 +66,7 @@ impl Rejection {
             Self::Collision => "collision or too close",
             Self::Stability => "stability",
             Self::Verification => "the check from scratch",
+            Self::NotLookedAt => "not looked at",
         }
     }
 }
@@ -71,48 +74,50 @@ impl Rejection {
 /// How many candidates were drawn, and what removed them.
 #[derive(Clone, Debug)]
 pub struct Tally {
-    candidates: u64,
-    most: u64,
+    count: Rc<Count>,
     removed: BTreeMap<Rejection, u64>,
 }
 
 impl Tally {
-    /// Nothing drawn yet, of at most so many candidates.
-    pub fn of_at_most(most: Option<u64>) -> Self {
-        Self { candidates: 0, most: most.unwrap_or(u64::MAX), removed: BTreeMap::new() }
+    /// Nothing removed yet of what is counted here.
+    pub fn new(count: Rc<Count>) -> Self {
+        Self { count, removed: BTreeMap::new() }
     }
 
     /// True when no further candidate may be looked at.
     pub fn is_exhausted(&self) -> bool {
-        self.candidates >= self.most
+        self.count.is_exhausted()
     }
 
     /// Counts a candidate that was drawn.
     pub fn draw(&mut self) {
-        self.candidates += 1;
+        self.count.draw();
     }
 
     /// Counts so many candidates that one thing removed.
     pub fn remove_all(&mut self, count: u64, why: Rejection) {
-        self.candidates += count;
+        self.count.draw_all(count);
         *self.removed.entry(why).or_default() += count;
     }
 
-    /// Counts what removed a candidate.
+    /// Counts what removed a candidate, but for those that nobody looked at.
     pub fn remove(&mut self, why: Rejection) {
-        *self.removed.entry(why).or_default() += 1;
+        if why != Rejection::NotLookedAt {
+            *self.removed.entry(why).or_default() += 1;
+        }
     }
 
-    /// How many candidates were drawn.
+    /// How many candidates were looked at.
     pub fn candidates(&self) -> u64 {
-        self.candidates
+        self.count.looked_at()
     }
 
     /// The evidence that nothing was found.
     pub fn into_infeasible(self) -> Infeasible {
+        let candidates = self.candidates();
         let mut removed: Vec<_> = self.removed.into_iter().map(|(why, count)| (why.name(), count)).collect();
         removed.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
-        Infeasible { candidates: self.candidates, removed }
+        Infeasible { candidates, removed }
     }
 }
 
@@ -163,6 +168,9 @@ impl Configured {
 
 /// All that a candidate is and is worth, when it keeps every constraint; the cheapest tests come first.
 pub fn feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasible, Rejection> {
+    if !problem.watch.allows() {
+        return Err(Rejection::NotLookedAt);
+    }
     place(problem, &candidate)?;
     let configured = Configured::new(problem, &candidate);
     collisions(problem, &configured)?;
@@ -171,6 +179,7 @@ pub fn feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasi
         return Err(Rejection::Stability);
     }
     let comfort = comfort(problem, &candidate, &configured);
+    problem.watch.found(&comfort);
     Ok(Feasible { candidate, configured, comfort, worth: comfort.objective, utilisation })
 }
 

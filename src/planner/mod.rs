@@ -13,14 +13,18 @@ mod answer;
 mod assess;
 mod bank;
 mod candidate;
+pub mod circle;
 mod effort;
+mod front;
 mod person_map;
 mod propose;
 mod random;
 mod reach;
 mod refine;
 mod robot_map;
+mod top;
 mod verify;
+mod watch;
 
 use rand_pcg::Pcg64;
 
@@ -30,18 +34,22 @@ use crate::{
     model::{
         FORMAT,
         operation::Operation,
-        plan::{HumanPosture, PlacedObject, Plan, PlannerRecord},
+        plan::{Comfort, HumanPosture, PlacedObject, Plan, PlannerRecord},
         scenario::{ComfortSettings, PlannerKind, PlannerSettings, Scenario},
         wrench::Wrench,
     },
     robot::Robot,
     statics::{Hold, StabilityWorkspace},
 };
-use assess::{Configured, Feasible, Rejection, Tally};
+use assess::{Configured, Feasible, Placed, Rejection, Tally};
 use candidate::Candidate;
 use effort::Effort;
+pub use front::{Front, FrontOutcome, FrontPoint, front};
 pub use robot_map::RobotMap;
+pub use top::{TopOutcome, differ, top};
 pub use verify::{Flaw, first_touch, verify};
+use watch::{Count, Watch};
+pub use watch::{Onlooker, Progress, nobody};
 
 /// What the search came to.
 #[derive(Clone, Debug)]
@@ -82,10 +90,12 @@ struct Problem<'a> {
     /// The operation's wrench about the tool tip in T axes, where it does not change.
     wrench_t: Wrench,
     stability: StabilityWorkspace,
+    /// Who looks on.
+    watch: Watch<'a>,
 }
 
 impl<'a> Problem<'a> {
-    fn new(scenario: &'a Scenario, map: &'a RobotMap) -> Result<Self, HumanError> {
+    fn new(scenario: &'a Scenario, map: &'a RobotMap, watch: Watch<'a>) -> Result<Self, HumanError> {
         let Operation { wrench_o, x_ot, .. } = scenario.operation;
         let to_tool = x_ot.rotation.inverse();
         Ok(Self {
@@ -95,6 +105,7 @@ impl<'a> Problem<'a> {
             objective: scenario.planner.kind.objective(scenario.comfort),
             wrench_t: Wrench::new(to_tool * wrench_o.force_n, to_tool * wrench_o.moment_nm),
             stability: StabilityWorkspace::new(),
+            watch,
         })
     }
 }
@@ -112,38 +123,76 @@ pub fn plan(scenario: &Scenario, robot: &Robot) -> Result<PlanOutcome, HumanErro
 /// # Errors
 /// As [`plan`].
 pub fn plan_on(scenario: &Scenario, map: &RobotMap) -> Result<PlanOutcome, HumanError> {
-    let mut problem = Problem::new(scenario, map)?;
-    let mut tally = Tally::of_at_most(scenario.planner.evaluations);
-    let mut random = Pcg64::new(u128::from(scenario.planner.seed), 0);
-    let effort = Effort::of(scenario.planner.budget);
-    let found = if scenario.planner.kind == PlannerKind::Random {
-        random::draw(&mut problem, &mut random, &mut tally).into_iter().collect()
-    } else {
-        let starts = propose::best_candidates(&mut problem, &effort, &mut random, &mut tally);
-        refine::refine(&mut problem, starts, &effort, &mut tally)
-    };
-    for found in answer::rank(&problem, found) {
-        let Some(plan) = assemble(&mut problem, &found, tally.candidates()) else {
-            tally.remove(Rejection::Stability);
-            continue;
-        };
-        // The check takes nothing from the search but the plan, so what both accept can be trusted.
-        if verify(&plan, scenario, &map.robot)?.is_empty() {
+    plan_until(scenario, map, &mut nobody)
+}
+
+/// As [`plan_on`], with somebody who looks on: told of every better hold, and asked with every candidate whether to go on.
+/// Once stopped, the best hold so far is assembled and checked like any other. An onlooker who never stops the search has
+/// the plan of [`plan_on`], bit by bit.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_until<'a>(
+    scenario: &'a Scenario,
+    map: &'a RobotMap,
+    onlooker: &'a mut Onlooker<'a>,
+) -> Result<PlanOutcome, HumanError> {
+    let count = Count::of_at_most(scenario.planner.evaluations);
+    let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
+    let mut tally = Tally::new(count);
+    let found = search(&mut problem, &Effort::of(scenario.planner.budget), &mut tally);
+    for found in found {
+        if let Some(plan) = checked(&mut problem, &found, &mut tally)? {
             return Ok(PlanOutcome::Found(Box::new(plan)));
         }
-        tally.remove(Rejection::Verification);
     }
     Ok(PlanOutcome::Infeasible(tally.into_infeasible()))
 }
 
+/// The holds that the scenario's planner finds, the best first.
+fn search(problem: &mut Problem<'_>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
+    let PlannerSettings { kind, seed, .. } = problem.scenario.planner;
+    let mut random = Pcg64::new(u128::from(seed), 0);
+    let found = if kind == PlannerKind::Random {
+        random::draw(problem, &mut random, tally).into_iter().collect()
+    } else {
+        let starts = propose::best_candidates(problem, effort, &mut random, tally);
+        refine::refine(problem, starts, effort, tally)
+    };
+    answer::rank(problem, found)
+}
+
+/// The plan of a hold, when the check from scratch confirms it. The check takes nothing from the search but the plan, so
+/// what both accept can be trusted.
+fn checked(problem: &mut Problem<'_>, found: &Feasible, tally: &mut Tally) -> Result<Option<Plan>, HumanError> {
+    let Some(plan) = assemble(problem, found, tally.candidates()) else {
+        tally.remove(Rejection::Stability);
+        return Ok(None);
+    };
+    if verify(&plan, problem.scenario, &problem.map.robot)?.is_empty() {
+        return Ok(Some(plan));
+    }
+    tally.remove(Rejection::Verification);
+    Ok(None)
+}
+
 /// The plan of a candidate that passed every test; none when its stability cannot be stated.
 fn assemble(problem: &mut Problem<'_>, found: &Feasible, evaluations: u64) -> Option<Plan> {
+    let Feasible { candidate, configured: Configured { placed, .. }, comfort, .. } = found;
+    assemble_placed(problem, candidate, placed, comfort, evaluations)
+}
+
+/// As [`assemble`], with the poses of board and person given: those that follow from a candidate differ by rounding.
+fn assemble_placed(
+    problem: &mut Problem<'_>,
+    candidate: &Candidate,
+    &Placed { x_wo, x_wb }: &Placed,
+    comfort: &Comfort,
+    evaluations: u64,
+) -> Option<Plan> {
     let scenario = problem.scenario;
-    let Feasible { candidate, configured, comfort, .. } = found;
     let PlannerSettings { kind, seed, .. } = scenario.planner;
     let operation = scenario.operation.rolled(candidate.roll_rad);
-    let Configured { placed, .. } = configured;
-    let (x_wo, x_wb) = (placed.x_wo, placed.x_wb);
     let object = PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo };
     let arms = assess::arm_holds(problem, candidate);
     let hold = Hold::from_plan(&problem.map.robot, &arms, &object, &operation, scenario.grip.friction).ok()?;

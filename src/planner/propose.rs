@@ -146,7 +146,7 @@ fn roll_between(x_wt: &Pose, x_bt: &Pose) -> f64 {
 }
 
 /// Where an upright body stands so that its tool is at the tip's place and turned as closely to it as may be.
-fn standing(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
+pub fn standing(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
     let turn = (x_wt.rotation * x_bt.rotation.inverse()).to_rotation_matrix();
     let heading_rad = (turn[(1, 0)] - turn[(0, 1)]).atan2(turn[(0, 0)] + turn[(1, 1)]);
     let heading = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad);

@@ -29,6 +29,9 @@ pub fn draw(problem: &mut Problem<'_>, random: &mut Pcg64, tally: &mut Tally) ->
             break;
         }
         tally.draw();
+        if !problem.watch.allows() {
+            break;
+        }
         match draw_once(problem, random) {
             Ok(found) => return Some(found),
             Err(why) => tally.remove(why),
@@ -100,6 +103,7 @@ fn answered(
     let configured = Configured::new(problem, &candidate);
     assess::collisions(problem, &configured)?;
     let comfort = assess::comfort(problem, &candidate, &configured);
+    problem.watch.found(&comfort);
     let utilisation = assess::utilisation(problem, &candidate, x_wo);
     Ok(Feasible { candidate, configured, comfort, worth: comfort.objective, utilisation })
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::picture::{document, label, line};
 use crate::comfort::curve::{Curve, CurvePoint, POINTS, Span};
 
 /// How the person stands, as the files name it, with the colour of its bars and their offset from a point's tick, px.
@@ -89,11 +90,7 @@ pub fn svg(curve: &Curve) -> String {
     label(&mut body, (left + right) / 2.0, bottom + 40.0, "middle", "cutting point, counter-clockwise from the right");
     let title = "Muscular comfort 1 / (sum of squared activations + 0.01), from the worst to the best solution";
     label(&mut body, left, 22.0, "start", title);
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 410\" width=\"800\" height=\"410\" \
-         font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n\
-         <rect width=\"800\" height=\"410\" fill=\"#ffffff\"/>\n{body}</svg>\n"
-    )
+    document(&body, [800.0, 410.0])
 }
 
 /// A round distance of grid lines: at most eight of them.
@@ -113,18 +110,6 @@ fn legend(body: &mut String) {
 }
 
 // Writing to a string does not fail, so the results below say nothing.
-
-fn line(body: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, width_px: f64) {
-    let _ = writeln!(
-        body,
-        "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{colour}\" \
-         stroke-width=\"{width_px}\"/>"
-    );
-}
-
-fn label(body: &mut String, x: f64, y: f64, anchor: &str, text: &str) {
-    let _ = writeln!(body, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
-}
 
 /// A bar with both ends marked, at least a pixel high.
 fn bar(body: &mut String, x: f64, top: f64, bottom: f64, colour: &str) {

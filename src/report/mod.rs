@@ -5,12 +5,16 @@
 //! Pure functions from outcomes to text; only [`mod@file`] touches the disk. Nothing here may change a verdict, print, or
 //! look at a clock.
 
+pub mod circle;
 pub mod console;
 pub mod curve;
 pub mod file;
+pub mod front;
 pub mod html;
 pub mod json;
 pub mod junit;
+mod picture;
+pub mod plans;
 mod plot;
 pub mod summary;
 #[cfg(test)]

@@ -144,7 +144,7 @@ impl Scale {
 }
 
 /// Round values from `from` to `to`: three to seven of them.
-fn ticks(from: f64, to: f64) -> Vec<f64> {
+pub(super) fn ticks(from: f64, to: f64) -> Vec<f64> {
     let rough = (to - from) / 6.0;
     let decade = 10_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade).into_iter().find(|step| *step >= rough);
@@ -155,7 +155,7 @@ fn ticks(from: f64, to: f64) -> Vec<f64> {
 }
 
 /// A tick's number without the zeros that rounding leaves.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text.is_empty() || text == "-0" { "0".to_owned() } else { text.to_owned() }

@@ -1,0 +1,50 @@
+//! `benchdog front`: the trade-off of the two comforts, as a table for programs, a picture and plans.
+
+use super::{
+    args::FrontArgs,
+    exit::{CliError, Exit},
+    interrupt,
+    maps::Maps,
+    output,
+    plan::{infeasible, to_be_planned, until_interrupted},
+};
+use crate::{
+    planner::{self, Front, FrontOutcome},
+    report::{self, front::Row},
+};
+
+/// Writes the front.
+pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
+    let mut loaded = to_be_planned(&args.scenario)?;
+    args.search.apply(&mut loaded.scenario.planner);
+    report::file::check_folder(&args.out)?;
+    interrupt::listen("the front of what was found is written")?;
+    let scenario = &loaded.scenario;
+    let outcome = Maps::default()
+        .with(&loaded.robot, scenario.object.size_m, |map, _| planner::front(scenario, map, &mut until_interrupted))?;
+    match outcome {
+        FrontOutcome::Found(front) => {
+            write(&front, args)?;
+            Ok(if interrupt::requested() { Exit::Interrupted } else { Exit::Met })
+        }
+        FrontOutcome::Infeasible(why) => Ok(infeasible(&loaded, &why)),
+    }
+}
+
+fn write(front: &Front, args: &FrontArgs) -> Result<(), CliError> {
+    let row = |point: &planner::FrontPoint, own| {
+        let [muscular, peripersonal_m] = point.comforts();
+        Row { share: point.share, muscular, peripersonal_m, own }
+    };
+    for (index, point) in front.points.iter().enumerate() {
+        let path = args.out.join(format!("front-{}.json", index + 1));
+        report::file::write_whole(&path, report::json::plan(&point.plan).as_bytes())?;
+    }
+    let own = args.out.join("own-weights.json");
+    report::file::write_whole(&own, report::json::plan(&front.own.plan).as_bytes())?;
+    let mut rows: Vec<Row> = front.points.iter().map(|point| row(point, false)).collect();
+    rows.push(row(&front.own, true));
+    report::file::write_whole(&args.out.join("front.svg"), report::front::svg(&rows, front.optima).as_bytes())?;
+    report::file::write_whole(&args.out.join("front.csv"), report::front::csv(&rows, front.optima).as_bytes())?;
+    output::print(&report::front::table(&rows, front.optima))
+}

@@ -1,0 +1,159 @@
+//! A Pareto front as a table for programs, a plot and a table for readers.
+
+use std::fmt::Write as _;
+
+use super::{
+    console::aligned,
+    picture::{circle, document, label, line, number, ticks},
+};
+
+/// A hold on the front, or the one of the scenario's own weights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Share of the peripersonal comfort in the weights, each over its own optimum.
+    pub share: f64,
+    /// Regularised muscular comfort.
+    pub muscular: f64,
+    /// Peripersonal comfort, m.
+    pub peripersonal_m: f64,
+    /// True for the hold of the scenario's own weights.
+    pub own: bool,
+}
+
+impl Row {
+    /// What it keeps of each optimum, from 0 to 1.
+    fn kept(&self, optima: [f64; 2]) -> [f64; 2] {
+        [self.muscular / optima[0], self.peripersonal_m / optima[1]]
+    }
+
+    fn name(&self, index: usize) -> String {
+        if self.own { "own-weights".to_owned() } else { format!("front-{}", index + 1) }
+    }
+}
+
+/// The front as CSV: a row a hold, named like its plan's file.
+pub fn csv(rows: &[Row], optima: [f64; 2]) -> String {
+    let mut text =
+        String::from("plan,share_peripersonal,muscular_regularised,peripersonal_m,muscular_kept,peripersonal_kept\n");
+    for (index, row) in rows.iter().enumerate() {
+        let [muscular, peripersonal] = row.kept(optima);
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{},{:.4},{:.6},{:.6},{muscular:.4},{peripersonal:.4}",
+            row.name(index),
+            row.share,
+            row.muscular,
+            row.peripersonal_m
+        );
+    }
+    text
+}
+
+/// The front for the console: each hold with what it keeps of the two optima, per cent.
+pub fn table(rows: &[Row], optima: [f64; 2]) -> String {
+    let header = ["plan", "share", "muscular", "peripersonal m", "muscular kept %", "peripersonal kept %"];
+    let mut lines = vec![header.map(str::to_owned).to_vec()];
+    for (index, row) in rows.iter().enumerate() {
+        let [muscular, peripersonal] = row.kept(optima).map(|kept| format!("{:.1}", 100.0 * kept));
+        let figures =
+            [format!("{:.2}", row.share), format!("{:.2}", row.muscular), format!("{:.3}", row.peripersonal_m)];
+        lines.push([vec![row.name(index)], figures.to_vec(), vec![muscular, peripersonal]].concat());
+    }
+    aligned(&lines, 1)
+}
+
+/// The plot's area inside the picture, px: left, right, top, bottom.
+const AREA_PX: [f64; 4] = [64.0, 620.0, 56.0, 380.0];
+const FRONT: &str = "#0072b2";
+const OWN: &str = "#d55e00";
+
+/// The front as a picture: muscular comfort to the right, peripersonal comfort upward.
+pub fn svg(rows: &[Row], optima: [f64; 2]) -> String {
+    let [left, right, top, bottom] = AREA_PX;
+    let range = |value: fn(&Row) -> f64| {
+        let low = rows.iter().map(value).fold(f64::INFINITY, f64::min);
+        let high = rows.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+        // Room about the points; a front of one point still has an axis.
+        let room = (0.06 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
+        [low - room, high + room]
+    };
+    let (xs, ys) = (range(|row| row.muscular), range(|row| row.peripersonal_m));
+    let x_px = |muscular: f64| left + (right - left) * (muscular - xs[0]) / (xs[1] - xs[0]);
+    let y_px = |metres: f64| bottom - (bottom - top) * (metres - ys[0]) / (ys[1] - ys[0]);
+    let mut body = String::new();
+    for tick in ticks(xs[0], xs[1]) {
+        line(&mut body, [x_px(tick), top, x_px(tick), bottom], "#dddddd", 1.0);
+        label(&mut body, x_px(tick), bottom + 18.0, "middle", &number(tick));
+    }
+    for tick in ticks(ys[0], ys[1]) {
+        line(&mut body, [left, y_px(tick), right, y_px(tick)], "#dddddd", 1.0);
+        label(&mut body, left - 6.0, y_px(tick) + 4.0, "end", &number(tick));
+    }
+    let front: Vec<&Row> = rows.iter().filter(|row| !row.own).collect();
+    for pair in front.windows(2) {
+        // A corner, not a slope: between two holds there is no mixture of them.
+        let [a, b] = [pair[0], pair[1]].map(|row| [x_px(row.muscular), y_px(row.peripersonal_m)]);
+        line(&mut body, [a[0], a[1], b[0], a[1]], FRONT, 1.5);
+        line(&mut body, [b[0], a[1], b[0], b[1]], FRONT, 1.5);
+    }
+    for row in rows {
+        let (colour, radius_px) = if row.own { (OWN, 6.0) } else { (FRONT, 4.0) };
+        circle(&mut body, x_px(row.muscular), y_px(row.peripersonal_m), radius_px, colour, row.own);
+    }
+    legend(&mut body, rows, optima);
+    document(&body, [640.0, 430.0])
+}
+
+fn legend(body: &mut String, rows: &[Row], optima: [f64; 2]) {
+    let [left, right, top, bottom] = AREA_PX;
+    label(
+        body,
+        left,
+        20.0,
+        "start",
+        "Peripersonal comfort, m, over muscular comfort 1 / (sum of squared activations + 0.01)",
+    );
+    label(body, (left + right) / 2.0, bottom + 40.0, "middle", "muscular comfort");
+    circle(body, left + 8.0, top - 17.0, 4.0, FRONT, false);
+    label(body, left + 18.0, top - 13.0, "start", "front");
+    let Some(own) = rows.iter().find(|row| row.own) else { return };
+    let [muscular, peripersonal] = own.kept(optima).map(|kept| 100.0 * kept);
+    circle(body, left + 78.0, top - 17.0, 6.0, OWN, true);
+    let told = format!("the scenario's weights: {muscular:.0} % muscular, {peripersonal:.0} % peripersonal kept");
+    label(body, left + 92.0, top - 13.0, "start", &told);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> Vec<Row> {
+        let row = |share, muscular, peripersonal_m, own| Row { share, muscular, peripersonal_m, own };
+        vec![
+            row(0.0, 80.0, 0.5, false),
+            row(0.5, 60.0, 1.0, false),
+            row(1.0, 20.0, 1.25, false),
+            row(0.4, 60.0, 1.0, true),
+        ]
+    }
+
+    #[test]
+    fn the_table_says_what_is_kept_of_each_optimum() {
+        let text = csv(&rows(), [80.0, 1.25]);
+        assert!(text.contains("\nfront-2,0.5000,60.000000,1.000000,0.7500,0.8000\n"), "{text}");
+        assert!(text.ends_with("\nown-weights,0.4000,60.000000,1.000000,0.7500,0.8000\n"), "{text}");
+    }
+
+    #[test]
+    fn the_picture_has_every_hold_inside_its_axes() {
+        let text = svg(&rows(), [80.0, 1.25]);
+        // Three holds of the front and the scenario's own, and one of each in the legend.
+        assert_eq!(text.matches("<circle").count(), 6);
+        // Two corners between three holds.
+        assert_eq!(text.matches("stroke-width=\"1.5\"").count(), 4);
+        // The best muscular hold stands 6 parts of 112 from the right end of its axis.
+        let x = 620.0 - (620.0 - 64.0) * 0.06 / 1.12;
+        assert!(text.contains(&format!("cx=\"{x:.1}\"")), "{text}");
+    }
+}

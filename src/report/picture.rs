@@ -1,0 +1,39 @@
+//! The strokes of a picture that stands alone as a file.
+
+use std::fmt::Write as _;
+
+pub(super) use super::plot::{number, ticks};
+
+/// A picture of this size, px, on white ground.
+pub(super) fn document(body: &str, [width, height]: [f64; 2]) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+         font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+    )
+}
+
+// Writing to a string does not fail, so the results below say nothing.
+
+/// A line from one point to another.
+pub(super) fn line(body: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, width_px: f64) {
+    let _ = writeln!(
+        body,
+        "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{colour}\" \
+         stroke-width=\"{width_px}\"/>"
+    );
+}
+
+/// A text; `anchor` says which part of it stands at the point.
+pub(super) fn label(body: &mut String, x: f64, y: f64, anchor: &str, text: &str) {
+    let _ = writeln!(body, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
+}
+
+/// A dot, or a ring when it is hollow.
+pub(super) fn circle(body: &mut String, x: f64, y: f64, radius_px: f64, colour: &str, hollow: bool) {
+    let fill = if hollow { "none" } else { colour };
+    let _ = writeln!(
+        body,
+        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius_px}\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"2\"/>"
+    );
+}
