@@ -12,26 +12,28 @@ use crate::{
     comfort::curve::{Curve, Cut, POINTS, muscular_curve},
     human::Human,
     model::operation::OperationKind,
-    report, scenario,
+    report,
+    scenario::{self, LoadedScenario, paper},
 };
-
-/// The cut of METHOD section 2: everything that it leaves out is the default.
-const PAPERS_CUT: &str = r#"
-format = 1
-name = "muscular-curve"
-[operation]
-kind = "cut"
-point_m = [0.12, 0.0]
-force_n = 30.0
-direction_o = [0.0, 1.0, 0.0]
-"#;
 
 /// Writes the curve as CSV and as a picture.
 pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
     let loaded = match &args.scenario {
         Some(path) => scenario::load(path)?,
-        None => scenario::load_text(Path::new("muscular-curve"), PAPERS_CUT)?,
+        None => paper::operations()[0].load()?,
     };
+    let curve = curve_of(&loaded)?;
+    report::file::write_whole(&args.out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
+    report::file::write_whole(&args.out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
+    output::print(&summary(&curve, &args.out))?;
+    Ok(Exit::Met)
+}
+
+/// The curve of the circle that a scenario's cut lies on.
+///
+/// # Errors
+/// When the scenario is not of a cut, its cut is in the middle of the board, or its person or tool is none.
+pub fn curve_of(loaded: &LoadedScenario) -> Result<Curve, CliError> {
     let scenario = &loaded.scenario;
     let p_ot_m = scenario.operation.x_ot.translation.vector;
     let radius_m = libm::hypot(p_ot_m.x, p_ot_m.y);
@@ -39,7 +41,7 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
         let found = format!("{}: found an operation that cuts no circle", loaded.path.display());
         return Err(CliError::Usage(format!("{found}, expected a cut beside the middle of the board")));
     }
-    let curve = muscular_curve(&Cut {
+    Ok(muscular_curve(&Cut {
         human: &Human::new(&scenario.human, &scenario.tool)?,
         collision: &CollisionModel::new(&loaded.robot),
         settings: scenario.comfort,
@@ -47,11 +49,7 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
         radius_m,
         force_n: scenario.operation.wrench_o.force_n.norm(),
         floor_z_m: loaded.robot.floor_z_m,
-    });
-    report::file::write_whole(&args.out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
-    report::file::write_whole(&args.out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
-    output::print(&summary(&curve, &args.out))?;
-    Ok(Exit::Met)
+    }))
 }
 
 fn summary(curve: &Curve, out: &Path) -> String {

@@ -12,6 +12,7 @@ pub mod html;
 pub mod json;
 pub mod junit;
 mod plot;
+pub mod reproduce;
 pub mod summary;
 #[cfg(test)]
 mod tests;
