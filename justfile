@@ -8,6 +8,10 @@ ci:
 quickstart:
     cargo run --release -- run scenarios/quickstart.toml
 
+# Write results/ again: the paper's evaluation, every hold simulated
+reproduce:
+    cargo run --release -- reproduce
+
 # Every test
 test:
     cargo test --release

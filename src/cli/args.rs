@@ -32,6 +32,8 @@ pub enum Command {
     Simulate(SimulateArgs),
     /// Write the best and worst muscular comfort along a circle that is cut, as CSV and SVG
     Curve(CurveArgs),
+    /// Plan, simulate and report the paper's whole evaluation: 25 operations, four planners
+    Reproduce(ReproduceArgs),
     /// Print the JSON Schema of a file format
     Schema(SchemaArgs),
     /// Raise a plan's load until the hold fails, beside what the statics predict
@@ -205,6 +207,27 @@ pub struct CurveArgs {
     /// Folder for `muscular_curve.csv` and `muscular_curve.svg`
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+}
+
+/// `benchdog reproduce`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::REPRODUCE)]
+pub struct ReproduceArgs {
+    /// Fewer seeds of the random planner, no search for the loads at which holds fail, no sensitivity analysis
+    #[arg(long)]
+    pub quick: bool,
+    /// Only operations whose name contains this text, or matches it when it has one of * ? [; may be given several times
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Vec<String>,
+    /// How many holds are worked on at once; all cores unless given. The results do not depend on it
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<std::num::NonZero<usize>>,
+    /// Which simulations to record
+    #[arg(long, value_enum, default_value_t = RecordChoice::Never)]
+    pub record: RecordChoice,
+    /// Folder for the results; `results` unless given, with --quick `out/reproduce-quick`
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// `benchdog schema`.

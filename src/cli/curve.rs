@@ -12,29 +12,30 @@ use crate::{
     comfort::curve::{Curve, Cut, POINTS, muscular_curve},
     human::Human,
     report,
-    scenario::{self, LoadedScenario},
+    scenario::{self, LoadedScenario, paper},
 };
-
-/// The cut of METHOD section 2: everything that it leaves out is the default.
-const PAPERS_CUT: &str = r#"
-format = 1
-name = "muscular-curve"
-[operation]
-kind = "cut"
-point_m = [0.12, 0.0]
-force_n = 30.0
-direction_o = [0.0, 1.0, 0.0]
-"#;
 
 /// Writes the curve as CSV and as a picture.
 pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
     let loaded = match &args.scenario {
         Some(path) => scenario::load(path)?,
-        None => scenario::load_text(Path::new("muscular-curve"), PAPERS_CUT)?,
+        None => paper::operations()[0].load()?,
     };
+    let curve = curve_of(&loaded)?;
+    report::file::write_whole(&args.out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
+    report::file::write_whole(&args.out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
+    output::print(&summary(&curve, &args.out))?;
+    Ok(Exit::Met)
+}
+
+/// The curve of the circle that a scenario's cut lies on.
+///
+/// # Errors
+/// When the scenario is not of a cut, its cut is in the middle of the board, or its person or tool is none.
+pub fn curve_of(loaded: &LoadedScenario) -> Result<Curve, CliError> {
     let scenario = &loaded.scenario;
-    let radius_m = circle_radius_m(&loaded)?;
-    let curve = muscular_curve(&Cut {
+    let radius_m = circle_radius_m(loaded)?;
+    Ok(muscular_curve(&Cut {
         human: &Human::new(&scenario.human, &scenario.tool)?,
         collision: &CollisionModel::new(&loaded.robot),
         settings: scenario.comfort,
@@ -42,11 +43,7 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
         radius_m,
         force_n: scenario.operation.wrench_o.force_n.norm(),
         floor_z_m: loaded.robot.floor_z_m,
-    });
-    report::file::write_whole(&args.out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
-    report::file::write_whole(&args.out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
-    output::print(&summary(&curve, &args.out))?;
-    Ok(Exit::Met)
+    }))
 }
 
 /// The radius of the circle that a scenario cuts, m.

@@ -76,6 +76,18 @@ Examples:
   benchdog curve
   benchdog curve scenarios/cut-rim.toml --out curve";
 
+/// `benchdog reproduce --help`.
+pub const REPRODUCE: &str = "\
+Examples:
+  benchdog reproduce                            the evidence in results/
+  benchdog reproduce --quick                    a look at it
+  benchdog reproduce --quick --filter cut-05 --record always
+
+Into --out go report.md, table1.csv, plans.csv, physics.csv, random.csv, sensitivity.csv, the
+muscular curve and pictures/, the same for equal runs; timing.csv, which is not; recordings/;
+and work/, from which a run that was stopped goes on. The exit code is 1 when a hold failed in
+simulation, 3 when a planner found none.";
+
 /// `benchdog schema --help`.
 pub const SCHEMA: &str = "\
 Example:

@@ -8,7 +8,7 @@ use super::{
     output,
 };
 use crate::{
-    judge::{FailingLoad, failing_load, judge},
+    judge::{FailingLoad, Judgement, failing_load, judge},
     model::{
         plan::Plan,
         scenario::Scenario,
@@ -93,18 +93,13 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
     if let Some(touch) = planner::first_touch(plan, &scenario.tool, robot)? {
         return Ok(Margin { reason: Some(touch), ..empty });
     }
-    let conditions = Conditions::of(scenario);
-    let judged = |factor: f64| {
-        let trace = sim::simulate(robot, plan, &conditions.scaled(factor)).map_err(CliError::Simulation)?;
-        Ok::<_, CliError>(judge(&trace, &scenario.limits))
-    };
     let guess = empty.predicted.as_ref().map_or(1.0, |predicted| predicted.compliant);
-    let FailingLoad { holds_at, fails_at, judgement, simulations } = failing_load(guess, judged)?;
+    let FailingLoad { holds_at, fails_at, judgement, simulations } = simulated(plan, robot, scenario, guess)?;
     let failed = judgement.first_failure.as_ref().map(|failure| failure.check);
     let met = match expected {
         VerdictKind::Holds => holds_at >= scenario.limits.load_factor,
         // The load itself fails as expected, or a load beyond it does.
-        other => judged(1.0)?.verdict == other && other != VerdictKind::NoVerdict,
+        other => judged(plan, robot, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
     };
     Ok(Margin {
         load_factor: holds_at,
@@ -116,6 +111,20 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
         met,
         ..empty
     })
+}
+
+/// The load at which a plan's hold fails in simulation; the search begins at `guess`.
+///
+/// # Errors
+/// When the simulation cannot be built from the plan.
+pub fn simulated(plan: &Plan, robot: &Robot, scenario: &Scenario, guess: f64) -> Result<FailingLoad, CliError> {
+    failing_load(guess, |factor| judged(plan, robot, scenario, factor))
+}
+
+/// What becomes of the hold under a multiple of its load.
+fn judged(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
+    let trace = sim::simulate(robot, plan, &Conditions::of(scenario).scaled(factor)).map_err(CliError::Simulation)?;
+    Ok(judge(&trace, &scenario.limits))
 }
 
 /// What the statics say of the plan, under the friction that it counts on.

@@ -25,6 +25,7 @@ mod recording;
 #[cfg(not(feature = "recording"))]
 #[path = "no_recording.rs"]
 mod recording;
+mod reproduce;
 mod run;
 mod schema;
 mod select;
@@ -57,6 +58,7 @@ pub fn main() -> ExitCode {
         Command::Circle(args) => circle::circle(args),
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
+        Command::Reproduce(args) => reproduce::reproduce(args),
         Command::Schema(args) => schema::schema(args),
         Command::Margin(args) => margin::margin(args),
         Command::Export(args) => export::export(args),

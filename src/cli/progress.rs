@@ -36,9 +36,17 @@ impl Progress {
 
     /// A scenario has ended after so many seconds.
     pub fn ends(&self, outcome: &Outcome, wall_s: f64) {
+        self.advances(Some(&format!("{} ({wall_s:.1} s)", console::line(outcome))));
+    }
+
+    /// Something has ended, and this is to be said of it.
+    pub fn advances(&self, line: Option<&str>) {
         self.bar.inc(1);
-        let line = format!("{} ({wall_s:.1} s)", console::line(outcome));
-        if self.bar.is_hidden() { output::complain(&line) } else { self.bar.println(line) }
+        match line {
+            Some(line) if self.bar.is_hidden() => output::complain(line),
+            Some(line) => self.bar.println(line),
+            None => {}
+        }
     }
 
     /// All is over: the bar goes, the lines stay.

@@ -105,13 +105,19 @@ fn matches(pattern: &str) -> Result<Vec<PathBuf>, CliError> {
 }
 
 /// A `--filter`.
-enum Filter {
+pub enum Filter {
+    /// A part of a name.
     Contains(String),
+    /// A pattern of a whole name.
     Matches(Pattern),
 }
 
 impl Filter {
-    fn new(text: &str) -> Result<Self, CliError> {
+    /// The filter of a text.
+    ///
+    /// # Errors
+    /// When the text is a broken pattern.
+    pub fn new(text: &str) -> Result<Self, CliError> {
         match is_pattern(text) {
             false => Ok(Self::Contains(text.to_owned())),
             true => {
@@ -121,7 +127,8 @@ impl Filter {
         }
     }
 
-    fn passes(&self, name: &str) -> bool {
+    /// True when it lets this name through.
+    pub fn passes(&self, name: &str) -> bool {
         match self {
             Self::Contains(text) => name.contains(text.as_str()),
             Self::Matches(pattern) => pattern.matches(name),

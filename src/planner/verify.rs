@@ -14,7 +14,7 @@ use crate::{
         plan::{AverageComfort, Comfort, HumanPosture, Plan},
         scenario::{PersonAnswer, Scenario, StabilityKind, Tool},
     },
-    robot::{ArmState, Chain, Robot},
+    robot::{Chain, Robot},
     statics::{Hold, StabilityWorkspace},
 };
 
@@ -96,21 +96,6 @@ fn person(plan: &Plan, posture: &HumanPosture, robot: &Robot, human: &Human, fla
     expect(tilt_rad <= POSE_TOLERANCE, flaws, || format!("the person leans by {tilt_rad:e} rad"));
 }
 
-/// Link poses of the robot in the plan's configuration.
-fn link_poses(plan: &Plan, robot: &Robot) -> Vec<crate::model::frames::Pose> {
-    let states: Vec<_> = plan
-        .arms
-        .iter()
-        .filter_map(|hold| {
-            let arm = robot.arm_index(&hold.name)?;
-            let gripper = &robot.arms[arm].gripper;
-            let finger_travel_m = [0, 1].map(|finger| gripper.travel_for_gap_m(finger, plan.object.size_m[2]));
-            Some(ArmState { arm, q_rad: &hold.q_rad, finger_travel_m })
-        })
-        .collect();
-    robot.link_poses(&robot.positions(&states))
-}
-
 fn figures(
     plan: &Plan,
     posture: &HumanPosture,
@@ -121,7 +106,7 @@ fn figures(
     flaws: &mut Vec<Flaw>,
 ) {
     let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
-    let surface = comfort::robot_points_w(robot, &link_poses(plan, robot));
+    let surface = comfort::robot_points_w(robot, &robot.planned_link_poses(&plan.arms, plan.object.size_m[2]));
     let mut found = comfort::of_posture(human, &scenario.comfort, &surface, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
     expect(strongest <= 1.0, flaws, || format!("an activation is {strongest}, more than the person has"));
@@ -149,7 +134,7 @@ fn figures(
 
 /// The mean comfort of the person's answers to the plan's hold.
 fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<AverageComfort> {
-    let poses = link_poses(plan, robot);
+    let poses = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
     comfort::average(&comfort::Hold {
         human,
@@ -183,7 +168,7 @@ pub fn first_touch(plan: &Plan, tool: &Tool, robot: &Robot) -> Result<Option<Str
     };
     let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
     let scene = Scene {
-        link_poses: &link_poses(plan, robot),
+        link_poses: &robot.planned_link_poses(&plan.arms, plan.object.size_m[2]),
         holding: &holding,
         board_size_m: plan.object.size_m,
         x_wo: plan.object.x_wo,

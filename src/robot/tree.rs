@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
-use crate::model::frames::Pose;
+use crate::model::{frames::Pose, plan::ArmHold};
 
 /// A robot: a tree of links, the arms that can hold something, and figures that no URDF carries.
 #[derive(Clone, Debug)]
@@ -237,6 +237,18 @@ impl Robot {
     /// The index of the link of this name.
     pub fn link_index(&self, name: &str) -> Option<usize> {
         self.links.iter().position(|link| link.name == name)
+    }
+
+    /// The poses of all links in W when arms hold a board of this thickness as planned; arms that the robot does not have are
+    /// left out.
+    pub fn planned_link_poses(&self, holds: &[ArmHold], thickness_m: f64) -> Vec<Pose> {
+        let states = holds.iter().filter_map(|hold| {
+            let arm = self.arm_index(&hold.name)?;
+            let gripper = &self.arms[arm].gripper;
+            let finger_travel_m = [0, 1].map(|finger| gripper.travel_for_gap_m(finger, thickness_m));
+            Some(ArmState { arm, q_rad: &hold.q_rad, finger_travel_m })
+        });
+        self.link_poses(&self.positions(&states.collect::<Vec<_>>()))
     }
 
     /// The positions of all joints, in the order of [`Robot::joints`], rad or m. Joints of no given arm are at 0, or at

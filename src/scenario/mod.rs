@@ -8,6 +8,7 @@ pub mod error;
 pub mod file;
 mod locate;
 pub mod material;
+pub mod paper;
 pub mod plan_file;
 pub mod profile;
 mod resolve;

@@ -1,0 +1,275 @@
+//! `benchdog reproduce`: the paper's evaluation, planned, simulated and reported.
+//!
+//! What is done stands in [`jobs`], what else it is done under in [`sensitivity`]; this file asks for it and writes what the
+//! report makes of it. All that is committed is the same for equal runs; times go to `timing.csv` and the console.
+
+mod jobs;
+mod sensitivity;
+
+use std::{
+    num::NonZero,
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
+
+use super::{
+    args::ReproduceArgs,
+    curve,
+    exit::{CliError, Exit},
+    interrupt, output,
+    progress::Progress,
+    run::in_parallel,
+    select::Filter,
+};
+use crate::{
+    model::{operation::OperationKind, scenario::PlannerKind},
+    report::{
+        self, file,
+        reproduce::{self as evaluation, Hold, KINDS, Reproduction, Variant, claims, markdown, picture},
+    },
+    robot::Robot,
+    scenario::{LoadedScenario, paper},
+};
+use jobs::{Job, Work, Workshop};
+
+/// How much of the evaluation is done.
+struct Extent {
+    /// Seeds of the random planner.
+    random_seeds: u64,
+    /// Seeds of the random planner in the sensitivity analysis; none when it is left out.
+    sensitivity_seeds: Option<u64>,
+    /// What is done with the hold of the first seed.
+    first: Work,
+}
+
+impl Extent {
+    fn of(args: &ReproduceArgs) -> Self {
+        if args.quick {
+            Self { random_seeds: 3, sensitivity_seeds: None, first: Work::Simulate }
+        } else {
+            // METHOD section 3 asks for twenty at least. The analysis compares variants that share their seeds, so few do.
+            Self { random_seeds: 20, sensitivity_seeds: Some(4), first: Work::FailingLoad }
+        }
+    }
+}
+
+/// Reproduces the paper's evaluation.
+pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
+    let operations = operations(&args.filter)?;
+    let Some(first) = operations.first() else { return Ok(Exit::Met) };
+    let out = args.folder();
+    file::check_folder(&out)?;
+    interrupt::listen()?;
+    let extent = Extent::of(args);
+    let (jobs, variants) = all_jobs(&operations, &extent);
+    let workshop = Workshop::new(&first.robot, &out, args.record)?;
+    let threads = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
+    let Some(mut holds) = work_off(&workshop, threads, &jobs)? else {
+        let folder = workshop.folder();
+        let folder = folder.display();
+        output::complain(&format!(
+            "stopped: what is done is kept in {folder}, and the same command goes on from there"
+        ));
+        return Ok(Exit::Interrupted);
+    };
+    let of_variants = holds.split_off(jobs.len() - variants.iter().map(|(_, jobs)| jobs).sum::<usize>());
+    let reproduction = Reproduction {
+        sensitivity: sensitivity_of(&holds, &extent, &variants, of_variants),
+        holds,
+        random_seeds: extent.random_seeds,
+        sensitivity_seeds: extent.sensitivity_seeds.unwrap_or(0),
+        left_out: left_out(args, operations.len()),
+    };
+    write_results(&reproduction, &operations, &first.robot, &out)?;
+    output::print(&for_people(&reproduction, &out))?;
+    Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
+}
+
+/// What a hold means for the exit code.
+fn exit_of(hold: &Hold) -> Exit {
+    hold.verdict.as_ref().map_or(Exit::Infeasible, Exit::of)
+}
+
+/// The operations that the filters let through.
+fn operations(filters: &[String]) -> Result<Vec<LoadedScenario>, CliError> {
+    let asked = filters.join(", ");
+    let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
+    let all = paper::operations();
+    let wanted = |name: &str| filters.is_empty() || filters.iter().any(|filter| filter.passes(name));
+    let operations: Vec<_> =
+        all.iter().filter(|operation| wanted(&operation.name)).map(|o| o.load()).collect::<Result<_, _>>()?;
+    if operations.is_empty() {
+        let known: Vec<_> = all.into_iter().map(|operation| operation.name).collect();
+        let known = known.join(", ");
+        let message = format!("--filter {asked}: found no operation that passes, expected one of {known}");
+        return Err(CliError::Usage(message));
+    }
+    Ok(operations)
+}
+
+/// All that is to be done: first the evaluation, operation by operation, then the sensitivity analysis with the name of each
+/// variant and how many jobs it has.
+fn all_jobs(operations: &[LoadedScenario], extent: &Extent) -> (Vec<Job>, Vec<(&'static str, usize)>) {
+    let mut jobs = Vec::new();
+    for operation in operations {
+        jobs.extend(jobs::jobs_of(&operation.scenario, None, extent.random_seeds, extent.first));
+    }
+    let mut variants = Vec::new();
+    if let Some(seeds) = extent.sensitivity_seeds {
+        for variant in sensitivity::VARIANTS {
+            let before = jobs.len();
+            for operation in operations.iter().filter(|o| sensitivity::looks_at(&o.scenario.name)) {
+                let mut scenario = operation.scenario.clone();
+                (variant.change)(&mut scenario);
+                jobs.extend(jobs::jobs_of(&scenario, Some(variant.name), seeds, Work::Plan));
+            }
+            variants.push((variant.name, jobs.len() - before));
+        }
+    }
+    (jobs, variants)
+}
+
+/// The holds of all jobs in their order; none when the user asked for an end before all had their turn.
+fn work_off(workshop: &Workshop<'_>, threads: usize, jobs: &[Job]) -> Result<Option<Vec<Hold>>, CliError> {
+    let progress = Progress::new(jobs.len());
+    // A full disk is full for all: after the first error nothing more is begun.
+    let broken: Mutex<Option<CliError>> = Mutex::new(None);
+    let holds = in_parallel(threads, jobs, |job| {
+        if interrupt::requested() || broken.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
+            return None;
+        }
+        progress.begins(&job.name());
+        match workshop.hold(job) {
+            Ok(done) => {
+                progress.advances(done.line(job).as_deref());
+                Some(done.hold)
+            }
+            Err(error) => {
+                broken.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                None
+            }
+        }
+    });
+    progress.finish();
+    match broken.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(holds.into_iter().collect()),
+    }
+}
+
+/// The table under each assumption; the first are the evaluation's own holds.
+fn sensitivity_of(
+    holds: &[Hold],
+    extent: &Extent,
+    variants: &[(&'static str, usize)],
+    mut of_variants: Vec<Hold>,
+) -> Vec<Variant> {
+    let Some(seeds) = extent.sensitivity_seeds else { return Vec::new() };
+    let own: Vec<_> =
+        holds.iter().filter(|h| h.seed <= seeds && sensitivity::looks_at(&h.operation)).cloned().collect();
+    if own.is_empty() {
+        return Vec::new();
+    }
+    let mut all = vec![Variant { name: "as reproduced".to_owned(), holds: own }];
+    for &(name, count) in variants {
+        let rest = of_variants.split_off(count);
+        all.push(Variant { name: name.to_owned(), holds: std::mem::replace(&mut of_variants, rest) });
+    }
+    all
+}
+
+/// What a run that is not whole lacks, in words.
+fn left_out(args: &ReproduceArgs, operations: usize) -> Option<String> {
+    let mut lacks = Vec::new();
+    if args.quick {
+        let seeds = Extent::of(args).random_seeds;
+        lacks.push(format!(
+            "{seeds} seeds of the random planner, no search for failing loads and no sensitivity (`--quick`)"
+        ));
+    }
+    if operations < paper::CUTS + paper::DRILLS {
+        lacks.push(format!("{operations} of the operations (`--filter`)"));
+    }
+    (!lacks.is_empty()).then(|| lacks.join("; "))
+}
+
+/// Writes everything; the report last of all, so that where it stands all else does.
+fn write_results(
+    reproduction: &Reproduction,
+    operations: &[LoadedScenario],
+    robot: &Robot,
+    out: &Path,
+) -> Result<(), CliError> {
+    let write = |name: &str, text: &str| file::write_whole(&out.join(name), text.as_bytes());
+    file::remove(&out.join("report.md"))?;
+    write("table1.csv", &evaluation::tables::table1(reproduction))?;
+    write("plans.csv", &evaluation::tables::plans(reproduction))?;
+    write("physics.csv", &evaluation::tables::physics(reproduction))?;
+    write("random.csv", &evaluation::tables::random(reproduction))?;
+    write("timing.csv", &evaluation::tables::timing(reproduction))?;
+    match reproduction.sensitivity.is_empty() {
+        true => file::remove(&out.join("sensitivity.csv"))?,
+        false => write("sensitivity.csv", &evaluation::tables::sensitivity(reproduction))?,
+    }
+    for kind in KINDS {
+        write_pictures(reproduction, kind, robot, &out.join("pictures"))?;
+    }
+    write_curve(operations, out)?;
+    write("report.md", &markdown::report(reproduction))?;
+    Ok(())
+}
+
+/// A picture a planner, for one operation of a kind.
+fn write_pictures(
+    reproduction: &Reproduction,
+    kind: OperationKind,
+    robot: &Robot,
+    folder: &Path,
+) -> Result<(), CliError> {
+    let Some(operation) = reproduction.drawn(kind) else { return Ok(()) };
+    for hold in PlannerKind::ALL.iter().filter_map(|&planner| reproduction.hold(operation, planner)) {
+        if let Some(plan) = &hold.plan {
+            let svg = picture::svg(plan, robot, &markdown::picture_title(hold))?;
+            file::write_whole(&folder.join(markdown::picture_name(hold)), svg.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// The muscular curve, of whichever cut is at hand: they all lie on one circle.
+fn write_curve(operations: &[LoadedScenario], out: &Path) -> Result<(), CliError> {
+    let Some(cut) = operations.iter().find(|o| o.scenario.operation.kind == OperationKind::Cut) else { return Ok(()) };
+    let curve = curve::curve_of(cut)?;
+    file::write_whole(&out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
+    file::write_whole(&out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
+    Ok(())
+}
+
+/// What is printed in the end.
+fn for_people(reproduction: &Reproduction, out: &Path) -> String {
+    let claims = claims::claims(reproduction);
+    let (simulated, held) = reproduction
+        .first_seeds()
+        .fold((0, 0), |(simulated, held), hold| (simulated + 1, held + usize::from(claims::holds(hold))));
+    let mut text = String::new();
+    for claim in &claims {
+        text.push_str(&format!(
+            "{:<4} {}: {}\n",
+            if claim.holds { "yes" } else { "NO" },
+            claim.sentence,
+            claim.figures
+        ));
+    }
+    text.push_str(&format!("{held} of {simulated} holds stand in simulation\n\n"));
+    text.push_str(&evaluation::timing::summary(reproduction));
+    text.push_str(&format!("\nwritten: {}\n", out.join("report.md").display()));
+    text
+}
+
+impl ReproduceArgs {
+    /// Where the results go: a quick run does not take the place of the whole one.
+    fn folder(&self) -> PathBuf {
+        let default = if self.quick { "out/reproduce-quick" } else { "results" };
+        self.out.clone().unwrap_or_else(|| default.into())
+    }
+}

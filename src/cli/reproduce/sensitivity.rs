@@ -1,0 +1,98 @@
+//! What the paper does not state and the reproduction assumes, changed one at a time.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::model::{frames::rotation_from_xyzw, scenario::Scenario};
+
+/// An assumption that differs.
+pub struct VariantOf {
+    /// In words.
+    pub name: &'static str,
+    /// Puts it into a scenario.
+    pub change: fn(&mut Scenario),
+}
+
+/// The operations that are looked at: a quarter of the circle apart, and two corners and the middle of the grid.
+const OPERATIONS: [&str; 7] = ["cut-01", "cut-05", "cut-09", "cut-13", "drill-1", "drill-5", "drill-9"];
+
+/// How much farther the tip is, m.
+const LONGER_M: f64 = 0.05;
+
+/// How far the tool is turned, degrees.
+const TILT_DEG: f64 = 30.0;
+
+/// All of them.
+pub const VARIANTS: [VariantOf; 8] = [
+    VariantOf { name: "strength: 5th percentile", change: |scenario| scenario.human.percentile = 5.0 },
+    VariantOf { name: "strength: 95th percentile", change: |scenario| scenario.human.percentile = 95.0 },
+    VariantOf {
+        name: "peripersonal weight 16, not 64",
+        change: |scenario| scenario.comfort.weight_peripersonal = 16.0,
+    },
+    VariantOf { name: "peripersonal weight 256", change: |scenario| scenario.comfort.weight_peripersonal = 256.0 },
+    VariantOf { name: "tool 5 cm longer", change: lengthen_tool },
+    VariantOf { name: "tool tilted by 30 degrees in the hand", change: tilt_tool },
+    VariantOf { name: "board 0.40 x 0.32 m, not 0.50 x 0.40", change: |scenario| resize(scenario, [0.40, 0.32]) },
+    VariantOf { name: "board 0.60 x 0.48 m", change: |scenario| resize(scenario, [0.60, 0.48]) },
+];
+
+/// True for an operation that is looked at.
+pub fn looks_at(operation: &str) -> bool {
+    OPERATIONS.contains(&operation)
+}
+
+/// Moves the tip along the tool's axis z_T.
+fn lengthen_tool(scenario: &mut Scenario) {
+    let axis_h = rotation_ht(scenario) * Vector3::z();
+    for (tip, along) in scenario.tool.tip_h_m.iter_mut().zip(axis_h.iter()) {
+        *tip += LONGER_M * along;
+    }
+}
+
+/// Turns the tool about y_T; the tip stays.
+fn tilt_tool(scenario: &mut Scenario) {
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), TILT_DEG.to_radians());
+    scenario.tool.rotation_xyzw = (rotation_ht(scenario) * tilt).into_inner().coords.into();
+}
+
+/// R_HT.
+fn rotation_ht(scenario: &Scenario) -> UnitQuaternion<f64> {
+    // The scenario has passed the checks of `scenario`, which ask for a rotation.
+    rotation_from_xyzw(scenario.tool.rotation_xyzw).expect("a checked scenario's tool has a rotation")
+}
+
+/// Width and height of the board; thickness and density stay, so the operations do.
+fn resize(scenario: &mut Scenario, [width_m, height_m]: [f64; 2]) {
+    scenario.object.size_m = [width_m, height_m, scenario.object.size_m[2]];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::paper;
+
+    #[test]
+    fn every_variant_changes_every_operation_that_is_looked_at() {
+        let operations: Vec<_> = paper::operations().into_iter().filter(|o| looks_at(&o.name)).collect();
+        assert_eq!(operations.len(), OPERATIONS.len());
+        for operation in operations {
+            let scenario = operation.load().unwrap().scenario;
+            for variant in &VARIANTS {
+                let mut changed = scenario.clone();
+                (variant.change)(&mut changed);
+                assert!(changed != scenario, "{}: {}", operation.name, variant.name);
+                assert!(changed.operation == scenario.operation, "{}", variant.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_longer_tool_is_longer_along_its_axis() {
+        let mut scenario = paper::operations()[16].load().unwrap().scenario;
+        let before = scenario.tool.tip_h_m;
+        lengthen_tool(&mut scenario);
+        let moved = Vector3::from(scenario.tool.tip_h_m) - Vector3::from(before);
+        // The drill's axis is -z_H (METHOD section 4).
+        assert!((moved - Vector3::new(0.0, 0.0, -0.05)).norm() < 1e-15);
+    }
+}

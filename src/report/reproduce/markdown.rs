@@ -1,0 +1,298 @@
+//! `report.md`: the whole reproduction for a reader.
+
+use std::fmt::Write as _;
+
+use super::{
+    Hold, KINDS, Reproduction, Variant, claims,
+    printed::{self, Printed},
+    table, task,
+};
+use crate::{
+    model::{
+        operation::OperationKind,
+        scenario::PlannerKind,
+        verdict::{CheckKind, VerdictKind},
+    },
+    report::explanation,
+};
+
+// Writing to a string does not fail, so the results of `writeln!` say nothing.
+
+/// The report. Pictures and tables that it names stand beside it.
+pub fn report(reproduction: &Reproduction) -> String {
+    let mut text = String::from("# The paper, reproduced and proved in physics\n\n");
+    text.push_str(
+        "Written by `benchdog reproduce`; do not edit. What the figures mean, and what is not reproduced:\n\
+         `docs/reproduction.md`. Chen, Figueredo, Dogar, *Planning for Muscular and Peripersonal-Space Comfort during\n\
+         Human-Robot Forceful Collaboration*, IEEE-RAS Humanoids 2018, is \"the paper\".\n",
+    );
+    if let Some(left_out) = &reproduction.left_out {
+        let _ = writeln!(text, "\n**Not the whole evaluation**: {left_out}.");
+    }
+    table_one(&mut text, reproduction);
+    claims_section(&mut text, reproduction);
+    raw(&mut text, reproduction);
+    seeds(&mut text, reproduction);
+    physics(&mut text, reproduction);
+    pictures(&mut text, reproduction);
+    text.push_str(
+        "\n## Muscular comfort along the circle\n\nThe best and the worst of the person's postures at each of the 16 cutting points, \
+         the board upright in one place\n(`muscular_curve.csv`).\n\n![Best and worst muscular comfort at 16 cutting points](muscular_curve.svg)\n",
+    );
+    sensitivity(&mut text, reproduction);
+    text
+}
+
+fn figure(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
+}
+
+fn table_one(text: &mut String, reproduction: &Reproduction) {
+    let _ = write!(
+        text,
+        "\n## Table I\n\nMeans over the operations, over those of the random planner ({} seeds an operation): ours, and the paper's in \
+         brackets\n(`table1.csv`).\n\n| task | planner | muscular | peripersonal |\n|---|---|---|---|\n",
+        reproduction.random_seeds
+    );
+    for row in table::rows(reproduction.holds.iter()) {
+        let paper = printed::table(row.kind, row.planner);
+        let of_paper = |which: fn(&Printed) -> f64| figure(paper.as_ref().map(which), 2);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} ({}) | {} ({}) |",
+            task(row.kind),
+            row.planner,
+            figure(row.muscular_normalised, 2),
+            of_paper(|paper| paper.muscular),
+            figure(row.peripersonal_normalised, 2),
+            of_paper(|paper| paper.peripersonal)
+        );
+    }
+}
+
+fn claims_section(text: &mut String, reproduction: &Reproduction) {
+    text.push_str("\n## What the paper concludes, on our figures\n\n| so here | claim | figures |\n|---|---|---|\n");
+    for claim in claims::claims(reproduction) {
+        let mark = if claim.holds { "yes" } else { "**no**" };
+        let _ = writeln!(text, "| {mark} | {} | {} |", claim.sentence, claim.figures);
+    }
+}
+
+fn raw(text: &mut String, reproduction: &Reproduction) {
+    text.push_str(
+        "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of \
+         `1 / ||alpha||^2`.\nPeripersonal comfort is the sum over 64 points of the body, the scale of the paper's captions, whose one \
+         configuration\na planner stands in brackets. Single plans are in `plans.csv`.\n\n\
+         | task | planner | plans | muscular | printed | peripersonal |\n|---|---|---|---|---|---|\n",
+    );
+    for row in table::rows(reproduction.holds.iter()) {
+        let paper = printed::caption(row.kind, row.planner);
+        let of_paper = |which: fn(&Printed) -> f64| figure(paper.as_ref().map(which), 1);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} ({}) | {} | {} ({}) |",
+            task(row.kind),
+            row.planner,
+            row.plans,
+            figure(row.muscular, 1),
+            of_paper(|paper| paper.muscular),
+            figure(row.muscular_printed_median, 1),
+            figure(row.peripersonal_scaled, 1),
+            of_paper(|paper| paper.peripersonal)
+        );
+    }
+}
+
+/// For each seed the mean over the operations of a kind; how these means differ.
+fn seeds(text: &mut String, reproduction: &Reproduction) {
+    text.push_str(
+        "\n## Spread of the random planner\n\nFor each seed the mean over the operations, as the paper's one run has it; then mean, \
+         standard deviation and range of\nthese means over the seeds (`random.csv`).\n\n\
+         | task | comfort | mean | deviation | range |\n|---|---|---|---|---|\n",
+    );
+    for kind in KINDS {
+        let of_seed = |seed: u64| {
+            let draws = reproduction.holds.iter().filter(move |h| h.planner == PlannerKind::Random && h.kind == kind);
+            draws.filter(move |hold| hold.seed == seed)
+        };
+        let means = |figure: fn(&Hold) -> Option<f64>| -> Vec<f64> {
+            (1..=reproduction.random_seeds).filter_map(|seed| table::mean(of_seed(seed).filter_map(figure))).collect()
+        };
+        let muscular = means(|hold| Some(hold.comfort()?.muscular_regularised));
+        let peripersonal = means(Hold::peripersonal_scaled);
+        for (name, means) in [("muscular", muscular), ("peripersonal", peripersonal)] {
+            let quantile = |share| figure(table::quantile(means.clone(), share), 2);
+            let _ = writeln!(
+                text,
+                "| {} | {name} | {} | {} | {} to {} |",
+                task(kind),
+                figure(table::mean(means.iter().copied()), 2),
+                figure(table::standard_deviation(&means), 2),
+                quantile(0.0),
+                quantile(1.0)
+            );
+        }
+    }
+}
+
+fn physics(text: &mut String, reproduction: &Reproduction) {
+    let simulated = || reproduction.first_seeds();
+    let held = simulated().filter(|hold| claims::holds(hold)).count();
+    let _ = write!(
+        text,
+        "\n## In simulation\n\n**{held} of {} holds stand** the tool's whole force, within 1 mm and 2 degrees of slip and 15 mm (cutting) or \
+         5 mm (drilling) of\ndeflection. Worst values of each planner (`physics.csv`); load factors are multiples of the force, their smallest over the\n\
+         holds: by the certificate (the best that any forces can do), predicted for compliant arms, and simulated.\n\n\
+         | task | planner | hold | slip mm | slip deg | deflection mm | torque | certificate | predicted | simulated |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
+        simulated().count()
+    );
+    for kind in KINDS {
+        for planner in PlannerKind::ALL {
+            let of: Vec<_> = simulated().filter(|hold| hold.kind == kind && hold.planner == planner).collect();
+            if !of.is_empty() {
+                text.push_str(&physics_row(kind, planner, &of));
+            }
+        }
+    }
+    predictions(text, reproduction);
+    failures(text, reproduction);
+}
+
+fn physics_row(kind: OperationKind, planner: PlannerKind, holds: &[&Hold]) -> String {
+    let worst = |check| largest(holds.iter().filter_map(|hold| hold.value(check)));
+    let stability = || holds.iter().filter_map(|hold| hold.plan.as_ref()?.stability.as_ref());
+    let smallest = |values: Vec<f64>| largest(values.into_iter().map(|v| -v)).map(|v| -v);
+    format!(
+        "| {} | {planner} | {} of {} | {} | {} | {} | {} | {} | {} | {} |\n",
+        task(kind),
+        holds.iter().filter(|hold| claims::holds(hold)).count(),
+        holds.len(),
+        figure(worst(CheckKind::Slip), 3),
+        figure(worst(CheckKind::SlipRotation), 2),
+        figure(worst(CheckKind::Deflection), 2),
+        figure(worst(CheckKind::TorqueRatio), 2),
+        figure(smallest(stability().map(|s| s.load_factor).collect()), 2),
+        figure(smallest(stability().map(|s| s.compliant_load_factor).collect()), 2),
+        figure(smallest(holds.iter().filter_map(|hold| hold.load_factor_simulated).collect()), 2)
+    )
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
+    values.reduce(f64::max)
+}
+
+/// How good the predictions were: the simulated over the predicted.
+fn predictions(text: &mut String, reproduction: &Reproduction) {
+    let stability = |hold: &Hold| Some(hold.plan.as_ref()?.stability.as_ref()?.clone());
+    let ratios: [(&str, Vec<f64>); 3] = [
+        (
+            "deflection, simulated over predicted",
+            collect(reproduction, |h| Some(h.value(CheckKind::Deflection)? / stability(h)?.predicted_deflection_mm)),
+        ),
+        (
+            "load factor, simulated over predicted for compliant arms",
+            collect(reproduction, |h| Some(h.load_factor_simulated? / stability(h)?.compliant_load_factor)),
+        ),
+        (
+            "load factor, simulated over certificate",
+            collect(reproduction, |h| Some(h.load_factor_simulated? / stability(h)?.load_factor)),
+        ),
+    ];
+    text.push_str("\n| over all holds | n | least | median | most |\n|---|---|---|---|---|\n");
+    for (name, values) in ratios {
+        let quantile = |share| figure(table::quantile(values.clone(), share), 3);
+        let _ =
+            writeln!(text, "| {name} | {} | {} | {} | {} |", values.len(), quantile(0.0), quantile(0.5), quantile(1.0));
+    }
+    let mut ended = std::collections::BTreeMap::<&str, usize>::new();
+    for kind in reproduction.first_seeds().filter_map(|hold| hold.ended_by) {
+        *ended.entry(kind.name()).or_default() += 1;
+    }
+    if !ended.is_empty() {
+        let list: Vec<_> = ended.iter().map(|(name, count)| format!("{name} {count}")).collect();
+        let _ = writeln!(text, "\nWhat ends the holds when the force is raised: {}.", list.join(", "));
+    }
+}
+
+fn collect(reproduction: &Reproduction, ratio: impl Fn(&Hold) -> Option<f64>) -> Vec<f64> {
+    reproduction.first_seeds().filter_map(ratio).filter(|ratio| ratio.is_finite()).collect()
+}
+
+/// Every hold that did not stand, and why.
+fn failures(text: &mut String, reproduction: &Reproduction) {
+    let failed: Vec<_> = reproduction.first_seeds().filter(|hold| !claims::holds(hold)).collect();
+    if failed.is_empty() {
+        text.push_str("\nNo hold failed.\n");
+        return;
+    }
+    text.push_str("\nHolds that failed:\n\n| operation | planner | verdict | why |\n|---|---|---|---|\n");
+    for hold in failed {
+        let verdict = hold.verdict.as_ref();
+        let kind = verdict.map_or(VerdictKind::Infeasible, |verdict| verdict.verdict);
+        let why = verdict.map(explanation).or_else(|| hold.infeasible.clone()).unwrap_or_default();
+        let _ = writeln!(text, "| {} | {} | {kind} | {why} |", hold.operation, hold.planner);
+    }
+}
+
+/// The name of a picture's file.
+pub fn picture_name(hold: &Hold) -> String {
+    format!("{}-{}.svg", hold.operation, hold.planner)
+}
+
+/// The text above a picture.
+pub fn picture_title(hold: &Hold) -> String {
+    let comfort = hold.comfort();
+    format!(
+        "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
+        hold.operation,
+        hold.planner,
+        figure(comfort.map(|comfort| comfort.muscular_regularised), 1),
+        figure(hold.peripersonal_scaled(), 1)
+    )
+}
+
+fn pictures(text: &mut String, reproduction: &Reproduction) {
+    text.push_str(
+        "\n## Configurations\n\nWhat each planner found for one operation of a kind. Red arrow: the tool's force on the board.\n",
+    );
+    for operation in KINDS.into_iter().filter_map(|kind| reproduction.drawn(kind)) {
+        for planner in PlannerKind::ALL {
+            if let Some(hold) = reproduction.hold(operation, planner).filter(|hold| hold.plan.is_some()) {
+                let _ = writeln!(text, "\n![{}](pictures/{})", picture_title(hold), picture_name(hold));
+            }
+        }
+    }
+}
+
+fn sensitivity(text: &mut String, reproduction: &Reproduction) {
+    let Some(Variant { holds, .. }) = reproduction.sensitivity.first() else { return };
+    let mut operations: Vec<_> = holds.iter().map(|hold| hold.operation.as_str()).collect();
+    operations.dedup();
+    let _ = write!(
+        text,
+        "\n## Sensitivity\n\nTable I on {} alone, with {} seeds of the random planner, under assumptions that the paper does\nnot state \
+         (`sensitivity.csv`). Each line departs from the first in one thing. Muscular, peripersonal.\n\n\
+         | assumption | task | comfort | peripersonal | muscular | random, raw |\n|---|---|---|---|---|---|\n",
+        operations.join(", "),
+        reproduction.sensitivity_seeds
+    );
+    for variant in &reproduction.sensitivity {
+        let rows = table::rows(variant.holds.iter());
+        for kind in KINDS {
+            let of_kind: Vec<_> = rows.iter().filter(|row| row.kind == kind).collect();
+            if of_kind.is_empty() {
+                continue;
+            }
+            let _ = write!(text, "| {} | {} |", variant.name, task(kind));
+            for row in of_kind {
+                let pair = match row.planner {
+                    PlannerKind::Random => [figure(row.muscular, 1), figure(row.peripersonal_scaled, 1)],
+                    _ => [figure(row.muscular_normalised, 2), figure(row.peripersonal_normalised, 2)],
+                };
+                let _ = write!(text, " {}, {} |", pair[0], pair[1]);
+            }
+            text.push('\n');
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! The report on a reproduction of the paper's evaluation: tables, Markdown and pictures from holds that were planned and
+//! simulated.
+//!
+//! Pure functions, as all of the report. Times are in [`timing`] alone, which is not part of what two runs share. Nothing
+//! here may plan, simulate, or leave out a hold because of what became of it.
+
+pub mod claims;
+mod hull;
+pub mod markdown;
+pub mod picture;
+pub mod printed;
+pub mod table;
+pub mod tables;
+pub mod timing;
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::{
+    operation::OperationKind,
+    plan::{Comfort, Plan},
+    scenario::PlannerKind,
+    verdict::{CheckKind, Verdict, VerdictKind},
+};
+
+/// The seed whose hold is simulated and drawn, and the only one of planners whose average over seeds is not asked for.
+pub const FIRST_SEED: u64 = 1;
+
+/// One hold: an operation, planned by one planner with one seed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hold {
+    /// The operation's name.
+    pub operation: String,
+    /// Cut or drill.
+    pub kind: OperationKind,
+    /// The planner.
+    pub planner: PlannerKind,
+    /// Its seed.
+    pub seed: u64,
+    /// The plan; none when the planner found none.
+    pub plan: Option<Plan>,
+    /// Why there is no plan.
+    pub infeasible: Option<String>,
+    /// What became of it in simulation; none when it was not simulated.
+    pub verdict: Option<Verdict>,
+    /// The largest multiple of the load that holds in simulation; none when it was not looked for.
+    pub load_factor_simulated: Option<f64>,
+    /// The verdict on a little more.
+    pub ended_by: Option<VerdictKind>,
+    /// Time of the plan, ms.
+    pub plan_ms: f64,
+    /// Time of the simulation under the load, ms.
+    pub simulate_ms: Option<f64>,
+}
+
+impl Hold {
+    /// The comfort of the plan.
+    pub fn comfort(&self) -> Option<&Comfort> {
+        self.plan.as_ref()?.comfort.as_ref()
+    }
+
+    /// The peripersonal comfort as a sum over the points of the body, on the scale of the paper's captions.
+    pub fn peripersonal_scaled(&self) -> Option<f64> {
+        self.comfort()?.peripersonal_scaled
+    }
+
+    /// The worst value of a check in simulation.
+    pub fn value(&self, check: CheckKind) -> Option<f64> {
+        self.verdict.as_ref()?.check(check).map(|check| check.value)
+    }
+}
+
+/// Holds planned under an assumption that differs from the default in one thing.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// What differs, in words.
+    pub name: String,
+    /// The holds.
+    pub holds: Vec<Hold>,
+}
+
+/// All that the report is made from.
+#[derive(Clone, Debug)]
+pub struct Reproduction {
+    /// Every hold, operation by operation in the order of tables, in each planner by planner, seed by seed.
+    pub holds: Vec<Hold>,
+    /// How many seeds the random planner had.
+    pub random_seeds: u64,
+    /// The sensitivity analysis: first the default, then what differs from it; empty when it was left out.
+    pub sensitivity: Vec<Variant>,
+    /// The seeds of the random planner in the sensitivity analysis.
+    pub sensitivity_seeds: u64,
+    /// What this run left out, in words; none of a whole run.
+    pub left_out: Option<String>,
+}
+
+impl Reproduction {
+    /// The holds that are simulated and drawn: one an operation and planner.
+    pub fn first_seeds(&self) -> impl Iterator<Item = &Hold> {
+        self.holds.iter().filter(|hold| hold.seed == FIRST_SEED)
+    }
+
+    /// The hold of an operation by a planner.
+    pub fn hold(&self, operation: &str, planner: PlannerKind) -> Option<&Hold> {
+        self.first_seeds().find(|hold| hold.operation == operation && hold.planner == planner)
+    }
+
+    /// The operation that is drawn: in the middle of the evaluation's, so that it is no border case.
+    pub fn drawn(&self, kind: OperationKind) -> Option<&str> {
+        let preferred = if kind == OperationKind::Cut { "cut-05" } else { "drill-5" };
+        let mut of_kind = self.first_seeds().filter(|hold| hold.kind == kind);
+        let first = of_kind.next()?;
+        Some(of_kind.find(|hold| hold.operation == preferred).unwrap_or(first).operation.as_str())
+    }
+}
+
+/// The kinds of operation of the evaluation, in the order of the paper's table.
+pub const KINDS: [OperationKind; 2] = [OperationKind::Cut, OperationKind::Drill];
+
+/// The paper's word for the operations of a kind.
+pub fn task(kind: OperationKind) -> &'static str {
+    match kind {
+        OperationKind::Cut => "cutting",
+        OperationKind::Drill => "drilling",
+        OperationKind::Wrench => "wrenching",
+    }
+}
+
+#[cfg(test)]
+mod testing {
+    use super::*;
+
+    /// A hold with these comforts; its plan is otherwise one that the scenarios use.
+    pub fn hold(operation: &str, planner: PlannerKind, seed: u64, muscular: f64, peripersonal_m: f64) -> Hold {
+        let mut plan: Plan = serde_json::from_str(include_str!("../../../scenarios/plans/cut-rim.json")).unwrap();
+        plan.comfort = Some(Comfort {
+            muscular: 2.0 * muscular,
+            muscular_regularised: muscular,
+            peripersonal_m,
+            peripersonal_scaled: Some(64.0 * peripersonal_m),
+            objective: muscular + 64.0 * peripersonal_m,
+            activations: [0.0; 7],
+            average: None,
+            rula: None,
+        });
+        Hold {
+            operation: operation.to_owned(),
+            kind: if operation.starts_with("cut") { OperationKind::Cut } else { OperationKind::Drill },
+            planner,
+            seed,
+            plan: Some(plan),
+            infeasible: None,
+            verdict: None,
+            load_factor_simulated: None,
+            ended_by: None,
+            plan_ms: 1.0,
+            simulate_ms: None,
+        }
+    }
+}

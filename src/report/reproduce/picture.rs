@@ -1,0 +1,233 @@
+//! A planned hold as a picture: robot, board and person from the right side and from above, as primitives.
+//!
+//! Both are parallel projections. What is farther from the eye is drawn first, by the middle of each primitive: overlapping
+//! primitives of a link may be drawn in the wrong order, and that is all that a painter's algorithm costs here.
+
+use std::fmt::Write as _;
+
+use nalgebra::{Point3, Vector3};
+
+use super::hull::{Point2, convex_hull};
+use crate::{
+    human::{BodyPart, Capsule, Human, HumanError, default_tool},
+    model::plan::Plan,
+    robot::{Robot, Shape},
+};
+
+/// Size of the picture on the page, px/m.
+const PX_PER_M: f64 = 190.0;
+
+/// Free space about each view, px.
+const MARGIN_PX: f64 = 24.0;
+
+/// Height of the line of text above the views, px.
+const TITLE_PX: f64 = 56.0;
+
+/// Length of the arrow of the tool's force, m/N: a drill's 15 N are 0.15 m.
+const ARROW_M_PER_N: f64 = 0.01;
+
+/// How the board is painted.
+const BOARD: &str = "fill=\"#e3c58f\" fill-opacity=\"0.85\" stroke=\"#8a6a2f\"";
+
+/// Colour of the force.
+const FORCE: &str = "#c8102e";
+
+/// Colours of edge and inside of the person and of the tool.
+const PERSON_STROKE: [&str; 2] = ["#2f5f8a", "#7fb2dc"];
+const TOOL_STROKE: [&str; 2] = ["#333333", "#777777"];
+
+/// From where the scene is looked at.
+struct View {
+    name: &'static str,
+    /// To the right, upward, and towards the eye, in W.
+    axes_w: [Vector3<f64>; 3],
+}
+
+fn views() -> [View; 2] {
+    let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+    [View { name: "from the robot's right", axes_w: [x, z, -y] }, View { name: "from above", axes_w: [x, y, z] }]
+}
+
+/// A convex primitive of the scene, in W.
+enum Item {
+    /// The hull of these points, with SVG attributes.
+    Hull(Vec<Point3<f64>>, String),
+    /// A capsule, with the colours of its edge and its inside.
+    Capsule([Point3<f64>; 2], f64, [&'static str; 2]),
+}
+
+impl Item {
+    fn middle(&self) -> Vector3<f64> {
+        let points: &[Point3<f64>] = match self {
+            Self::Hull(points, _) => points,
+            Self::Capsule(ends, ..) => ends,
+        };
+        points.iter().map(|point| point.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64
+    }
+}
+
+/// The picture of a plan, with a line of text above it.
+///
+/// # Errors
+/// When the plan's person is none.
+pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError> {
+    let items = scene(plan, robot)?;
+    let views = views();
+    let bounds = views.each_ref().map(|view| bounds(view, &items));
+    let width_px = |b: &[Point2; 2]| (b[1][0] - b[0][0]) * PX_PER_M + 2.0 * MARGIN_PX;
+    let height_px = |b: &[Point2; 2]| (b[1][1] - b[0][1]) * PX_PER_M + 2.0 * MARGIN_PX;
+    let (width, height) = (bounds.iter().map(width_px).sum::<f64>(), bounds.iter().map(height_px).fold(0.0, f64::max));
+    let mut body = String::new();
+    let mut left_px = 0.0;
+    for (view, bounds) in views.iter().zip(&bounds) {
+        // Both views stand on the lower edge of the picture.
+        let origin =
+            [left_px + MARGIN_PX - bounds[0][0] * PX_PER_M, TITLE_PX + height - MARGIN_PX + bounds[0][1] * PX_PER_M];
+        draw(&mut body, view, origin, &items, plan);
+        let _ = writeln!(body, "<text x=\"{:.0}\" y=\"46\" fill=\"#666666\">{}</text>", left_px + MARGIN_PX, view.name);
+        left_px += width_px(bounds);
+    }
+    let height = height + TITLE_PX;
+    Ok(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
+         height=\"{height:.0}\" font-family=\"sans-serif\" font-size=\"13\" stroke-linejoin=\"round\">\n\
+         <rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n\
+         <text x=\"{MARGIN_PX}\" y=\"24\" font-size=\"15\" fill=\"#222222\">{title}</text>\n{body}</svg>\n"
+    ))
+}
+
+/// Everything that is drawn.
+fn scene(plan: &Plan, robot: &Robot) -> Result<Vec<Item>, HumanError> {
+    let mut items = Vec::new();
+    let x_wl = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
+    for (link, x_wl) in robot.links.iter().zip(&x_wl) {
+        for placed in &link.shapes {
+            let points_w = corners(placed.shape).into_iter().map(|p| x_wl * placed.x_ls * p).collect();
+            items.push(Item::Hull(points_w, robot_paint(placed.rgba)));
+        }
+    }
+    let half_m = plan.object.size_m.map(|side| side / 2.0);
+    let board_w = corners(Shape::Box { half_m }).into_iter().map(|p| plan.object.x_wo * p).collect();
+    items.push(Item::Hull(board_w, BOARD.to_owned()));
+    if let Some(posture) = &plan.human {
+        let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.operation.kind), |scenario| scenario.tool);
+        let human = Human::new(&posture.person(), &tool)?;
+        for Capsule { name, p0_w, p1_w, radius_m } in human.capsules_w(&posture.x_wb, &posture.q_rad) {
+            let stroke = if name == BodyPart::Tool { TOOL_STROKE } else { PERSON_STROKE };
+            items.push(Item::Capsule([p0_w, p1_w], radius_m, stroke));
+        }
+    }
+    Ok(items)
+}
+
+/// The robot's own colours, lighter, so that edges can be seen.
+fn robot_paint(rgba: [f64; 4]) -> String {
+    let [r, g, b] = [0, 1, 2].map(|channel| (255.0 * (0.45 + 0.55 * rgba[channel].clamp(0.0, 1.0))) as u8);
+    format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#444444\"")
+}
+
+/// Points whose hull is the shape; of round ones so many that no corner is seen.
+fn corners(shape: Shape) -> Vec<Point3<f64>> {
+    const ROUND: u32 = 20;
+    let circle = |k: u32| libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(ROUND));
+    match shape {
+        Shape::Box { half_m: [x, y, z] } => {
+            let signs = [-1.0, 1.0];
+            signs
+                .iter()
+                .flat_map(|i| signs.iter().flat_map(move |j| signs.map(|k| Point3::new(i * x, j * y, k * z))))
+                .collect()
+        }
+        Shape::Cylinder { radius_m, half_length_m } => (0..ROUND)
+            .flat_map(|k| {
+                let (sin, cos) = circle(k);
+                [-half_length_m, half_length_m].map(|z| Point3::new(radius_m * cos, radius_m * sin, z))
+            })
+            .collect(),
+        // Circles about three axes: seen along any axis of W one of them is the outline, as links may lie anyhow it is one
+        // within 2 %.
+        Shape::Sphere { radius_m } => (0..3)
+            .flat_map(|axis| (0..ROUND).map(move |k| (axis, k)))
+            .map(|(axis, k)| {
+                let (sin, cos) = circle(k);
+                let mut point = Point3::origin();
+                point[axis] = radius_m * cos;
+                point[(axis + 1) % 3] = radius_m * sin;
+                point
+            })
+            .collect(),
+    }
+}
+
+impl View {
+    /// The picture of a point, m: to the right and upward.
+    fn project(&self, p_w: &Point3<f64>) -> Point2 {
+        [self.axes_w[0].dot(&p_w.coords), self.axes_w[1].dot(&p_w.coords)]
+    }
+}
+
+/// Lower left and upper right corner of all that is seen, m.
+fn bounds(view: &View, items: &[Item]) -> [Point2; 2] {
+    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for item in items {
+        let (points, reach_m) = match item {
+            Item::Hull(points, _) => (points.as_slice(), 0.0),
+            Item::Capsule(ends, radius_m, _) => (ends.as_slice(), *radius_m),
+        };
+        for point in points.iter().map(|point| view.project(point)) {
+            for axis in 0..2 {
+                bounds[0][axis] = bounds[0][axis].min(point[axis] - reach_m);
+                bounds[1][axis] = bounds[1][axis].max(point[axis] + reach_m);
+            }
+        }
+    }
+    bounds
+}
+
+/// Draws one view; `origin` is the place of W's origin, px.
+fn draw(body: &mut String, view: &View, origin: Point2, items: &[Item], plan: &Plan) {
+    let px = |p_w: &Point3<f64>| {
+        let [right, up] = view.project(p_w);
+        [origin[0] + right * PX_PER_M, origin[1] - up * PX_PER_M]
+    };
+    let mut order: Vec<(f64, &Item)> = items.iter().map(|item| (view.axes_w[2].dot(&item.middle()), item)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (_, item) in order {
+        match item {
+            Item::Hull(points, paint) => {
+                let corners = convex_hull(points.iter().map(px).collect());
+                let corners: Vec<_> = corners.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+                let _ = writeln!(body, "<polygon points=\"{}\" {paint} stroke-width=\"0.7\"/>", corners.join(" "));
+            }
+            Item::Capsule(ends, radius_m, strokes) => {
+                let ([x1, y1], [x2, y2]) = (px(&ends[0]), px(&ends[1]));
+                let width_px = 2.0 * radius_m * PX_PER_M;
+                for (stroke, width_px) in strokes.iter().zip([width_px, width_px - 1.6]) {
+                    let _ = writeln!(
+                        body,
+                        "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" stroke=\"{stroke}\" stroke-width=\"{width_px:.1}\" \
+                         stroke-linecap=\"round\"/>"
+                    );
+                }
+            }
+        }
+    }
+    arrow(body, plan, px);
+}
+
+/// The tool's force, ending at the tip, over everything else.
+fn arrow(body: &mut String, plan: &Plan, px: impl Fn(&Point3<f64>) -> Point2) {
+    let tip_w = plan.object.x_wo * Point3::from(plan.operation.x_ot.translation.vector);
+    let force_m = plan.object.x_wo.rotation * plan.operation.wrench_o.force_n * ARROW_M_PER_N;
+    let ([x1, y1], [x2, y2]) = (px(&(tip_w - force_m)), px(&tip_w));
+    let _ = writeln!(body, "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" stroke=\"{FORCE}\" stroke-width=\"2.5\"/>");
+    let length_px = libm::hypot(x2 - x1, y2 - y1);
+    // Seen from behind the arrow is a dot.
+    if length_px > 6.0 {
+        let (ux, uy) = ((x2 - x1) / length_px, (y2 - y1) / length_px);
+        let wing = |side: f64| format!("{:.1},{:.1}", x2 - 9.0 * ux + 4.0 * side * uy, y2 - 9.0 * uy - 4.0 * side * ux);
+        let _ = writeln!(body, "<polygon points=\"{x2:.1},{y2:.1} {} {}\" fill=\"{FORCE}\"/>", wing(1.0), wing(-1.0));
+    } else {
+        let _ = writeln!(body, "<circle cx=\"{x2:.1}\" cy=\"{y2:.1}\" r=\"4\" fill=\"{FORCE}\"/>");
+    }
+}

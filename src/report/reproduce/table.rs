@@ -1,0 +1,128 @@
+//! The paper's Table I of any set of holds, and the figures of statistics that it and its neighbours need.
+
+use super::{Hold, KINDS};
+use crate::model::{operation::OperationKind, scenario::PlannerKind};
+
+/// One planner on one kind of operation. A figure is none where no hold has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Cut or drill.
+    pub kind: OperationKind,
+    /// The planner.
+    pub planner: PlannerKind,
+    /// How many plans the averages are over.
+    pub plans: usize,
+    /// Mean of the regularised muscular comfort.
+    pub muscular: Option<f64>,
+    /// Median of the muscular comfort as printed in the paper: it has no bound, so a mean of it says nothing.
+    pub muscular_printed_median: Option<f64>,
+    /// Mean of the peripersonal comfort, as a sum over the body's points.
+    pub peripersonal_scaled: Option<f64>,
+    /// `muscular` over that of the random planner.
+    pub muscular_normalised: Option<f64>,
+    /// `peripersonal_scaled` over that of the random planner.
+    pub peripersonal_normalised: Option<f64>,
+}
+
+/// The table of a set of holds: kind by kind, planner by planner; kinds without holds are left out. As in the paper the
+/// averages are normalised, not the single figures.
+pub fn rows<'a>(holds: impl Iterator<Item = &'a Hold> + Clone) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for kind in KINDS {
+        let of_kind = holds.clone().filter(move |hold| hold.kind == kind);
+        if of_kind.clone().next().is_none() {
+            continue;
+        }
+        let mut of_planners =
+            PlannerKind::ALL.map(|planner| row(kind, planner, of_kind.clone().filter(|h| h.planner == planner)));
+        if let Some(random) = of_planners.iter().find(|row| row.planner == PlannerKind::Random).cloned() {
+            for row in &mut of_planners {
+                row.muscular_normalised = ratio(row.muscular, random.muscular);
+                row.peripersonal_normalised = ratio(row.peripersonal_scaled, random.peripersonal_scaled);
+            }
+        }
+        rows.extend(of_planners);
+    }
+    rows
+}
+
+fn row<'a>(kind: OperationKind, planner: PlannerKind, holds: impl Iterator<Item = &'a Hold> + Clone) -> Row {
+    let comforts = || holds.clone().filter_map(Hold::comfort);
+    Row {
+        kind,
+        planner,
+        plans: comforts().count(),
+        muscular: mean(comforts().map(|comfort| comfort.muscular_regularised)),
+        muscular_printed_median: quantile(comforts().map(|comfort| comfort.muscular).collect(), 0.5),
+        peripersonal_scaled: mean(holds.clone().filter_map(Hold::peripersonal_scaled)),
+        muscular_normalised: None,
+        peripersonal_normalised: None,
+    }
+}
+
+fn ratio(value: Option<f64>, by: Option<f64>) -> Option<f64> {
+    Some(value? / by?)
+}
+
+/// The mean; none of nothing.
+pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (count, sum) = values.fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+/// The standard deviation of a sample, `sqrt(sum (x - mean)^2 / (n - 1))`; none of fewer than two.
+pub fn standard_deviation(values: &[f64]) -> Option<f64> {
+    let mean = mean(values.iter().copied())?;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
+}
+
+/// The quantile at `share` from 0 to 1, between neighbours by linear interpolation; none of nothing.
+pub fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().checked_sub(1)?;
+    let place = share * last as f64;
+    let below = (place as usize).min(last);
+    let above = (below + 1).min(last);
+    Some(values[below] + (values[above] - values[below]) * (place - below as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::reproduce::testing::hold;
+
+    #[test]
+    fn averages_are_normalised_by_the_random_planners() {
+        use PlannerKind::{Comfort, Random};
+        let holds = [
+            hold("cut-01", Comfort, 1, 40.0, 0.5),
+            hold("cut-02", Comfort, 1, 20.0, 0.7),
+            hold("cut-01", Random, 1, 5.0, 0.2),
+            hold("cut-01", Random, 2, 1.0, 0.4),
+        ];
+        let rows = rows(holds.iter());
+        assert_eq!(rows.len(), 4, "the paper's four planners, and no row of drills");
+        let [comfort, random] = [Comfort, Random].map(|kind| rows.iter().find(|r| r.planner == kind).unwrap());
+        // Exact in binary but for 0.7: means 30 and 3, 0.6 and 0.3 times 64 points.
+        assert_eq!((comfort.muscular, comfort.muscular_normalised), (Some(30.0), Some(10.0)));
+        assert!((comfort.peripersonal_normalised.unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!((random.plans, random.muscular_normalised), (2, Some(1.0)));
+        let muscular = rows.iter().find(|row| row.planner == PlannerKind::Muscular).unwrap();
+        assert_eq!((muscular.plans, muscular.muscular, muscular.muscular_normalised), (0, None, None));
+    }
+
+    #[test]
+    fn quantiles_are_between_neighbours() {
+        let values = || vec![4.0, 1.0, 2.0, 3.0];
+        assert_eq!(quantile(values(), 0.5), Some(2.5));
+        assert_eq!((quantile(values(), 0.0), quantile(values(), 1.0)), (Some(1.0), Some(4.0)));
+        assert_eq!((quantile(vec![7.0], 0.9), quantile(Vec::new(), 0.5)), (Some(7.0), None));
+    }
+
+    #[test]
+    fn the_deviation_is_that_of_a_sample() {
+        assert_eq!(standard_deviation(&[1.0, 3.0]), Some(2.0_f64.sqrt()));
+        assert_eq!(standard_deviation(&[1.0]), None);
+    }
+}

@@ -1,0 +1,130 @@
+//! The CSV files: a row a fact, empty where there is none. Text is the same for equal runs.
+
+use super::{FIRST_SEED, Hold, Reproduction, table, task};
+use crate::model::{scenario::PlannerKind, verdict::CheckKind};
+
+/// Six digits behind the point: what two machines must agree on to have made the same table.
+pub(super) fn cell(value: Option<f64>) -> String {
+    value.map(|value| format!("{value:.6}")).unwrap_or_default()
+}
+
+/// Joins cells to lines. Names, planners and verdicts have no commas or quotes, so nothing is escaped.
+fn lines(header: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut text = format!("{header}\n");
+    for row in rows {
+        text.push_str(&row.join(","));
+        text.push('\n');
+    }
+    text
+}
+
+/// `table1.csv`: the paper's table. The random planner's figures are over all of its seeds.
+pub fn table1(reproduction: &Reproduction) -> String {
+    let rows = table::rows(reproduction.holds.iter()).into_iter().map(|row| {
+        vec![
+            task(row.kind).to_owned(),
+            row.planner.to_string(),
+            cell(row.muscular),
+            cell(row.muscular_printed_median),
+            cell(row.peripersonal_scaled),
+            cell(row.muscular_normalised),
+            cell(row.peripersonal_normalised),
+        ]
+    });
+    lines(
+        "task,planner,muscular,muscular_printed_median,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+        rows,
+    )
+}
+
+/// `plans.csv`: each hold that is simulated. `muscular` is the regularised comfort.
+pub fn plans(reproduction: &Reproduction) -> String {
+    let rows = reproduction.first_seeds().map(|hold| {
+        let (comfort, stability) = (hold.comfort(), hold.plan.as_ref().and_then(|plan| plan.stability.as_ref()));
+        vec![
+            hold.operation.clone(),
+            hold.planner.to_string(),
+            cell(comfort.map(|comfort| comfort.muscular_regularised)),
+            cell(comfort.map(|comfort| comfort.peripersonal_m)),
+            cell(comfort.map(|comfort| comfort.objective)),
+            cell(stability.map(|stability| stability.load_factor)),
+            cell(stability.map(|stability| stability.compliant_load_factor)),
+        ]
+    });
+    lines("operation,planner,muscular,peripersonal_m,objective,load_factor,compliant_load_factor", rows)
+}
+
+/// `physics.csv`: what became of each hold in simulation. `load_factor_simulated` is the largest multiple of the load that
+/// holds; empty where it was not looked for.
+pub fn physics(reproduction: &Reproduction) -> String {
+    let rows = reproduction.first_seeds().map(|hold| {
+        let predicted_mm = hold.plan.as_ref().and_then(|plan| Some(plan.stability.as_ref()?.predicted_deflection_mm));
+        vec![
+            hold.operation.clone(),
+            hold.planner.to_string(),
+            hold.verdict.as_ref().map(|verdict| verdict.verdict.to_string()).unwrap_or_default(),
+            cell(hold.value(CheckKind::Slip)),
+            cell(hold.value(CheckKind::SlipRotation)),
+            cell(hold.value(CheckKind::Deflection)),
+            cell(predicted_mm),
+            cell(hold.value(CheckKind::TorqueRatio)),
+            cell(hold.load_factor_simulated),
+        ]
+    });
+    lines(
+        "operation,planner,verdict,slip_mm,slip_deg,deflection_mm,predicted_deflection_mm,torque_ratio,\
+         load_factor_simulated",
+        rows,
+    )
+}
+
+/// `random.csv`: every draw of the random planner.
+pub fn random(reproduction: &Reproduction) -> String {
+    let draws = reproduction.holds.iter().filter(|hold| hold.planner == PlannerKind::Random).map(|hold| {
+        let comfort = hold.comfort();
+        vec![
+            hold.operation.clone(),
+            hold.seed.to_string(),
+            cell(comfort.map(|comfort| comfort.muscular_regularised)),
+            cell(comfort.map(|comfort| comfort.muscular)),
+            cell(hold.peripersonal_scaled()),
+        ]
+    });
+    lines("operation,seed,muscular,muscular_printed,peripersonal_scaled", draws)
+}
+
+/// `sensitivity.csv`: the paper's table under each assumption.
+pub fn sensitivity(reproduction: &Reproduction) -> String {
+    let rows = reproduction.sensitivity.iter().flat_map(|variant| {
+        table::rows(variant.holds.iter()).into_iter().map(|row| {
+            vec![
+                variant.name.clone(),
+                task(row.kind).to_owned(),
+                row.planner.to_string(),
+                row.plans.to_string(),
+                cell(row.muscular),
+                cell(row.peripersonal_scaled),
+                cell(row.muscular_normalised),
+                cell(row.peripersonal_normalised),
+            ]
+        })
+    });
+    lines(
+        "assumption,task,planner,plans,muscular,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+        rows,
+    )
+}
+
+/// `timing.csv`: how long planning and simulating took. Not the same in two runs.
+pub fn timing(reproduction: &Reproduction) -> String {
+    let of = |hold: &Hold| {
+        vec![
+            hold.operation.clone(),
+            hold.planner.to_string(),
+            format!("{:.3}", hold.plan_ms),
+            hold.simulate_ms.map(|ms| format!("{ms:.3}")).unwrap_or_default(),
+        ]
+    };
+    let rows = reproduction.holds.iter().filter(|hold| hold.seed == FIRST_SEED).map(of);
+    lines("operation,planner,plan_ms,simulate_ms", rows)
+}

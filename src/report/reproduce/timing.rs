@@ -1,0 +1,39 @@
+//! How long planning took, beside the paper. The one part of the report that two runs do not share: it is printed, never
+//! committed by a run.
+
+use std::fmt::Write as _;
+
+use super::{Reproduction, printed, table};
+use crate::model::scenario::PlannerKind;
+
+/// Mean, standard deviation and percentiles of the planning times, planner by planner, and of the simulations.
+pub fn summary(reproduction: &Reproduction) -> String {
+    let mut text = String::from("time, ms      n    mean      sd     p50     p90     max\n");
+    for planner in PlannerKind::ALL {
+        let of_planner = reproduction.holds.iter().filter(|hold| hold.planner == planner);
+        line(&mut text, &planner.to_string(), of_planner.map(|hold| hold.plan_ms).collect());
+    }
+    let simulated = reproduction.holds.iter().filter_map(|hold| hold.simulate_ms);
+    line(&mut text, "simulation", simulated.collect());
+    let paper = printed::plan_time();
+    // Writing to a string does not fail.
+    let _ =
+        writeln!(text, "the paper     a plan in {} s, standard deviation {} s", paper.mean, paper.standard_deviation);
+    text
+}
+
+fn line(text: &mut String, name: &str, times_ms: Vec<f64>) {
+    if times_ms.is_empty() {
+        return;
+    }
+    let quantile = |share| table::quantile(times_ms.clone(), share);
+    let figures = [
+        table::mean(times_ms.iter().copied()),
+        table::standard_deviation(&times_ms),
+        quantile(0.5),
+        quantile(0.9),
+        quantile(1.0),
+    ];
+    let cells = figures.map(|figure| figure.map_or("       -".to_owned(), |ms| format!("{ms:8.1}")));
+    let _ = writeln!(text, "{name:<12} {:>3}{}", times_ms.len(), cells.concat());
+}

@@ -1,0 +1,116 @@
+//! The operations of the paper's evaluation as scenario files: a circle that is cut in sixteen places and a grid of nine
+//! holes (METHOD section 2). The paper gives no sizes; board, pitch and radius are those of its reproduction, and everything
+//! that a text leaves out is the format's default.
+//!
+//! They are texts like anybody's, so that they pass the same checks and can be run by themselves.
+
+use std::{f64::consts::TAU, path::Path};
+
+use super::{InputError, LoadedScenario, load_text};
+use crate::model::operation::OperationKind;
+
+/// How many places of the circle are cut.
+pub const CUTS: usize = 16;
+
+/// How many holes are drilled: three rows of three.
+pub const DRILLS: usize = 9;
+
+/// Radius of the circle that is cut, m (assumed, METHOD section 2).
+const RADIUS_M: f64 = 0.12;
+
+/// Force of a cut, N.
+const CUT_N: f64 = 30.0;
+
+/// Distance between neighbouring holes, m (assumed, METHOD section 2).
+const PITCH_M: f64 = 0.10;
+
+/// Thrust of a drill, N.
+const DRILL_N: f64 = 15.0;
+
+/// One operation of the evaluation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PaperOperation {
+    /// `cut-01` to `cut-16`, `drill-1` to `drill-9`.
+    pub name: String,
+    /// Cut or drill.
+    pub kind: OperationKind,
+    /// Its scenario file.
+    pub text: String,
+}
+
+impl PaperOperation {
+    /// The scenario, completed with defaults as a file would be.
+    ///
+    /// # Errors
+    /// As [`load_text`]; the operations themselves are sound.
+    pub fn load(&self) -> Result<LoadedScenario, InputError> {
+        load_text(Path::new(&self.name), &self.text)
+    }
+}
+
+/// All 25 operations, in the order of tables: the cuts counter-clockwise as the person sees them, from +x_O; the holes row by
+/// row from (-x_O, -y_O).
+pub fn operations() -> Vec<PaperOperation> {
+    (1..=CUTS).map(cut).chain((1..=DRILLS).map(drill)).collect()
+}
+
+/// Cut `k` at the angle `2 pi (k - 1) / 16`, along the tangent, counter-clockwise.
+fn cut(k: usize) -> PaperOperation {
+    let (sin, cos) = libm::sincos(TAU * (k - 1) as f64 / CUTS as f64);
+    let (x_m, y_m) = (RADIUS_M * cos, RADIUS_M * sin);
+    let name = format!("cut-{k:02}");
+    // `{:?}` writes every digit that tells a number from its neighbours.
+    let text = format!(
+        "format = 1\nname = \"{name}\"\n\n[operation]\nkind = \"cut\"\npoint_m = [{x_m:?}, {y_m:?}]\n\
+         direction_o = [{:?}, {cos:?}, 0.0]\nforce_n = {CUT_N:?}\n",
+        -sin
+    );
+    PaperOperation { name, kind: OperationKind::Cut, text }
+}
+
+fn drill(k: usize) -> PaperOperation {
+    let [x_m, y_m] = [(k - 1) % 3, (k - 1) / 3].map(|step| PITCH_M * (step as f64 - 1.0));
+    let name = format!("drill-{k}");
+    let text = format!(
+        "format = 1\nname = \"{name}\"\n\n[operation]\nkind = \"drill\"\npoint_m = [{x_m:?}, {y_m:?}]\nforce_n = {DRILL_N:?}\n"
+    );
+    PaperOperation { name, kind: OperationKind::Drill, text }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn cuts_run_round_a_circle_and_close_it() {
+        let cuts: Vec<_> = operations().into_iter().filter(|o| o.kind == OperationKind::Cut).collect();
+        assert_eq!(cuts.len(), CUTS);
+        for (index, operation) in cuts.iter().enumerate() {
+            let cut = operation.load().unwrap().scenario.operation;
+            let (p_ot, force_n) = (cut.x_ot.translation.vector, cut.wrench_o.force_n);
+            // On the circle, along its tangent, so that the moment about z_O is positive: counter-clockwise from +z_O. A few
+            // roundings of numbers below 30.
+            assert!((p_ot.xy().norm() - 0.12).abs() < 1e-15 && (force_n.norm() - 30.0).abs() < 1e-13, "{index}");
+            assert!((p_ot.cross(&force_n).z - 0.12 * 30.0).abs() < 1e-13, "{index}");
+            let angle_rad = libm::atan2(p_ot.y, p_ot.x).rem_euclid(TAU);
+            assert!((angle_rad - TAU * index as f64 / 16.0).abs() < 1e-14, "{index}");
+        }
+    }
+
+    #[test]
+    fn holes_stand_in_rows_from_the_lower_left() {
+        let holes: Vec<_> = operations().into_iter().filter(|o| o.kind == OperationKind::Drill).collect();
+        let points: Vec<_> = holes
+            .iter()
+            .map(|hole| {
+                let drill = hole.load().unwrap().scenario.operation;
+                assert_eq!(drill.wrench_o.force_n, Vector3::new(0.0, 0.0, -15.0), "{}", hole.name);
+                (drill.x_ot.translation.vector.xy() * 10.0).map(f64::round)
+            })
+            .collect();
+        let expected: Vec<_> = [-1.0, 0.0, 1.0].into_iter().flat_map(|y| [-1.0, 0.0, 1.0].map(|x| (x, y))).collect();
+        assert_eq!(points.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>(), expected);
+    }
+}
