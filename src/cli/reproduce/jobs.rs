@@ -26,7 +26,7 @@ use crate::{
         plan::Plan,
         scenario::{PlannerKind, Scenario},
     },
-    planner::PlanOutcome,
+    planner::{self, PlanOutcome},
     report::{
         file,
         reproduce::{FIRST_SEED, Hold},
@@ -184,7 +184,7 @@ impl<'a> Workshop<'a> {
     fn make(&self, job: &Job) -> Result<Hold, CliError> {
         let scenario = &job.scenario;
         let start = Instant::now();
-        let outcome = pipeline::timed_plan(scenario, self.robot, &self.maps)?;
+        let outcome = pipeline::timed_plan(scenario, self.robot, &self.maps, &mut planner::nobody)?;
         let mut hold = Hold {
             operation: scenario.name.clone(),
             kind: scenario.operation.kind,

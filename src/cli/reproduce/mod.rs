@@ -59,7 +59,7 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let Some(first) = operations.first() else { return Ok(Exit::Met) };
     let out = args.folder();
     file::check_folder(&out)?;
-    interrupt::listen()?;
+    interrupt::listen("what is done is kept, and the same command goes on from there")?;
     let extent = Extent::of(args);
     let (jobs, variants) = all_jobs(&operations, &extent);
     let workshop = Workshop::new(&first.robot, &out, args.record)?;
