@@ -120,9 +120,7 @@ fn legend(body: &mut String, rows: &[Row], optima: [f64; 2]) {
     let Some(own) = rows.iter().find(|row| row.own) else { return };
     let [muscular, peripersonal] = own.kept(optima).map(|kept| 100.0 * kept);
     circle(body, left + 78.0, top - 17.0, 6.0, OWN, true);
-    let told = format!(
-        "the scenario's weights: {muscular:.0} % muscular, {peripersonal:.0} % peripersonal kept"
-    );
+    let told = format!("the scenario's weights: {muscular:.0} % muscular, {peripersonal:.0} % peripersonal kept");
     label(body, left + 92.0, top - 13.0, "start", &told);
 }
 
