@@ -79,9 +79,22 @@ fn assert_seen(name: &str, folder: &Path, arguments: &[&str]) {
 fn the_help_of_every_command() {
     let folder = folder(&[]);
     assert_seen("help", folder.path(), &["--help"]);
-    for command in
-        ["run", "plan", "simulate", "curve", "schema", "margin", "export", "inspect", "view", "doctor", "completions"]
-    {
+    for command in [
+        "run",
+        "plan",
+        "front",
+        "circle",
+        "simulate",
+        "margin",
+        "export",
+        "curve",
+        "reproduce",
+        "inspect",
+        "view",
+        "doctor",
+        "schema",
+        "completions",
+    ] {
         assert_seen(&format!("help-{command}"), folder.path(), &["help", command]);
     }
 }
