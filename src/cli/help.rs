@@ -83,8 +83,8 @@ Examples:
   benchdog reproduce --quick                    a look at it
   benchdog reproduce --quick --filter cut-05 --record always
 
-Into --out go report.md, table1.csv, plans.csv, physics.csv, random.csv, sensitivity.csv, the
-muscular curve and pictures/, the same for equal runs; timing.csv, which is not; recordings/;
+Into --out go report.md, table1.csv, plans.csv, physics.csv, best_case.csv, random.csv,
+sensitivity.csv, the muscular curve and pictures/, the same for equal runs; timing.csv, which is not; recordings/;
 and work/, from which a run that was stopped goes on. The exit code is 1 when a hold failed in
 simulation, 3 when a planner found none.";
 

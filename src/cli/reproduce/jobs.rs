@@ -24,7 +24,7 @@ use crate::{
     },
     model::{
         plan::Plan,
-        scenario::{PlannerKind, Scenario},
+        scenario::{PlannerKind, Scenario, StabilityKind},
     },
     planner::{self, PlanOutcome},
     report::{
@@ -50,7 +50,7 @@ pub enum Work {
 pub struct Job {
     /// The scenario, with planner and seed.
     pub scenario: Scenario,
-    /// What of the sensitivity analysis it is part of.
+    /// What of the default it departs in; none for the evaluation itself.
     pub variant: Option<&'static str>,
     /// How far it is followed.
     pub work: Work,
@@ -58,7 +58,7 @@ pub struct Job {
 
 /// The jobs of one operation: every planner, and the random one with so many seeds. The hold of the first seed is followed
 /// as far as `first` says, the others are planned.
-pub fn jobs_of(scenario: &Scenario, variant: Option<&'static str>, random_seeds: u64, first: Work) -> Vec<Job> {
+pub fn jobs_of(scenario: &Scenario, random_seeds: u64, first: Work) -> Vec<Job> {
     let mut jobs = Vec::new();
     for kind in PlannerKind::ALL {
         let seeds = if kind == PlannerKind::Random { random_seeds } else { 1 };
@@ -66,17 +66,32 @@ pub fn jobs_of(scenario: &Scenario, variant: Option<&'static str>, random_seeds:
             let mut scenario = scenario.clone();
             scenario.planner.kind = kind;
             scenario.planner.seed = seed;
-            jobs.push(Job { scenario, variant, work: if seed == FIRST_SEED { first } else { Work::Plan } });
+            jobs.push(Job { scenario, variant: None, work: if seed == FIRST_SEED { first } else { Work::Plan } });
         }
     }
     jobs
+}
+
+/// The comfort planner's hold when the planner asks for no more than the paper's stability: that some forces hold the load.
+pub fn best_case(scenario: &Scenario) -> Job {
+    let mut scenario = scenario.clone();
+    scenario.planner.kind = PlannerKind::Comfort;
+    scenario.planner.seed = FIRST_SEED;
+    scenario.planner.stability = StabilityKind::Paper;
+    Job { scenario, variant: Some("the paper's stability"), work: Work::Simulate }
 }
 
 impl Job {
     /// `cut-01 random 7`, for people.
     pub fn name(&self) -> String {
         let planner = &self.scenario.planner;
-        format!("{} {} {}", self.scenario.name, planner.kind, planner.seed)
+        let variant = self.variant.map_or_else(String::new, |name| format!(" ({name})"));
+        format!("{} {} {}{variant}", self.scenario.name, planner.kind, planner.seed)
+    }
+
+    /// The folder of what departs from the default; none of the evaluation itself.
+    fn folder(&self) -> String {
+        self.variant.map_or_else(String::new, |name| name.replace(|c: char| !c.is_ascii_alphanumeric(), "-"))
     }
 
     /// The file name of what is kept or recorded, without its ending.
@@ -142,9 +157,7 @@ impl<'a> Workshop<'a> {
     /// When it cannot be simulated or kept.
     pub fn hold(&self, job: &Job) -> Result<Done, CliError> {
         let fingerprint = self.fingerprint(job);
-        let variant =
-            job.variant.map_or_else(String::new, |name| name.replace(|c: char| !c.is_ascii_alphanumeric(), "-"));
-        let path = self.folder().join(variant).join(format!("{}.json", job.stem()));
+        let path = self.folder().join(job.folder()).join(format!("{}.json", job.stem()));
         if let Some(hold) = read(&path, &fingerprint)
             && !self.lacks_recording(job, &hold)
         {
@@ -164,7 +177,7 @@ impl<'a> Workshop<'a> {
     }
 
     fn recording_path(&self, job: &Job) -> PathBuf {
-        self.out.join("recordings").join(format!("{}.rrd", job.stem()))
+        self.out.join("recordings").join(job.folder()).join(format!("{}.rrd", job.stem()))
     }
 
     fn is_to_be_recorded(&self, met: bool) -> bool {

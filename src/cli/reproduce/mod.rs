@@ -61,10 +61,10 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     file::check_folder(&out)?;
     interrupt::listen("what is done is kept, and the same command goes on from there")?;
     let extent = Extent::of(args);
-    let (jobs, variants) = all_jobs(&operations, &extent);
+    let tasks = Tasks::new(&operations, &extent);
     let workshop = Workshop::new(&first.robot, &out, args.record)?;
     let threads = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
-    let Some(mut holds) = work_off(&workshop, threads, &jobs)? else {
+    let Some(holds) = work_off(&workshop, threads, &tasks.jobs)? else {
         let folder = workshop.folder();
         let folder = folder.display();
         output::complain(&format!(
@@ -72,14 +72,7 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
         ));
         return Ok(Exit::Interrupted);
     };
-    let of_variants = holds.split_off(jobs.len() - variants.iter().map(|(_, jobs)| jobs).sum::<usize>());
-    let reproduction = Reproduction {
-        sensitivity: sensitivity_of(&holds, &extent, &variants, of_variants),
-        holds,
-        random_seeds: extent.random_seeds,
-        sensitivity_seeds: extent.sensitivity_seeds.unwrap_or(0),
-        left_out: left_out(args, operations.len()),
-    };
+    let reproduction = tasks.reproduction(holds, &extent, left_out(args, operations.len()));
     write_results(&reproduction, &operations, &first.robot, &out)?;
     output::print(&for_people(&reproduction, &out))?;
     Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
@@ -107,26 +100,60 @@ fn operations(filters: &[String]) -> Result<Vec<LoadedScenario>, CliError> {
     Ok(operations)
 }
 
-/// All that is to be done: first the evaluation, operation by operation, then the sensitivity analysis with the name of each
-/// variant and how many jobs it has.
-fn all_jobs(operations: &[LoadedScenario], extent: &Extent) -> (Vec<Job>, Vec<(&'static str, usize)>) {
-    let mut jobs = Vec::new();
-    for operation in operations {
-        jobs.extend(jobs::jobs_of(&operation.scenario, None, extent.random_seeds, extent.first));
-    }
-    let mut variants = Vec::new();
-    if let Some(seeds) = extent.sensitivity_seeds {
-        for variant in sensitivity::VARIANTS {
+/// All that is to be done, in this order: the evaluation, operation by operation; the comfort planner's holds again, with the
+/// paper's stability alone; the sensitivity analysis.
+struct Tasks {
+    jobs: Vec<Job>,
+    evaluation: usize,
+    best_case: usize,
+    /// The name of each variant and how many jobs it has.
+    variants: Vec<(&'static str, usize)>,
+}
+
+impl Tasks {
+    fn new(operations: &[LoadedScenario], extent: &Extent) -> Self {
+        let scenarios = || operations.iter().map(|operation| &operation.scenario);
+        let mut jobs: Vec<Job> =
+            scenarios().flat_map(|scenario| jobs::jobs_of(scenario, extent.random_seeds, extent.first)).collect();
+        let evaluation = jobs.len();
+        jobs.extend(scenarios().map(jobs::best_case));
+        let mut variants = Vec::new();
+        for variant in extent.sensitivity_seeds.map_or(&[][..], |_| &sensitivity::VARIANTS) {
             let before = jobs.len();
-            for operation in operations.iter().filter(|o| sensitivity::looks_at(&o.scenario.name)) {
-                let mut scenario = operation.scenario.clone();
-                (variant.change)(&mut scenario);
-                jobs.extend(jobs::jobs_of(&scenario, Some(variant.name), seeds, Work::Plan));
+            for scenario in scenarios().filter(|scenario| sensitivity::looks_at(&scenario.name)) {
+                jobs.extend(variant.jobs(scenario, extent.sensitivity_seeds.unwrap_or(0)));
             }
             variants.push((variant.name, jobs.len() - before));
         }
+        Self { jobs, evaluation, best_case: operations.len(), variants }
     }
-    (jobs, variants)
+
+    /// What the report is made from; `holds` are those of the jobs in their order.
+    fn reproduction(&self, holds: Vec<Hold>, extent: &Extent, left_out: Option<String>) -> Reproduction {
+        let mut rest = holds.into_iter();
+        let mut next = |count: usize| rest.by_ref().take(count).collect::<Vec<_>>();
+        let (holds, best_case) = (next(self.evaluation), next(self.best_case));
+        let mut sensitivity = Vec::new();
+        if let Some(seeds) = extent.sensitivity_seeds {
+            // The default's are the evaluation's own holds.
+            let own = holds.iter().filter(|hold| hold.seed <= seeds && sensitivity::looks_at(&hold.operation));
+            let default = ("as reproduced", own.cloned().collect::<Vec<_>>());
+            let others = self.variants.iter().map(|&(name, count)| (name, next(count)));
+            sensitivity = std::iter::once(default)
+                .chain(others)
+                .filter(|(_, holds)| !holds.is_empty())
+                .map(|(name, holds)| Variant { name: name.to_owned(), holds })
+                .collect();
+        }
+        Reproduction {
+            holds,
+            random_seeds: extent.random_seeds,
+            best_case,
+            sensitivity,
+            sensitivity_seeds: extent.sensitivity_seeds.unwrap_or(0),
+            left_out,
+        }
+    }
 }
 
 /// The holds of all jobs in their order; none when the user asked for an end before all had their turn.
@@ -157,27 +184,6 @@ fn work_off(workshop: &Workshop<'_>, threads: usize, jobs: &[Job]) -> Result<Opt
     }
 }
 
-/// The table under each assumption; the first are the evaluation's own holds.
-fn sensitivity_of(
-    holds: &[Hold],
-    extent: &Extent,
-    variants: &[(&'static str, usize)],
-    mut of_variants: Vec<Hold>,
-) -> Vec<Variant> {
-    let Some(seeds) = extent.sensitivity_seeds else { return Vec::new() };
-    let own: Vec<_> =
-        holds.iter().filter(|h| h.seed <= seeds && sensitivity::looks_at(&h.operation)).cloned().collect();
-    if own.is_empty() {
-        return Vec::new();
-    }
-    let mut all = vec![Variant { name: "as reproduced".to_owned(), holds: own }];
-    for &(name, count) in variants {
-        let rest = of_variants.split_off(count);
-        all.push(Variant { name: name.to_owned(), holds: std::mem::replace(&mut of_variants, rest) });
-    }
-    all
-}
-
 /// What a run that is not whole lacks, in words.
 fn left_out(args: &ReproduceArgs, operations: usize) -> Option<String> {
     let mut lacks = Vec::new();
@@ -204,7 +210,8 @@ fn write_results(
     file::remove(&out.join("report.md"))?;
     write("table1.csv", &evaluation::tables::table1(reproduction))?;
     write("plans.csv", &evaluation::tables::plans(reproduction))?;
-    write("physics.csv", &evaluation::tables::physics(reproduction))?;
+    write("physics.csv", &evaluation::tables::physics(reproduction.first_seeds()))?;
+    write("best_case.csv", &evaluation::tables::physics(reproduction.best_case.iter()))?;
     write("random.csv", &evaluation::tables::random(reproduction))?;
     write("timing.csv", &evaluation::tables::timing(reproduction))?;
     match reproduction.sensitivity.is_empty() {

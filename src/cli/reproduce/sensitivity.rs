@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::jobs::{self, Job, Work};
 use crate::model::{frames::rotation_from_xyzw, scenario::Scenario};
 
 /// An assumption that differs.
@@ -10,6 +11,16 @@ pub struct VariantOf {
     pub name: &'static str,
     /// Puts it into a scenario.
     pub change: fn(&mut Scenario),
+}
+
+impl VariantOf {
+    /// The plans of one operation under this assumption.
+    pub fn jobs(&self, scenario: &Scenario, random_seeds: u64) -> Vec<Job> {
+        let mut scenario = scenario.clone();
+        (self.change)(&mut scenario);
+        let jobs = jobs::jobs_of(&scenario, random_seeds, Work::Plan).into_iter();
+        jobs.map(|job| Job { variant: Some(self.name), ..job }).collect()
+    }
 }
 
 /// The operations that are looked at: a quarter of the circle apart, and two corners and the middle of the grid.

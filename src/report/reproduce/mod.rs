@@ -86,6 +86,8 @@ pub struct Reproduction {
     pub holds: Vec<Hold>,
     /// How many seeds the random planner had.
     pub random_seeds: u64,
+    /// The comfort planner's holds when it asks for the paper's stability alone, which is a best case.
+    pub best_case: Vec<Hold>,
     /// The sensitivity analysis: first the default, then what differs from it; empty when it was left out.
     pub sensitivity: Vec<Variant>,
     /// The seeds of the random planner in the sensitivity analysis.

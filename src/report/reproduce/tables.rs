@@ -54,10 +54,10 @@ pub fn plans(reproduction: &Reproduction) -> String {
     lines("operation,planner,muscular,peripersonal_m,objective,load_factor,compliant_load_factor", rows)
 }
 
-/// `physics.csv`: what became of each hold in simulation. `load_factor_simulated` is the largest multiple of the load that
-/// holds; empty where it was not looked for.
-pub fn physics(reproduction: &Reproduction) -> String {
-    let rows = reproduction.first_seeds().map(|hold| {
+/// `physics.csv` and `best_case.csv`: what became of each hold in simulation. `load_factor_simulated` is the largest multiple
+/// of the load that holds; empty where it was not looked for.
+pub fn physics<'a>(holds: impl Iterator<Item = &'a Hold>) -> String {
+    let rows = holds.map(|hold| {
         let predicted_mm = hold.plan.as_ref().and_then(|plan| Some(plan.stability.as_ref()?.predicted_deflection_mm));
         vec![
             hold.operation.clone(),
