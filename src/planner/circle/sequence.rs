@@ -96,18 +96,21 @@ fn drawn(circle: &mut Circle<'_>, from: &KnownHold, scale: f64) -> crate::model:
 
 /// What a pose is worth at a point.
 #[derive(Clone, Copy)]
-enum Value {
-    Rough(f64),
-    Exact(Option<Answer>),
+struct Value {
+    worth: f64,
+    /// The person's answer, once it was worked out.
+    answer: Option<Answer>,
+    exact: bool,
 }
 
 impl Value {
-    fn worth(&self) -> f64 {
-        match self {
-            Self::Rough(worth) if worth.is_finite() => SERVED + worth,
-            Self::Exact(Some(answer)) => SERVED + answer.objective,
-            Self::Rough(_) | Self::Exact(None) => 0.0,
-        }
+    /// By the person's map; minus infinity where it knows no answer.
+    fn rough(worth: f64) -> Self {
+        Self { worth: if worth.is_finite() { SERVED + worth } else { 0.0 }, answer: None, exact: false }
+    }
+
+    fn exact(answer: Option<Answer>) -> Self {
+        Self { worth: answer.map_or(0.0, |answer| SERVED + answer.objective), answer, exact: true }
     }
 }
 
@@ -123,9 +126,9 @@ struct Graph {
 impl Graph {
     /// The poses of a tree; what the root is worth is known exactly.
     fn new(circle: &Circle<'_>, poses: Vec<KnownHold>, root: &Served) -> Self {
-        let rough = |pose| circle.estimates(pose).into_iter().map(Value::Rough).collect();
+        let rough = |pose| circle.estimates(pose).into_iter().map(Value::rough).collect();
         let mut values: Vec<Vec<_>> = poses.iter().map(rough).collect();
-        values[0] = root.answers.iter().copied().map(Value::Exact).collect();
+        values[0] = root.answers.iter().copied().map(Value::exact).collect();
         let mut motions = vec![vec![None; poses.len()]; poses.len()];
         for (number, row) in motions.iter_mut().enumerate() {
             row[number] = Some(true);
@@ -139,12 +142,9 @@ impl Graph {
             let path = self.path();
             // Each round works out at least one thing that was not known, and there are finitely many.
             if !self.work_out(circle, &path) {
-                let stop = |(point, &pose): (usize, &usize)| {
-                    let answer = match self.values[pose][point] {
-                        Value::Exact(answer) => answer,
-                        Value::Rough(_) => None,
-                    };
-                    Stop { hold: self.poses[pose].clone(), answer }
+                let stop = |(point, &pose): (usize, &usize)| Stop {
+                    hold: self.poses[pose].clone(),
+                    answer: self.values[pose][point].answer,
                 };
                 return path.iter().enumerate().map(stop).collect();
             }
@@ -155,9 +155,10 @@ impl Graph {
     fn work_out(&mut self, circle: &mut Circle<'_>, path: &[usize]) -> bool {
         let mut news = false;
         for (point, &pose) in path.iter().enumerate() {
-            if let Value::Rough(worth) = self.values[pose][point] {
-                let answer = if worth.is_finite() { circle.answer(&self.poses[pose], point, None) } else { None };
-                self.values[pose][point] = Value::Exact(answer);
+            let value = self.values[pose][point];
+            if !value.exact {
+                let answer = if value.worth > 0.0 { circle.answer(&self.poses[pose], point, None) } else { None };
+                self.values[pose][point] = Value::exact(answer);
                 news = true;
             }
         }
@@ -177,7 +178,7 @@ impl Graph {
     fn path(&self) -> Vec<usize> {
         let count = self.poses.len();
         let points = self.values[0].len();
-        let mut sums: Vec<f64> = (0..count).map(|pose| self.values[pose][0].worth()).collect();
+        let mut sums: Vec<f64> = (0..count).map(|pose| self.values[pose][0].worth).collect();
         let mut before = Vec::with_capacity(points);
         for point in 1..points {
             let best_before = |to: usize| {
@@ -188,7 +189,7 @@ impl Graph {
                 from.map(|from| (from, sum(from))).max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((to, sums[to]))
             };
             let best: Vec<_> = (0..count).map(best_before).collect();
-            sums = best.iter().enumerate().map(|(to, (_, sum))| sum + self.values[to][point].worth()).collect();
+            sums = best.iter().enumerate().map(|(to, (_, sum))| sum + self.values[to][point].worth).collect();
             before.push(best);
         }
         let last = (0..count).max_by(|&a, &b| sums[a].total_cmp(&sums[b])).unwrap_or(0);
