@@ -79,7 +79,9 @@ fn assert_seen(name: &str, folder: &Path, arguments: &[&str]) {
 fn the_help_of_every_command() {
     let folder = folder(&[]);
     assert_seen("help", folder.path(), &["--help"]);
-    for command in ["run", "plan", "simulate", "curve", "schema", "inspect", "view", "doctor", "completions"] {
+    for command in
+        ["run", "plan", "simulate", "curve", "reproduce", "schema", "inspect", "view", "doctor", "completions"]
+    {
         assert_seen(&format!("help-{command}"), folder.path(), &["help", command]);
     }
 }
