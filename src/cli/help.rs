@@ -84,9 +84,9 @@ Examples:
   benchdog reproduce --quick --filter cut-05 --record always
 
 Into --out go report.md, table1.csv, plans.csv, physics.csv, best_case.csv, random.csv,
-sensitivity.csv, the muscular curve and pictures/, the same for equal runs; timing.csv, which is not; recordings/;
-and work/, from which a run that was stopped goes on. The exit code is 1 when a hold failed in
-simulation, 3 when a planner found none.";
+sensitivity.csv, the muscular curve and pictures/, the same for equal runs; timing.csv, which is
+not; recordings/; and work/, from which a run that was stopped goes on. The exit code is 1 when
+one of the 100 holds failed in simulation, 3 when a planner found none.";
 
 /// `benchdog schema --help`.
 pub const SCHEMA: &str = "\

@@ -1,0 +1,293 @@
+//! The evidence: the committed results bear out what the paper concludes from its own, every comfortable hold stands in
+//! simulation, and what the program does today are the figures that are committed.
+//!
+//! When the last of these fails because planner or simulation were changed on purpose, `cargo run --release -- reproduce`
+//! writes the results again; then the claims are put to the test on the new figures.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+/// Half a step of the last digit that the files have.
+const ROUNDING: f64 = 0.5e-6;
+
+const PLANNERS: [&str; 4] = ["comfort", "peripersonal", "muscular", "random"];
+
+fn results() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("results")
+}
+
+/// A CSV file by its header.
+struct Table {
+    rows: Vec<BTreeMap<String, String>>,
+}
+
+impl Table {
+    fn read(name: &str, header: &str) -> Self {
+        let text = fs::read_to_string(results().join(name)).unwrap();
+        assert_eq!(text.lines().next(), Some(header), "{name}");
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        Self { rows: reader.deserialize().map(Result::unwrap).collect() }
+    }
+
+    /// The figures of a column in the rows where another says so.
+    fn figures(&self, column: &str, wanted: impl Fn(&BTreeMap<String, String>) -> bool) -> Vec<f64> {
+        self.rows.iter().filter(|row| wanted(row)).map(|row| row[column].parse().unwrap()).collect()
+    }
+}
+
+fn table1() -> Table {
+    Table::read(
+        "table1.csv",
+        "task,planner,muscular,muscular_printed_median,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+    )
+}
+
+fn plans() -> Table {
+    Table::read("plans.csv", "operation,planner,muscular,peripersonal_m,objective,load_factor,compliant_load_factor")
+}
+
+fn physics() -> Table {
+    Table::read(
+        "physics.csv",
+        "operation,planner,verdict,slip_mm,slip_deg,deflection_mm,predicted_deflection_mm,torque_ratio,\
+         load_factor_simulated",
+    )
+}
+
+fn random() -> Table {
+    Table::read("random.csv", "operation,seed,muscular,muscular_printed,peripersonal_scaled")
+}
+
+/// A figure of table 1.
+fn of(table: &Table, task: &str, planner: &str, column: &str) -> f64 {
+    let found = table.figures(column, |row| row["task"] == task && row["planner"] == planner);
+    assert_eq!(found.len(), 1, "{task} {planner}");
+    found[0]
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn there_are_twenty_five_operations_and_four_planners() {
+    for table in [plans(), physics()] {
+        assert_eq!(table.rows.len(), 100);
+        for planner in PLANNERS {
+            let of = |kind| {
+                table.rows.iter().filter(|r| r["planner"] == planner && r["operation"].starts_with(kind)).count()
+            };
+            assert_eq!((of("cut-"), of("drill-")), (16, 9), "{planner}");
+        }
+    }
+    assert_eq!(table1().rows.len(), 8);
+}
+
+#[test]
+fn the_table_is_the_mean_of_the_plans_over_the_mean_of_the_random_ones() {
+    let (table, plans, random) = (table1(), plans(), random());
+    for (task, kind) in [("cutting", "cut-"), ("drilling", "drill-")] {
+        let draws = |column| mean(&random.figures(column, |row| row["operation"].starts_with(kind)));
+        let (muscular_random, peripersonal_random) = (draws("muscular"), draws("peripersonal_scaled"));
+        for planner in PLANNERS {
+            let own = |column| {
+                mean(&plans.figures(column, |row| row["planner"] == planner && row["operation"].starts_with(kind)))
+            };
+            let (muscular, peripersonal) = match planner {
+                "random" => (muscular_random, peripersonal_random),
+                // 64 points of the body.
+                _ => (own("muscular"), 64.0 * own("peripersonal_m")),
+            };
+            let same = |column, value: f64, rounding: f64| {
+                let written = of(&table, task, planner, column);
+                assert!((written - value).abs() <= rounding, "{task} {planner} {column}: {written} and {value}");
+            };
+            same("muscular", muscular, 2.0 * ROUNDING);
+            same("peripersonal_scaled", peripersonal, 65.0 * ROUNDING);
+            // Ratios below a hundred of figures above one.
+            same("muscular_normalised", muscular / muscular_random, 100.0 * ROUNDING);
+            same("peripersonal_normalised", peripersonal / peripersonal_random, 100.0 * ROUNDING);
+        }
+    }
+}
+
+/// The paper's table: the comfort planner has 11.19 of the muscular planner's 15.66 in cutting, 19.24 of 22.45 in drilling.
+const PAPERS_MUSCULAR_SHARE: [(&str, f64); 2] = [("cutting", 11.19 / 15.66), ("drilling", 19.24 / 22.45)];
+
+#[test]
+fn the_comfort_planner_is_near_both_planners_of_one_comfort() {
+    let table = table1();
+    for (task, papers_share) in PAPERS_MUSCULAR_SHARE {
+        let share = |column, planner| of(&table, task, "comfort", column) / of(&table, task, planner, column);
+        let muscular = share("muscular", "muscular");
+        assert!(muscular >= papers_share, "{task}: {muscular} of the muscular planner's, in the paper {papers_share}");
+        // In the paper 2.08 of 2.09 and 2.55 of 2.51; ours gives up some hundredths for muscular comfort.
+        let peripersonal = share("peripersonal_scaled", "peripersonal");
+        assert!(peripersonal >= 0.9, "{task}: {peripersonal} of the peripersonal planner's");
+    }
+}
+
+#[test]
+fn a_planner_of_one_comfort_is_poor_in_the_other() {
+    let table = table1();
+    for (task, _) in PAPERS_MUSCULAR_SHARE {
+        // What a planner gains over random, as a share of what the comfort planner gains.
+        let gain = |planner, column| {
+            let value = |planner| of(&table, task, planner, column);
+            (value(planner) - value("random")) / (value("comfort") - value("random"))
+        };
+        let (of_muscular, of_peripersonal) =
+            (gain("peripersonal", "muscular"), gain("muscular", "peripersonal_scaled"));
+        assert!(of_muscular < 0.5, "{task}: the peripersonal planner gains {of_muscular} of muscular comfort");
+        assert!(of_peripersonal < 0.5, "{task}: the muscular planner gains {of_peripersonal} of peripersonal comfort");
+    }
+}
+
+#[test]
+fn random_is_the_worst_in_both_comforts_together() {
+    let (table, random) = (table1(), random());
+    for (task, _) in PAPERS_MUSCULAR_SHARE {
+        let sum = |planner| of(&table, task, planner, "muscular") + of(&table, task, planner, "peripersonal_scaled");
+        for planner in ["comfort", "peripersonal", "muscular"] {
+            assert!(sum("random") < sum(planner), "{task} {planner}");
+        }
+        // And no seed of it, had it been the only one, comes up to the comfort planner in either comfort.
+        let kind = if task == "cutting" { "cut-" } else { "drill-" };
+        for seed in (1..=20).map(|seed| seed.to_string()) {
+            for column in ["muscular", "peripersonal_scaled"] {
+                let draws = random.figures(column, |row| row["seed"] == seed && row["operation"].starts_with(kind));
+                assert!(mean(&draws) < of(&table, task, "comfort", column), "{task} {column} seed {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_hold_of_the_comfort_planner_stands_in_simulation() {
+    let physics = physics();
+    let of_comfort: Vec<_> = physics.rows.iter().filter(|row| row["planner"] == "comfort").collect();
+    assert_eq!(of_comfort.len(), 25);
+    for row in of_comfort {
+        assert_eq!(row["verdict"], "holds", "{}", row["operation"]);
+        let factor: f64 = row["load_factor_simulated"].parse().unwrap();
+        assert!(factor >= 1.0, "{}: what holds under its load holds up to it at least", row["operation"]);
+    }
+}
+
+#[test]
+fn the_best_case_alone_is_no_proof() {
+    let text = fs::read_to_string(results().join("best_case.csv")).unwrap();
+    let verdicts: Vec<_> = text.lines().skip(1).map(|line| line.split(',').nth(2).unwrap()).collect();
+    assert_eq!(verdicts.len(), 25);
+    // Planned for the best case, most holds fail; planned for compliant arms none does (the test above).
+    assert!(verdicts.iter().filter(|&&verdict| verdict == "holds").count() < 13, "{verdicts:?}");
+}
+
+#[test]
+fn simulated_holds_are_as_predicted() {
+    let (plans, physics) = (plans(), physics());
+    for (plan, row) in plans.rows.iter().zip(&physics.rows) {
+        let hold = format!("{} {}", row["operation"], row["planner"]);
+        assert_eq!((&plan["operation"], &plan["planner"]), (&row["operation"], &row["planner"]));
+        let figure = |row: &BTreeMap<String, String>, column: &str| row[column].parse::<f64>().unwrap();
+        // The prediction is elastic and knows neither the pads' own give nor the swing after the ramp. Over the 100 holds both
+        // were found within 10 %; half as much again is where the planner's reserve of a tenth would no longer do.
+        let deflection = figure(row, "deflection_mm") / figure(row, "predicted_deflection_mm");
+        assert!((0.85..1.15).contains(&deflection), "{hold}: deflection {deflection} of the predicted");
+        let load = figure(row, "load_factor_simulated") / figure(plan, "compliant_load_factor");
+        assert!(load > 0.85, "{hold}: stands {load} of the predicted load");
+        // The certificate bounds what any forces can do, with the pads in their planned place: ones that have turned by the
+        // two degrees that are allowed have lever arms that differ by sin 2 deg = 3.5 %.
+        let bound = figure(row, "load_factor_simulated") / figure(plan, "load_factor");
+        assert!(bound < 1.035, "{hold}: stands {bound} of what any forces could hold");
+    }
+}
+
+fn reproduce(arguments: &[&str], out: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .args(["reproduce", "--quick"])
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap()
+}
+
+/// All that a run leaves to be committed, by its path.
+fn written(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let name = entry.file_name().into_string().unwrap();
+        match name.as_str() {
+            "work" | "recordings" | "timing.csv" => {}
+            "pictures" => files.extend(written(&entry.path())),
+            _ => drop(files.insert(entry.path().strip_prefix(folder).unwrap().into(), fs::read(entry.path()).unwrap())),
+        }
+    }
+    files
+}
+
+#[test]
+fn two_runs_agree_with_each_other_and_with_what_is_committed() {
+    let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let first = reproduce(&["--filter", "drill-5", "--jobs", "1"], one.path());
+    assert_eq!(first.status.code(), Some(0), "{}", String::from_utf8_lossy(&first.stderr));
+    let second = reproduce(&["--filter", "drill-5", "--jobs", "2"], two.path());
+    assert_eq!(second.status.code(), Some(0));
+    let files = written(one.path());
+    // Report, five tables and four pictures; the curve is one of cuts.
+    assert_eq!(files.len(), 10, "{:?}", files.keys());
+    assert!(files == written(two.path()), "the same files whatever the number of threads");
+    committed_rows_agree(one.path());
+    a_second_start_goes_on(one.path());
+    assert!(files == written(one.path()), "the same files from what was kept");
+}
+
+/// The rows of the operation are those of the committed tables; what `--quick` does not look for is empty.
+fn committed_rows_agree(out: &Path) {
+    let rows = |folder: &Path, name: &str| {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        text.lines().filter(|line| line.starts_with("drill-5,")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let again =
+        "the program has other results than are committed: `cargo run --release -- reproduce` writes them again";
+    assert_eq!(rows(out, "plans.csv"), rows(&results(), "plans.csv"), "{again}");
+    let draws = rows(&results(), "random.csv");
+    assert_eq!(rows(out, "random.csv"), draws[..3], "{again}");
+    let simulated = rows(out, "physics.csv");
+    assert_eq!(simulated.len(), 4);
+    for (quick, whole) in simulated.iter().zip(rows(&results(), "physics.csv")) {
+        assert_eq!(quick.rsplit_once(',').unwrap(), (whole.rsplit_once(',').unwrap().0, ""), "{again}");
+    }
+}
+
+/// Only what is not there, or is not whole, is done again.
+fn a_second_start_goes_on(out: &Path) {
+    let work = out.join("work");
+    assert_eq!(
+        fs::read_dir(&work).unwrap().count(),
+        7,
+        "three planners, three random draws, a folder of the best case"
+    );
+    fs::remove_file(work.join("drill-5-comfort-1.json")).unwrap();
+    let damaged = work.join("drill-5-random-1.json");
+    let text = fs::read_to_string(&damaged).unwrap();
+    fs::write(&damaged, &text[..text.len() / 2]).unwrap();
+    let output = reproduce(&["--filter", "drill-5", "--jobs", "1"], out);
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "drill-5 comfort 1: holds\ndrill-5 random 1: holds\n");
+}
+
+#[test]
+fn an_operation_that_is_none_is_refused_before_anything_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let output = reproduce(&["--filter", "saw"], &out);
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.starts_with("error: --filter saw: found no operation that passes, expected one of cut-01, cut-02"));
+    assert!(!out.exists());
+}
