@@ -19,8 +19,8 @@ pub const JOINT_APART_RAD: f64 = 30.0 * std::f64::consts::PI / 180.0;
 /// Starts of the search for every plan that is wanted: neighbouring starts climb to the same hold.
 const STARTS_A_PLAN: usize = 4;
 
-/// True when two plans are different holds: an arm holds another edge, the board is apart by more than [`APART_M`] or
-/// [`APART_RAD`], or a joint of the robot by more than [`JOINT_APART_RAD`]. How the person stands does not count.
+/// True when two plans are different holds: an arm holds another edge, the board is apart by more than `APART_M` or
+/// `APART_RAD`, or a joint of the robot by more than `JOINT_APART_RAD`. How the person stands does not count.
 pub fn differ(one: &Plan, other: &Plan) -> bool {
     let (a, b) = (&one.object.x_wo, &other.object.x_wo);
     let apart = (a.translation.vector - b.translation.vector).norm() > APART_M;
