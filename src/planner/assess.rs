@@ -31,7 +31,8 @@ pub const BOARD_Y_M: [f64; 2] = [-0.25, 0.25];
 const FACING_LIMIT_RAD: f64 = 100.0 * std::f64::consts::PI / 180.0;
 
 /// How much more than asked for a hold must stand by the compliant prediction. Small-displacement springs and pads that
-/// are pressed evenly are a model: simulated deflections and rotations were found up to 6 % above its figures.
+/// are pressed evenly are a model: over the 100 holds of `results/` the simulated failing load was found 0.91 to 1.11 of its
+/// figure, so the reserve is about as large as what it can be off, and no larger.
 const COMPLIANT_RESERVE: f64 = 1.1;
 
 /// The first constraint that a candidate breaks.
@@ -168,19 +169,29 @@ impl Configured {
 
 /// All that a candidate is and is worth, when it keeps every constraint; the cheapest tests come first.
 pub fn feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasible, Rejection> {
-    if !problem.watch.allows() {
-        return Err(Rejection::NotLookedAt);
-    }
-    place(problem, &candidate)?;
     let configured = Configured::new(problem, &candidate);
-    collisions(problem, &configured)?;
+    free(problem, &candidate, &configured)?;
     let utilisation = utilisation(problem, &candidate, &configured.placed.x_wo);
     if utilisation > 1.0 {
         return Err(Rejection::Stability);
     }
+    Ok(rated(problem, candidate, configured, utilisation))
+}
+
+/// Tests everything but stability, which costs the most.
+pub fn free(problem: &mut Problem<'_>, candidate: &Candidate, configured: &Configured) -> Result<(), Rejection> {
+    if !problem.watch.allows() {
+        return Err(Rejection::NotLookedAt);
+    }
+    place(problem, candidate)?;
+    collisions(problem, configured)
+}
+
+/// What a candidate that has passed every test is worth; whoever looks on is told.
+pub fn rated(problem: &mut Problem<'_>, candidate: Candidate, configured: Configured, utilisation: f64) -> Feasible {
     let comfort = comfort(problem, &candidate, &configured);
     problem.watch.found(&comfort);
-    Ok(Feasible { candidate, configured, comfort, worth: comfort.objective, utilisation })
+    Feasible { candidate, configured, comfort, worth: comfort.objective, utilisation }
 }
 
 /// Tests what depends on the person and the board's pose alone.

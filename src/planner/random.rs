@@ -4,6 +4,7 @@
 //! side, and a grasp for each hand; again and again until the arms reach, nothing touches and the hold stands the load.
 //! The arms take the first configuration that is found, and the person then answers as best they can.
 
+use nalgebra::Vector3;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -17,7 +18,6 @@ use crate::{
     comfort,
     model::{frames::Pose, grasp::Edge},
 };
-use nalgebra::Vector3;
 
 /// Holds that are drawn before the search is given up.
 const DRAWS: u64 = 2_000_000;

@@ -139,17 +139,17 @@ impl Climb {
         if self.linear.correct(problem, &candidate, &configured, d, &mut corrected) {
             return Trial::Broken(corrected);
         }
-        match assess::feasible(problem, candidate.clone()) {
-            Ok(there) => Trial::Feasible(Box::new(there)),
-            Err(assess::Rejection::Stability) => {
-                let utilisation = assess::utilisation(problem, &candidate, &configured.placed.x_wo);
-                if self.linear.correct_stability(problem, &self.here, utilisation, d, &mut corrected) {
-                    Trial::Broken(corrected)
-                } else {
-                    Trial::Lost
-                }
-            }
-            Err(_) => Trial::Lost,
+        if assess::free(problem, &candidate, &configured).is_err() {
+            return Trial::Lost;
+        }
+        let utilisation = assess::utilisation(problem, &candidate, &configured.placed.x_wo);
+        if utilisation <= 1.0 {
+            return Trial::Feasible(Box::new(assess::rated(problem, candidate, configured, utilisation)));
+        }
+        if self.linear.correct_stability(problem, &self.here, utilisation, d, &mut corrected) {
+            Trial::Broken(corrected)
+        } else {
+            Trial::Lost
         }
     }
 
