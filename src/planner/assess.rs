@@ -9,16 +9,16 @@ use super::{Candidate, Infeasible, Problem, propose::uniform, watch::Count};
 use crate::{
     collision::{PersonPart, Scene},
     comfort,
-    human::{ArmAngles, CAPSULES, Muscular},
+    human::{ArmAngles, CAPSULES, Human, Muscular},
     model::{
         frames::Pose,
         grasp::EdgeGrasp,
         plan::{ArmHold, AverageComfort, Comfort, PlacedObject},
-        scenario::{Limits, Scenario, StabilityKind},
+        scenario::{Limits, Scenario, StabilityKind, StrengthDirection},
         wrench::Wrench,
     },
     robot::Gripper,
-    statics::{HandModel, Hold},
+    statics::{HandModel, Hold, HoldError},
 };
 
 /// Height of the board's centre in W, m (METHOD section 3).
@@ -200,7 +200,9 @@ pub fn place(problem: &Problem<'_>, candidate: &Candidate) -> Result<(), Rejecti
     if !in_domain(&x_wo) {
         return Err(Rejection::BoardPlace);
     }
-    posture_comfort(problem, &candidate.q_h_rad).ok_or(Rejection::Strength)?;
+    let (human, direction) = (&problem.human, problem.scenario.comfort.direction);
+    let x_bt = human.tool_pose_b(&candidate.q_h_rad);
+    posture_comfort(human, &candidate.q_h_rad, &x_bt, &problem.wrench_t, direction).ok_or(Rejection::Strength)?;
     Ok(())
 }
 
@@ -243,11 +245,15 @@ pub fn facing(x_wo: &Pose) -> f64 {
 
 /// The muscular comfort of a posture, if every joint is strong enough. It does not depend on where the person stands or
 /// looks: the operation's wrench is fixed in the tool, and gravity is vertical.
-pub fn posture_comfort(problem: &Problem<'_>, q_h_rad: &ArmAngles) -> Option<Muscular> {
-    let r_bt = problem.human.tool_pose_b(q_h_rad).rotation;
-    let wrench_b = Wrench::new(r_bt * problem.wrench_t.force_n, r_bt * problem.wrench_t.moment_nm);
-    let direction = problem.scenario.comfort.direction;
-    let muscular = problem.human.muscular(q_h_rad, &Pose::identity(), &wrench_b, direction);
+pub fn posture_comfort(
+    human: &Human,
+    q_h_rad: &ArmAngles,
+    x_bt: &Pose,
+    wrench_t: &Wrench,
+    direction: StrengthDirection,
+) -> Option<Muscular> {
+    let wrench_b = Wrench::new(x_bt.rotation * wrench_t.force_n, x_bt.rotation * wrench_t.moment_nm);
+    let muscular = human.muscular(q_h_rad, &Pose::identity(), &wrench_b, direction);
     muscular.activations.iter().all(|&activation| activation <= 1.0).then_some(muscular)
 }
 
@@ -332,18 +338,27 @@ pub fn arm_holds(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
 /// The share that a candidate's hold uses of what the limits of stability allow it, reserve included: at most 1 when it
 /// stands, infinite when it cannot.
 pub fn utilisation(problem: &mut Problem<'_>, candidate: &Candidate, x_wo: &Pose) -> f64 {
-    let Scenario { object, operation, grip, limits, planner, .. } = problem.scenario;
+    let limits = stability_limits(problem.scenario);
+    statics_hold(problem, candidate, x_wo)
+        .and_then(|hold| problem.stability.utilisation(&hold, &limits, problem.scenario.planner.stability))
+        // A hold that the statics call broken, say by a pad off the board, stands nothing.
+        .unwrap_or(f64::INFINITY)
+}
+
+/// The limits of stability, reserve included.
+pub fn stability_limits(scenario: &Scenario) -> Limits {
+    let reserve = if scenario.planner.stability == StabilityKind::Compliant { COMPLIANT_RESERVE } else { 1.0 };
+    Limits { load_factor: reserve * scenario.limits.load_factor, ..scenario.limits }
+}
+
+/// A candidate as the statics see it.
+pub fn statics_hold(problem: &Problem<'_>, candidate: &Candidate, x_wo: &Pose) -> Result<Hold, HoldError> {
+    let Scenario { object, operation, grip, .. } = problem.scenario;
     let object = PlacedObject { size_m: object.size_m, mass_kg: object.mass_kg(), x_wo: *x_wo };
     let hands: Result<Vec<_>, _> = arm_holds(problem, candidate)
         .iter()
         .zip(&problem.map.arms)
         .map(|(hold, arm)| HandModel::from_plan(&problem.map.robot, &arm.chain, hold, &object, grip.friction))
         .collect();
-    let reserve = if planner.stability == StabilityKind::Compliant { COMPLIANT_RESERVE } else { 1.0 };
-    let limits = Limits { load_factor: reserve * limits.load_factor, ..*limits };
-    hands
-        .map(|hands| Hold::from_hands(hands, &object, &operation.rolled(candidate.roll_rad)))
-        .and_then(|hold| problem.stability.utilisation(&hold, &limits, planner.stability))
-        // A hold that the statics call broken, say by a pad off the board, stands nothing.
-        .unwrap_or(f64::INFINITY)
+    Ok(Hold::from_hands(hands?, &object, &operation.rolled(candidate.roll_rad)))
 }

@@ -5,6 +5,7 @@
 //! configuration is drawn, its grasp then says where the board is, and the reach maps and inverse kinematics bring the other
 //! hands there. The bank knows nothing of people, comfort or loads.
 
+use nalgebra::Point3;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -14,9 +15,12 @@ use super::{
     propose,
     robot_map::{ArmSearch, RobotMap},
 };
-use crate::model::{
-    frames::Pose,
-    grasp::{Edge, EdgeGrasp},
+use crate::{
+    comfort,
+    model::{
+        frames::Pose,
+        grasp::{Edge, EdgeGrasp},
+    },
 };
 
 /// Grasps that are tried for every hand.
@@ -37,8 +41,16 @@ pub struct KnownHold {
     pub holds: Vec<Hold>,
 }
 
+/// A hold of the bank, with what every scenario asks about it.
+#[derive(Clone, Debug)]
+pub struct BankedHold {
+    pub hold: KnownHold,
+    /// The robot's points that peripersonal comfort looks at, W.
+    pub robot_points_w: Vec<Point3<f64>>,
+}
+
 /// So many holds of the map's size of board, or fewer where they are rare, and how often one was looked for.
-pub fn holds(map: &RobotMap, wanted: usize) -> (Vec<KnownHold>, u64) {
+pub fn holds(map: &RobotMap, wanted: usize) -> (Vec<BankedHold>, u64) {
     let mut random = Pcg64::new(SEED, 0);
     let mut found = Vec::with_capacity(wanted);
     let mut drawn = 0;
@@ -54,7 +66,7 @@ fn most_draws(wanted: usize, found: usize) -> u64 {
     (DRAWS_A_HOLD * if found == 0 { wanted / 20 } else { wanted }) as u64
 }
 
-fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<KnownHold> {
+fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<BankedHold> {
     let (first, others) = map.arms.split_first()?;
     let edge = random.random_range(0..Edge::ALL.len());
     let grasp = draw_grasp(map, first, Edge::ALL[edge], |_| true, random)?;
@@ -72,7 +84,10 @@ fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<KnownHold> {
     }
     let poses = map.link_poses(&holds);
     let touches = map.collision.first_violation(&map.scene(&poses, x_wo)).is_some();
-    (!touches).then_some(KnownHold { x_wo, holds })
+    (!touches).then(|| BankedHold {
+        robot_points_w: comfort::robot_points_w(&map.robot, &poses),
+        hold: KnownHold { x_wo, holds },
+    })
 }
 
 /// The edge of a further hand, by its number: opposite to the first's or the same (METHOD section 2).

@@ -6,8 +6,6 @@
 //! of the front, and every hold is the best of a search, not of all holds: the true front may lie further out, never
 //! further in.
 
-use rand_pcg::Pcg64;
-
 use super::{
     Count, Effort, Feasible, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, assemble, assess, propose, refine,
     verify,
@@ -148,8 +146,7 @@ impl Sweep<'_> {
         let effort = Effort::of(scenario.planner.budget);
         let mut starts = Vec::new();
         if anew {
-            let mut random = Pcg64::new(u128::from(scenario.planner.seed), 0);
-            starts = propose::best_candidates(&mut problem, &effort, &mut random, &mut tally);
+            starts = propose::best_candidates(&mut problem, &effort, &mut tally);
         }
         if let Some(index) = self.index_of_best(scenario) {
             tally.draw();

@@ -26,6 +26,8 @@ mod top;
 mod verify;
 mod watch;
 
+use std::rc::Rc;
+
 use rand_pcg::Pcg64;
 
 use crate::{
@@ -45,6 +47,7 @@ use assess::{Configured, Feasible, Placed, Rejection, Tally};
 use candidate::Candidate;
 use effort::Effort;
 pub use front::{Front, FrontOutcome, FrontPoint, front};
+pub use person_map::PersonMap;
 pub use robot_map::RobotMap;
 pub use top::{TopOutcome, differ, top};
 pub use verify::{Flaw, first_touch, verify};
@@ -84,6 +87,8 @@ impl std::fmt::Display for Infeasible {
 struct Problem<'a> {
     scenario: &'a Scenario,
     map: &'a RobotMap,
+    /// The person's map, where one is at hand.
+    person: Option<&'a PersonMap>,
     human: Human,
     /// What the search maximises: the scenario's comfort with the weights of its planner.
     objective: ComfortSettings,
@@ -96,18 +101,23 @@ struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     fn new(scenario: &'a Scenario, map: &'a RobotMap, watch: Watch<'a>) -> Result<Self, HumanError> {
-        let Operation { wrench_o, x_ot, .. } = scenario.operation;
-        let to_tool = x_ot.rotation.inverse();
         Ok(Self {
             scenario,
             map,
+            person: None,
             human: Human::new(&scenario.human, &scenario.tool)?,
             objective: scenario.planner.kind.objective(scenario.comfort),
-            wrench_t: Wrench::new(to_tool * wrench_o.force_n, to_tool * wrench_o.moment_nm),
+            wrench_t: wrench_t(&scenario.operation),
             stability: StabilityWorkspace::new(),
             watch,
         })
     }
+}
+
+/// An operation's wrench about the tool tip in T axes.
+fn wrench_t(operation: &Operation) -> Wrench {
+    let to_tool = operation.x_ot.rotation.inverse();
+    Wrench::new(to_tool * operation.wrench_o.force_n, to_tool * operation.wrench_o.moment_nm)
 }
 
 /// Searches for the best hold of a scenario. The same scenario and seed give the same plan, bit by bit.
@@ -126,6 +136,22 @@ pub fn plan_on(scenario: &Scenario, map: &RobotMap) -> Result<PlanOutcome, Human
     plan_until(scenario, map, &mut nobody)
 }
 
+/// As [`plan_until`], with the person's map at hand; one that does not serve the scenario is not used.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_with<'a>(
+    scenario: &'a Scenario,
+    map: &'a RobotMap,
+    person: &'a PersonMap,
+    onlooker: &'a mut Onlooker<'a>,
+) -> Result<PlanOutcome, HumanError> {
+    let count = Count::of_at_most(scenario.planner.evaluations);
+    let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
+    problem.person = person.serves(scenario).then_some(person);
+    best_plan(&mut problem, count)
+}
+
 /// As [`plan_on`], with somebody who looks on: told of every better hold, and asked with every candidate whether to go on.
 /// Once stopped, the best hold so far is assembled and checked like any other. An onlooker who never stops the search has
 /// the plan of [`plan_on`], bit by bit.
@@ -138,11 +164,13 @@ pub fn plan_until<'a>(
     onlooker: &'a mut Onlooker<'a>,
 ) -> Result<PlanOutcome, HumanError> {
     let count = Count::of_at_most(scenario.planner.evaluations);
-    let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
+    best_plan(&mut Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?, count)
+}
+
+fn best_plan(problem: &mut Problem<'_>, count: Rc<Count>) -> Result<PlanOutcome, HumanError> {
     let mut tally = Tally::new(count);
-    let found = search(&mut problem, &Effort::of(scenario.planner.budget), &mut tally);
-    for found in found {
-        if let Some(plan) = checked(&mut problem, &found, &mut tally)? {
+    for found in search(problem, &Effort::of(problem.scenario.planner.budget), &mut tally) {
+        if let Some(plan) = checked(problem, &found, &mut tally)? {
             return Ok(PlanOutcome::Found(Box::new(plan)));
         }
     }
@@ -152,11 +180,10 @@ pub fn plan_until<'a>(
 /// The holds that the scenario's planner finds, the best first.
 fn search(problem: &mut Problem<'_>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
     let PlannerSettings { kind, seed, .. } = problem.scenario.planner;
-    let mut random = Pcg64::new(u128::from(seed), 0);
     let found = if kind == PlannerKind::Random {
-        random::draw(problem, &mut random, tally).into_iter().collect()
+        random::draw(problem, &mut Pcg64::new(u128::from(seed), 0), tally).into_iter().collect()
     } else {
-        let starts = propose::best_candidates(problem, effort, &mut random, tally);
+        let starts = propose::best_candidates(problem, effort, tally);
         refine::refine(problem, starts, effort, tally)
     };
     answer::rank(problem, found)

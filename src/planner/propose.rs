@@ -7,21 +7,20 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64;
 
 use super::{
     Problem,
     assess::{self, Configured, Feasible, Rejection, Tally},
-    bank::KnownHold,
+    bank::BankedHold,
     candidate::Candidate,
     effort::Effort,
     person_map::{PersonMap, Posture},
 };
 use crate::{
-    comfort,
-    human::{ArmAngles, BODY_POINTS, peripersonal_m},
+    human::{ArmAngles, peripersonal_m},
     model::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
@@ -35,22 +34,24 @@ pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
 
 /// A hold of the bank and a posture that nearly answers it.
 struct Proposal<'a> {
-    known: &'a KnownHold,
-    posture: Posture,
+    known: &'a BankedHold,
+    posture: &'a Posture,
     roll_rad: f64,
     x_wb: Pose,
     worth: f64,
 }
 
 /// The best pairs of the two maps that keep every constraint, the best first.
-pub fn best_candidates(
-    problem: &mut Problem<'_>,
-    effort: &Effort,
-    random: &mut Pcg64,
-    tally: &mut Tally,
-) -> Vec<Feasible> {
-    let person = PersonMap::new(problem, effort.postures, effort.postures_a_cell, random);
+pub fn best_candidates(problem: &mut Problem<'_>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
     let map = problem.map;
+    let made;
+    let person = match problem.person {
+        Some(person) => person,
+        None => {
+            made = PersonMap::of(problem.scenario, &problem.human);
+            &made
+        }
+    };
     if map.bank.is_empty() {
         tally.remove_all(map.drawn, Rejection::RobotReach);
     }
@@ -65,7 +66,7 @@ pub fn best_candidates(
             continue;
         }
         let before = proposals.len();
-        propose(problem, &person, known, &mut proposals);
+        propose(problem, person, known, &mut proposals);
         if proposals.len() == before {
             tally.remove(Rejection::PersonReach);
         }
@@ -93,7 +94,7 @@ fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>
     }
     fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<Feasible> = Vec::new();
-    let mut used: Vec<&KnownHold> = Vec::new();
+    let mut used: Vec<&BankedHold> = Vec::new();
     for (_, known, candidate) in fitting {
         if kept.len() == effort.starts || tally.is_exhausted() {
             break;
@@ -114,24 +115,20 @@ fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>
 }
 
 /// Pairs a hold with the postures that its tool pose asks for.
-fn propose<'a>(problem: &Problem<'_>, person: &PersonMap, known: &'a KnownHold, proposals: &mut Vec<Proposal<'a>>) {
+fn propose<'a>(problem: &Problem<'_>, person: &'a PersonMap, known: &'a BankedHold, proposals: &mut Vec<Proposal<'a>>) {
     let operation = &problem.scenario.operation;
-    let mut points: Option<Vec<Point3<f64>>> = None;
+    let settings = &problem.objective;
+    let floor_z_m = problem.map.robot.floor_z_m;
     // Where the tool may roll, all rolls share a cell; which one a posture needs is worked out.
-    let x_wt = known.x_wo * operation.x_ot;
-    for posture in person.postures(&x_wt, problem.map.robot.floor_z_m) {
+    let x_wt = known.hold.x_wo * operation.x_ot;
+    for posture in person.postures(&x_wt, floor_z_m) {
         let roll_rad = if operation.kind.roll_is_free() { roll_between(&x_wt, &posture.x_bt) } else { 0.0 };
-        let x_wt = known.x_wo * operation.rolled(roll_rad).x_ot;
-        let x_wb = standing(&x_wt, &posture.x_bt, problem.map.robot.floor_z_m);
-        let points = points
-            .get_or_insert_with(|| comfort::robot_points_w(&problem.map.robot, &problem.map.link_poses(&known.holds)));
-        let body = problem.human.body_points_w(&x_wb, &posture.q_h_rad);
-        // A quarter of the points tells promising pairs from others.
-        let body: [_; BODY_POINTS / 4] = std::array::from_fn(|point| body[4 * point + 1]);
-        let settings = &problem.objective;
-        let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, points);
+        let x_wt = known.hold.x_wo * operation.rolled(roll_rad).x_ot;
+        let x_wb = standing(&x_wt, &posture.x_bt, floor_z_m);
+        let body = posture.sketch_w(&x_wb);
+        let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, &known.robot_points_w);
         let worth = posture.worth + settings.weight_peripersonal * distance_m;
-        proposals.push(Proposal { known, posture: *posture, roll_rad, x_wb, worth });
+        proposals.push(Proposal { known, posture, roll_rad, x_wb, worth });
     }
 }
 
@@ -158,20 +155,20 @@ pub fn standing(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
 /// The pair with a posture that brings the tool exactly to its place; none when the arm cannot.
 fn fit(problem: &Problem<'_>, proposal: &Proposal<'_>) -> Option<Candidate> {
     let Proposal { known, posture, roll_rad, x_wb, .. } = proposal;
-    let x_wt = known.x_wo * problem.scenario.operation.rolled(*roll_rad).x_ot;
+    let x_wt = known.hold.x_wo * problem.scenario.operation.rolled(*roll_rad).x_ot;
     let x_bt = x_wb.inverse() * x_wt;
     let swivel_rad = problem.human.swivel_rad(&posture.q_h_rad);
     let apart = |q: &ArmAngles| q.iter().zip(&posture.q_h_rad).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
     let q_h_rad =
         problem.human.arm_solutions(&x_bt, swivel_rad).into_iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
     let heading = x_wb.rotation * Vector3::x();
-    let p_wo = known.x_wo.translation.vector;
+    let p_wo = known.hold.x_wo.translation.vector;
     Some(Candidate {
         q_h_rad,
         heading_rad: heading.y.atan2(heading.x),
         roll_rad: *roll_rad,
         p_wo_xy_m: [p_wo.x, p_wo.y],
-        holds: known.holds.clone(),
+        holds: known.hold.holds.clone(),
     })
 }
 

@@ -6,7 +6,7 @@ use crate::{
 };
 
 use super::{
-    bank::{self, KnownHold},
+    bank::{self, BankedHold},
     candidate::Hold,
     reach::ReachMap,
 };
@@ -24,7 +24,7 @@ pub struct RobotMap {
     /// The indices of the arms.
     pub(super) holding: Vec<usize>,
     pub(super) collision: CollisionModel,
-    pub(super) bank: Vec<KnownHold>,
+    pub(super) bank: Vec<BankedHold>,
     /// How often a hold was looked for.
     pub(super) drawn: u64,
 }

@@ -191,21 +191,44 @@ impl Chain {
     }
 
     /// The torque that the motors must supply to hold the arm still against gravity, N m: the gradient of the potential
-    /// energy, `tau_i = -z_i . sum_{k >= i} (c_k - p_i) x m_k g`.
+    /// energy, `tau_i = -g . z_i x l_i` with `l_i = sum_{k >= i} (c_k - p_i) m_k`.
     pub fn gravity_torque_nm(&self, q_rad: &[f64]) -> DVector<f64> {
         let frames = self.joint_frames(q_rad);
-        let mut torque = DVector::zeros(self.dof());
+        let (axes_w, levers_kg_m) = (self.axes_w(&frames), self.carried_moments_w(&frames));
+        let torques =
+            axes_w.iter().zip(&levers_kg_m).map(|(axis_w, lever_kg_m)| -axis_w.dot(&lever_kg_m.cross(&GRAVITY_W)));
+        DVector::from_iterator(self.dof(), torques)
+    }
+
+    /// How that torque changes with the angles, dof x dof, N m/rad: the second derivative of the potential energy,
+    /// `dtau_i/dq_j = -g . z_i x (z_j x l_j)` for `i <= j`, and symmetric.
+    pub fn gravity_stiffness_nm_rad(&self, q_rad: &[f64]) -> DMatrix<f64> {
+        let frames = self.joint_frames(q_rad);
+        let (axes_w, levers_kg_m) = (self.axes_w(&frames), self.carried_moments_w(&frames));
+        let mut stiffness = DMatrix::zeros(self.dof(), self.dof());
+        for (column, lever_kg_m) in levers_kg_m.iter().enumerate() {
+            let turned = axes_w[column].cross(lever_kg_m);
+            for row in 0..=column {
+                let entry = -axes_w[row].dot(&turned.cross(&GRAVITY_W));
+                stiffness[(row, column)] = entry;
+                stiffness[(column, row)] = entry;
+            }
+        }
+        stiffness
+    }
+
+    /// The first moment of the mass that each joint carries about the joint's origin, kg m, W axes.
+    fn carried_moments_w(&self, frames: &[Pose]) -> Vec<Vector3<f64>> {
+        let mut levers_kg_m = vec![Vector3::zeros(); self.dof()];
         let mut mass_kg = 0.0;
         let mut moment_kg_m = Vector3::zeros();
-        for (number, (joint, x_wj)) in self.joints.iter().zip(&frames).enumerate().rev() {
+        for (number, (joint, x_wj)) in self.joints.iter().zip(frames).enumerate().rev() {
             let segment = &joint.segment;
             mass_kg += segment.mass_kg;
             moment_kg_m += (x_wj.rotation * segment.com_j + x_wj.translation.vector) * segment.mass_kg;
-            let lever_kg_m = moment_kg_m - x_wj.translation.vector * mass_kg;
-            let axis_w = x_wj.rotation * joint.axis_j.into_inner();
-            torque[number] = -axis_w.dot(&lever_kg_m.cross(&GRAVITY_W));
+            levers_kg_m[number] = moment_kg_m - x_wj.translation.vector * mass_kg;
         }
-        torque
+        levers_kg_m
     }
 
     /// The joint-space inertia, dof x dof, kg m^2: `sum_k m_k Jv_k' Jv_k + Jw_k' I_k Jw_k`, without motor inertia.

@@ -22,16 +22,37 @@ const OPPOSITE: f64 = 1e-9;
 
 /// The equilibrium at a load factor when it is that of the welded hold and this can be shown cheaply.
 pub(super) fn equilibrium(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Equilibrium> {
-    let outer = hold.weight + hold.load.scaled(load_factor);
-    let wrenches = welded.hand_wrenches(&outer);
-    let pads: Option<Vec<_>> = hold.hands.iter().zip(&wrenches).map(|(hand, wrench)| shared(hand, wrench)).collect();
-    let board: Twist = welded.twist_at_tip(&outer).at(&-hold.p_ot);
-    Some(Equilibrium::of_pads(hold, load_factor, pads?, board))
+    let pads = shared(hold, welded, load_factor)?;
+    hold.hands.iter().zip(&pads).all(|(hand, pads)| is_kept(hand, pads)).then(|| {
+        let board = board(hold, welded, load_factor);
+        Equilibrium::of_pads(hold, load_factor, pads, board)
+    })
 }
 
-/// A hand's wrench about its grasp point, shared between its pads, when each stays surely below its limits: each about
-/// its centre in pad axes.
-fn shared(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
+/// The equilibrium of a hold that differs a little from one whose equilibrium is that of the welded hold: its pads are
+/// below their limits too, or by a hair beyond.
+pub(super) fn of_neighbour(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Equilibrium> {
+    let pads = shared(hold, welded, load_factor)?;
+    Some(Equilibrium::of_pads(hold, load_factor, pads, board(hold, welded, load_factor)))
+}
+
+fn board(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Twist {
+    welded.twist_at_tip(&outer(hold, load_factor)).at(&-hold.p_ot)
+}
+
+fn outer(hold: &Hold, load_factor: f64) -> Wrench {
+    hold.weight + hold.load.scaled(load_factor)
+}
+
+/// The hands' wrenches when all are welded to the board, shared between their pads: each about its centre in pad axes. None
+/// where a hand has no such pads.
+fn shared(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Vec<[Wrench; 2]>> {
+    let wrenches = welded.hand_wrenches(&outer(hold, load_factor));
+    hold.hands.iter().zip(&wrenches).map(|(hand, wrench)| shared_by_pads(hand, wrench)).collect()
+}
+
+/// A hand's wrench about its grasp point, shared between its pads: `fn_1 + fn_2 = 2 F`, what is tangential by halves.
+fn shared_by_pads(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
     if hand.wrench_limits.is_some() {
         return None;
     }
@@ -39,7 +60,6 @@ fn shared(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
     if (normals[0] + normals[1]).norm() > OPPOSITE {
         return None;
     }
-    // fn_1 + fn_2 = 2 F, fn_1 - fn_2 = f . n_1; what is tangential by halves.
     let across_n = wrench.force_n.dot(&normals[0]);
     let tangential_n = wrench.force_n - normals[0] * across_n;
     let forces_n = [0, 1].map(|pad: usize| {
@@ -49,17 +69,20 @@ fn shared(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
     let levers = hand.pads.each_ref().map(|pad| pad.x_op.translation.vector - hand.grasp_point_o);
     let carried_nm = levers[0].cross(&forces_n[0]) + levers[1].cross(&forces_n[1]);
     let rest_nm = (wrench.moment_nm - carried_nm) / 2.0;
-    let pads = [0, 1].map(|pad: usize| {
+    Some([0, 1].map(|pad: usize| {
         let to_pad = hand.pads[pad].x_op.rotation.inverse();
         Wrench::new(to_pad * forces_n[pad], to_pad * rest_nm)
-    });
-    let kept = hand.pads.iter().zip(&pads).all(|(pad, Wrench { force_n, moment_nm })| {
+    }))
+}
+
+/// True when each pad stays surely below its limits.
+fn is_kept(hand: &HandModel, pads: &[Wrench; 2]) -> bool {
+    hand.pads.iter().zip(pads).all(|(pad, Wrench { force_n, moment_nm })| {
         let [a, b] = pad.half_sides_m;
         let tangential_n = force_n.x.hypot(force_n.y).hypot(moment_nm.z / pad.torsion_radius_m());
         pad.kind == PadKind::SoftFinger
             && tangential_n <= SURE * pad.friction * force_n.z
             && moment_nm.x.abs() <= SURE * b * force_n.z
             && moment_nm.y.abs() <= SURE * a * force_n.z
-    });
-    kept.then_some(pads)
+    })
 }

@@ -27,12 +27,9 @@ use super::{
     hold::{HandModel, Hold},
     layout::Layout,
     load_factor::{balance_twist, joint_torque},
-    program::{FORCE_UNIT_N, HandEnergy, RawSolution, pad_wrenches, wrench_units},
+    program::{DISPLACEMENT_UNIT_M, FORCE_UNIT_N, HandEnergy, RawSolution, pad_wrenches, wrench_units},
 };
 use crate::model::wrench::Wrench;
-
-/// Displacements are solved for in this unit, m: those of interest are a few of it.
-const DISPLACEMENT_UNIT_M: f64 = 1e-3;
 
 /// Compliance of a pad against a force through its centre, m/N; against a moment, this over the square of the lever at
 /// which the pad takes it up (a half side, or the torsion radius). See the module's text.

@@ -1,6 +1,6 @@
 //! A [`Hold`] from a plan: the one place of this module that knows what a robot is.
 
-use nalgebra::{DMatrix, Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 use super::{
     contact::PadKind,
@@ -101,26 +101,9 @@ impl HandModel {
             gravity_torque_nm: chain.gravity_torque_nm(&plan_arm.q_rad),
             effort_nm: chain.effort_nm().to_vec().into(),
             stiffness_nm_rad: arm.stiffness_nm_rad.clone().into(),
-            gravity_stiffness_nm_rad: gravity_stiffness_nm_rad(chain, &plan_arm.q_rad),
+            gravity_stiffness_nm_rad: chain.gravity_stiffness_nm_rad(&plan_arm.q_rad),
         })
     }
-}
-
-/// `dg/dq` by central differences, symmetric as the second derivative of a potential is. A step of 1 mrad leaves 1e-7 of
-/// its size (`sin x - x`), and rounding less.
-fn gravity_stiffness_nm_rad(chain: &Chain, q_rad: &[f64]) -> DMatrix<f64> {
-    const STEP_RAD: f64 = 1e-3;
-    let mut q = q_rad.to_vec();
-    let mut gradient = DMatrix::zeros(q.len(), q.len());
-    for joint in 0..q.len() {
-        q[joint] = q_rad[joint] + STEP_RAD;
-        let forth = chain.gravity_torque_nm(&q);
-        q[joint] = q_rad[joint] - STEP_RAD;
-        let back = chain.gravity_torque_nm(&q);
-        q[joint] = q_rad[joint];
-        gradient.set_column(joint, &((forth - back) / (2.0 * STEP_RAD)));
-    }
-    (&gradient + gradient.transpose()) / 2.0
 }
 
 /// The Jacobian of the grasp point in O axes, from that of G's origin in W axes.

@@ -9,7 +9,7 @@ use super::{
 use crate::model::{frames::Pose, wrench::Wrench};
 
 /// The most hands that a hold may have.
-const MAX_HANDS: usize = 4;
+pub(super) const MAX_HANDS: usize = 4;
 
 /// One pad on the object, by default a soft finger with a rectangular patch (METHOD section 6).
 #[derive(Clone, Debug, PartialEq)]

@@ -45,6 +45,9 @@ pub const MAX_LOAD_FACTOR: f64 = 100.0;
 /// Unit of force, N.
 pub(super) const FORCE_UNIT_N: f64 = 10.0;
 
+/// Displacements are solved for in this unit, m: those of interest are a few of it.
+pub(super) const DISPLACEMENT_UNIT_M: f64 = 1e-3;
+
 /// Unit of length of the moments in the balance rows, m.
 pub(super) const LENGTH_UNIT_M: f64 = 0.2;
 

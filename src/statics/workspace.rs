@@ -6,6 +6,7 @@ use super::{
     elastic,
     equilibrium::{self, CompliantResponse, EquilibriumOutcome, ResponseOutcome, hand_energy},
     hold::{Hold, HoldError},
+    interior_point::InteriorPoint,
     load_factor::{self, LoadFactorOutcome},
     program::{HandEnergy, Program, ProgramKind, ReusedSolver},
     robust::{self, InternalForces, RobustOutcome, Variation},
@@ -111,6 +112,9 @@ impl StabilityWorkspace {
         energies: &[HandEnergy],
         load_factor: f64,
     ) -> EquilibriumOutcome {
+        if let Some(found) = InteriorPoint::solve(hold, energies, load_factor) {
+            return EquilibriumOutcome::Found(found.equilibrium(hold, load_factor));
+        }
         let program = Program::equilibrium(hold, energies, load_factor);
         match self.equilibrium.solve(&program) {
             Some(raw) => equilibrium::interpret(hold, &program.layout, load_factor, &raw),

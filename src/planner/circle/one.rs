@@ -44,7 +44,7 @@ pub fn holds(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served
 fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served> {
     let map = circle.map;
     let rough = |hold: &'_ KnownHold| Score::of(circle.estimates(hold).into_iter());
-    let mut holds: Vec<_> = map.bank.iter().map(|hold| (rough(hold), hold)).collect();
+    let mut holds: Vec<_> = map.bank.iter().map(|banked| (rough(&banked.hold), &banked.hold)).collect();
     holds.sort_by(|a, b| a.0.order(&b.0));
     let mut served = Vec::new();
     for (_, hold) in holds.into_iter().take(RATED_A_START * circle.effort.starts) {

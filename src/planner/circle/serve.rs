@@ -18,7 +18,7 @@ use super::super::{
 };
 use crate::{
     comfort::{self, Answer},
-    human::{BODY_POINTS, HumanError, peripersonal_m},
+    human::{HumanError, peripersonal_m},
     model::{frames::Pose, plan::Plan, scenario::Scenario},
 };
 
@@ -50,9 +50,10 @@ impl<'a> Circle<'a> {
         let mut problems = points.iter().map(problem).collect::<Result<Vec<_>, _>>()?;
         let Some(first) = problems.first_mut() else { return Ok(None) };
         let effort = Effort::of(first.scenario.planner.budget);
-        let mut random = Pcg64::new(u128::from(first.scenario.planner.seed), 0);
+        // The person's map draws from the first stream.
+        let random = Pcg64::new(u128::from(first.scenario.planner.seed), 1);
         // The knife's force and the person are the same at all points, seen from the tool.
-        let person = PersonMap::new(first, effort.postures, effort.postures_a_cell, &mut random);
+        let person = PersonMap::of(first.scenario, &first.human);
         Ok(Some(Self { map, effort, random, problems, person, evaluations: 0 }))
     }
 
@@ -71,9 +72,7 @@ impl<'a> Circle<'a> {
         let settings = &problem.objective;
         let guess = |posture: &Posture| {
             let x_wb = standing(&x_wt, &posture.x_bt, floor_z_m);
-            let body = problem.human.body_points_w(&x_wb, &posture.q_h_rad);
-            // A quarter of the points tells promising postures from others.
-            let body: [_; BODY_POINTS / 4] = std::array::from_fn(|number| body[4 * number + 1]);
+            let body = posture.sketch_w(&x_wb);
             let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, robot_points_w);
             Guess { posture: *posture, x_wb, worth: posture.worth + settings.weight_peripersonal * distance_m }
         };

@@ -12,7 +12,11 @@ use super::{
     moves::{Moves, SMALL},
     program::Row,
 };
-use crate::collision::{Carrier, Near};
+use crate::{
+    collision::{Carrier, Near},
+    model::scenario::StabilityKind,
+    statics::NearbyResponse,
+};
 
 /// Bodies farther apart than this, beyond what they must keep, are no constraint of a step, m.
 const WATCHED_M: f64 = 0.06;
@@ -134,12 +138,22 @@ impl Linear {
             return known.clone();
         }
         let count = self.moves.count();
+        let limits = assess::stability_limits(problem.scenario);
+        // Around a compliant response all moves together cost less than one response; else each has its own.
+        let nearby = (problem.scenario.planner.stability == StabilityKind::Compliant)
+            .then(|| assess::statics_hold(problem, &here.candidate, &here.configured.placed.x_wo).ok())
+            .flatten()
+            .and_then(|hold| NearbyResponse::new(&hold, limits.load_factor));
         let mut gradient = DVector::zeros(count);
         for number in 0..count {
             let mut d = DVector::zeros(count);
             d[number] = SMALL_STABLE;
             let candidate = self.moves.moved(&here.candidate, &d);
-            let there = assess::utilisation(problem, &candidate, &candidate.x_wo(problem));
+            let x_wo = candidate.x_wo(problem);
+            let there = nearby
+                .as_ref()
+                .and_then(|nearby| nearby.utilisation(&assess::statics_hold(problem, &candidate, &x_wo).ok()?, &limits))
+                .unwrap_or_else(|| assess::utilisation(problem, &candidate, &x_wo));
             // Where there is no equilibrium, one side tells nothing: stay.
             gradient[number] = if there.is_finite() { (there - here.utilisation) / SMALL_STABLE } else { 1.0 };
         }
