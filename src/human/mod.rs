@@ -38,7 +38,7 @@ mod tests;
 pub use arm::{Arm, ArmAngles, ArmFrames, ArmJacobian};
 pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use muscular::{JointTorques, Muscular};
-pub use peripersonal::{Distances, peripersonal_m};
+pub use peripersonal::{Distances, Pull, peripersonal_m, peripersonal_pulls};
 pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, STILL_POINTS, Side};
 pub use strength::{Sense, Strength};
 pub use swivel::{ArmSolutions, ShoulderBranch, SwivelCircle, SwivelInterval, SwivelIntervals};

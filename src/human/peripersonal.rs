@@ -2,7 +2,7 @@
 //!
 //! Points in, metres out; this module knows neither bodies nor robots.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use crate::model::scenario::PeripersonalForm;
 
@@ -28,6 +28,57 @@ pub fn peripersonal_m(
     let mut distances = Distances::new(saturation_m);
     distances.add(human_points, robot_points);
     distances.peripersonal_m(form)
+}
+
+/// How the metric grows as a point of the person moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pull {
+    /// The robot's point that is nearest to it.
+    pub nearest: usize,
+    /// The gradient with respect to the person's point, and the negative of that with respect to the robot's: along the
+    /// line between them, dimensionless.
+    pub away: Vector3<f64>,
+}
+
+/// The gradient of [`peripersonal_m`], a pull for each point of the person: with `D = sum d`,
+///
+/// ```text
+/// min: 1 for the nearest point;   mean: 1/n;   weighted: (1 - 2 d/D + (sum d^2)/D^2) / n;   0 beyond the saturation
+/// ```
+///
+/// It is not defined where two of the robot's points are equally near; then the first counts.
+pub fn peripersonal_pulls(
+    form: PeripersonalForm,
+    saturation_m: Option<f64>,
+    human_points: &[Point3<f64>],
+    robot_points: &[Point3<f64>],
+) -> Vec<Pull> {
+    if robot_points.is_empty() {
+        return Vec::new();
+    }
+    let most_m = saturation_m.unwrap_or(f64::INFINITY);
+    let nearest = |p: &Point3<f64>| {
+        let squared = robot_points.iter().map(|robot| (p - robot).norm_squared()).enumerate();
+        let (nearest, _) =
+            squared.fold((0, f64::INFINITY), |least, other| if other.1 < least.1 { other } else { least });
+        (nearest, p - robot_points[nearest])
+    };
+    let found: Vec<_> = human_points.iter().map(nearest).collect();
+    let distances_m: Vec<_> = found.iter().map(|(_, apart)| apart.norm().min(most_m)).collect();
+    let n = found.len() as f64;
+    let (sum_m, sum_m2) = distances_m.iter().fold((0.0, 0.0), |(sum, sum2), d| (sum + d, sum2 + d * d));
+    let least = distances_m.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map(|(point, _)| point);
+    let slope = |point: usize| match form {
+        _ if distances_m[point] >= most_m || distances_m[point] == 0.0 => 0.0,
+        PeripersonalForm::Min => f64::from(least == Some(point)),
+        PeripersonalForm::Mean => 1.0 / n,
+        PeripersonalForm::Weighted => (1.0 - 2.0 * distances_m[point] / sum_m + sum_m2 / (sum_m * sum_m)) / n,
+    };
+    let pull = |(point, (nearest, apart)): (usize, &(usize, Vector3<f64>))| {
+        let slope = slope(point);
+        Pull { nearest: *nearest, away: if slope == 0.0 { Vector3::zeros() } else { apart * (slope / apart.norm()) } }
+    };
+    found.iter().enumerate().map(pull).collect()
 }
 
 /// What the metric needs of the distances from points of a person to a robot. Points may be added a few at a time: those

@@ -5,7 +5,12 @@ use std::{collections::BTreeMap, rc::Rc};
 use nalgebra::{Isometry3, Point3, Quaternion, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
 
-use super::{Candidate, Infeasible, Problem, propose::uniform, watch::Count};
+use super::{
+    Infeasible, Problem,
+    candidate::{Candidate, Placed},
+    propose::uniform,
+    watch::Count,
+};
 use crate::{
     collision::{PersonPart, Scene},
     comfort,
@@ -122,13 +127,6 @@ impl Tally {
     }
 }
 
-/// The poses that follow from a candidate's posture and place.
-#[derive(Clone, Copy, Debug)]
-pub struct Placed {
-    pub x_wo: Pose,
-    pub x_wb: Pose,
-}
-
 /// Everything about a candidate that follows from its numbers.
 #[derive(Clone, Debug)]
 pub struct Configured {
@@ -153,7 +151,7 @@ pub struct Feasible {
 impl Configured {
     /// Computes it; the candidate's arms must have configurations.
     pub fn new(problem: &Problem<'_>, candidate: &Candidate) -> Self {
-        let placed = Placed { x_wo: candidate.x_wo(problem), x_wb: candidate.x_wb(problem) };
+        let placed = candidate.placed(problem);
         Self {
             placed,
             link_poses: problem.map.link_poses(&candidate.holds),

@@ -29,28 +29,54 @@ pub struct Hold {
     pub q_rad: Vec<f64>,
 }
 
-impl Candidate {
-    /// The board's pose relative to the person: `X_BO = X_BT X_OT^-1`.
-    fn x_bo(&self, problem: &Problem<'_>) -> Pose {
+/// What a candidate says of the person, the tool and the board's place: all but how the robot holds it.
+#[derive(Clone, Copy, Debug)]
+pub struct Stance {
+    pub q_h_rad: [f64; 7],
+    pub heading_rad: f64,
+    pub roll_rad: f64,
+    pub p_wo_xy_m: [f64; 2],
+}
+
+/// Where board and person are.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    pub x_wo: Pose,
+    pub x_wb: Pose,
+}
+
+impl Stance {
+    /// The board's pose in the world, whose height follows from the floor that the person stands on, and the person's,
+    /// upright on that floor: `X_WB = X_WO X_BO^-1`, whose tilt is zero.
+    pub fn placed(&self, problem: &Problem<'_>) -> Placed {
+        // The board's pose relative to the person: X_BO = X_BT X_OT^-1.
         let x_ot = problem.scenario.operation.rolled(self.roll_rad).x_ot;
-        problem.human.tool_pose_b(&self.q_h_rad) * x_ot.inverse()
+        let x_bo = problem.human.tool_pose_b(&self.q_h_rad) * x_ot.inverse();
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.heading_rad);
+        let floor_z_m = problem.map.robot.floor_z_m;
+        let p_bo_w = turn * x_bo.translation.vector;
+        let [x_m, y_m] = self.p_wo_xy_m;
+        Placed {
+            x_wo: Isometry3::from_parts(Vector3::new(x_m, y_m, floor_z_m + p_bo_w.z).into(), turn * x_bo.rotation),
+            x_wb: Isometry3::from_parts(Vector3::new(x_m - p_bo_w.x, y_m - p_bo_w.y, floor_z_m).into(), turn),
+        }
+    }
+}
+
+impl Candidate {
+    /// All but how the robot holds the board.
+    pub fn stance(&self) -> Stance {
+        let Self { q_h_rad, heading_rad, roll_rad, p_wo_xy_m, .. } = *self;
+        Stance { q_h_rad, heading_rad, roll_rad, p_wo_xy_m }
     }
 
-    /// The board's pose in the world: the person stands on the floor, which fixes the height.
+    /// Where board and person are.
+    pub fn placed(&self, problem: &Problem<'_>) -> Placed {
+        self.stance().placed(problem)
+    }
+
+    /// The board's pose in the world.
     pub fn x_wo(&self, problem: &Problem<'_>) -> Pose {
-        let x_bo = self.x_bo(problem);
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.heading_rad);
-        let z_m = problem.map.robot.floor_z_m + x_bo.translation.z;
-        let [x_m, y_m] = self.p_wo_xy_m;
-        Isometry3::from_parts(Vector3::new(x_m, y_m, z_m).into(), turn * x_bo.rotation)
-    }
-
-    /// The person's pose in the world, upright on the floor: `X_WB = X_WO X_BO^-1`, whose tilt is zero.
-    pub fn x_wb(&self, problem: &Problem<'_>) -> Pose {
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.heading_rad);
-        let p_bo_w = turn * self.x_bo(problem).translation.vector;
-        let [x_m, y_m] = self.p_wo_xy_m;
-        let position = Vector3::new(x_m - p_bo_w.x, y_m - p_bo_w.y, problem.map.robot.floor_z_m);
-        Isometry3::from_parts(position.into(), turn)
+        self.placed(problem).x_wo
     }
 }

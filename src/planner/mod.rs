@@ -43,8 +43,8 @@ use crate::{
     robot::Robot,
     statics::{Hold, StabilityWorkspace},
 };
-use assess::{Configured, Feasible, Placed, Rejection, Tally};
-use candidate::Candidate;
+use assess::{Configured, Feasible, Rejection, Tally};
+use candidate::{Candidate, Placed};
 use effort::Effort;
 pub use front::{Front, FrontOutcome, FrontPoint, front};
 pub use person_map::PersonMap;

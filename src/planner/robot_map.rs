@@ -25,6 +25,8 @@ pub struct RobotMap {
     pub(super) holding: Vec<usize>,
     pub(super) collision: CollisionModel,
     pub(super) bank: Vec<BankedHold>,
+    /// What carries each link: an arm, by its number in `arms`, and the last of its joints on the way there.
+    pub(super) carriers: Vec<Option<(usize, usize)>>,
     /// How often a hold was looked for.
     pub(super) drawn: u64,
 }
@@ -62,6 +64,7 @@ impl RobotMap {
             arms: arms.collect(),
             holding: (0..robot.arms.len()).collect(),
             collision: CollisionModel::new(robot),
+            carriers: carriers(robot),
             bank: Vec::new(),
             drawn: 0,
         };
@@ -84,4 +87,21 @@ impl RobotMap {
     pub(super) fn scene<'s>(&'s self, link_poses: &'s [Pose], x_wo: Pose) -> Scene<'s> {
         Scene { link_poses, holding: &self.holding, board_size_m: self.size_m, x_wo, person: &[] }
     }
+}
+
+/// What carries each link of a robot, see [`RobotMap::carriers`].
+fn carriers(robot: &Robot) -> Vec<Option<(usize, usize)>> {
+    let driven = |joint: usize| {
+        let of_arm =
+            |arm: usize| robot.arms[arm].joints.iter().position(|&own| own == joint).map(|number| (arm, number));
+        (0..robot.arms.len()).find_map(of_arm)
+    };
+    let mut carriers: Vec<Option<(usize, usize)>> = Vec::with_capacity(robot.links.len());
+    // Parents come before children.
+    for link in &robot.links {
+        let carrier =
+            link.parent_joint.and_then(|joint| driven(joint).or_else(|| carriers[robot.joints[joint].parent_link]));
+        carriers.push(carrier);
+    }
+    carriers
 }

@@ -8,10 +8,9 @@ use nalgebra::{Isometry3, Point3};
 use rand_pcg::Pcg64;
 
 use super::super::{
-    Effort, Onlooker, Problem, Progress, RobotMap, Watch, assemble_placed,
-    assess::{self, Placed},
+    Effort, Onlooker, Problem, Progress, RobotMap, Watch, assemble_placed, assess,
     bank::KnownHold,
-    candidate::Candidate,
+    candidate::{Candidate, Placed},
     person_map::{PersonMap, Posture},
     propose::standing,
     verify,

@@ -1,6 +1,6 @@
 //! Objective and constraints of a hold, linearised along its free moves.
 
-use nalgebra::{DVector, Point3};
+use nalgebra::DVector;
 
 use super::{
     super::{
@@ -9,8 +9,9 @@ use super::{
         candidate::Candidate,
         propose::{ANGLE_RAD, DEPTH_M},
     },
-    moves::{Moves, SMALL},
+    moves::Moves,
     program::Row,
+    rates::Rates,
 };
 use crate::{
     collision::{Carrier, Near},
@@ -49,32 +50,16 @@ pub struct Linear {
 impl Linear {
     /// Linearises about a hold. Stability is left out until a step or [`Linear::inherit_stability`] asks for it.
     pub fn at(problem: &mut Problem<'_>, here: &Feasible) -> Self {
-        let moves = Moves::at(problem, &here.candidate);
+        let moves = Moves::at(problem, &here.candidate, &here.configured.placed);
         let margins = plain_margins(problem, &here.candidate, &here.configured, &here.comfort.activations);
         let near = problem.map.collision.near(&here.configured.scene(problem), WATCHED_M);
-        let count = moves.count();
-        let mut gradient = DVector::zeros(count);
-        let mut rows: Vec<Row> =
-            margins.iter().map(|&margin| Row { gradient: DVector::zeros(count), margin: margin - BACK_OFF }).collect();
-        let plain = rows.len();
-        rows.extend(
-            near.iter().map(|near| Row { gradient: DVector::zeros(count), margin: near.margin_m - CLEARANCE_M }),
-        );
-        for number in 0..count {
-            let mut d = DVector::zeros(count);
-            d[number] = SMALL;
-            let candidate = moves.moved(&here.candidate, &d);
-            let configured = Configured::new(problem, &candidate);
-            let comfort = assess::comfort(problem, &candidate, &configured);
-            gradient[number] = (comfort.objective - here.worth) / SMALL;
-            let moved = plain_margins(problem, &candidate, &configured, &comfort.activations);
-            for (row, (moved, here)) in rows.iter_mut().zip(moved.iter().zip(&margins)) {
-                row.gradient[number] = (moved - here) / SMALL;
-            }
-            for (row, near) in rows[plain..].iter_mut().zip(&near) {
-                row.gradient[number] = approach(near, &here.configured, &configured) / SMALL;
-            }
-        }
+        let rates = Rates::new(problem, here, &moves);
+        let plain = rates.plain_gradients().into_iter().zip(margins);
+        let mut rows: Vec<_> = plain.map(|(gradient, margin)| Row { gradient, margin: margin - BACK_OFF }).collect();
+        let apart = |near: &Near| Row { gradient: rates.near_gradient(near), margin: near.margin_m - CLEARANCE_M };
+        rows.extend(near.iter().map(apart));
+        let gradient = rates.objective_gradient();
+        drop(rates);
         let near = near.iter().map(|near| near.carriers).collect();
         Self { moves, gradient, rows, near, stability: None, inherited: false }
     }
@@ -189,7 +174,8 @@ impl Linear {
     }
 }
 
-/// The margins of all constraints that cost next to nothing, each in units of about a move, at least 0 when kept.
+/// The margins of all constraints that cost next to nothing, at least 0 when kept; their gradients, in the same order, are
+/// those of [`Rates::plain_gradients`].
 fn plain_margins(
     problem: &Problem<'_>,
     candidate: &Candidate,
@@ -219,28 +205,4 @@ fn plain_margins(
         margins.extend(assess::pad_margins_m(gripper, &hold.grasp, problem.scenario.object.size_m));
     }
     margins
-}
-
-/// How much the bodies of a pair come apart between two nearby configurations, m.
-fn approach(near: &Near, from: &Configured, to: &Configured) -> f64 {
-    let moved = |side: usize| {
-        let p_w = near.p_w[side];
-        match near.carriers[side].0 {
-            Carrier::Link(link) => to.link_poses[link] * (from.link_poses[link].inverse() * p_w) - p_w,
-            Carrier::Board => to.placed.x_wo * (from.placed.x_wo.inverse() * p_w) - p_w,
-            Carrier::Person(part) => {
-                let (from, to) = (&from.person[part], &to.person[part]);
-                let share = share_along(&p_w, &from.p0_w, &from.p1_w);
-                (to.p0_w - from.p0_w) * (1.0 - share) + (to.p1_w - from.p1_w) * share
-            }
-        }
-    };
-    near.normal_w.dot(&(moved(1) - moved(0)))
-}
-
-/// How far along a segment a point is, from 0 to 1.
-fn share_along(p: &Point3<f64>, p0: &Point3<f64>, p1: &Point3<f64>) -> f64 {
-    let axis = p1 - p0;
-    let length2 = axis.norm_squared();
-    if length2 == 0.0 { 0.0 } else { ((p - p0).dot(&axis) / length2).clamp(0.0, 1.0) }
 }

@@ -12,6 +12,7 @@
 mod linear;
 mod moves;
 mod program;
+mod rates;
 
 use nalgebra::{DMatrix, DVector};
 
