@@ -173,7 +173,8 @@ pub fn feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasi
     if utilisation > 1.0 {
         return Err(Rejection::Stability);
     }
-    Ok(rated(problem, candidate, configured, utilisation))
+    let comfort = comfort(problem, &candidate, &configured);
+    Ok(rated(problem, candidate, configured, comfort, utilisation))
 }
 
 /// Tests everything but stability, which costs the most.
@@ -186,8 +187,13 @@ pub fn free(problem: &mut Problem<'_>, candidate: &Candidate, configured: &Confi
 }
 
 /// What a candidate that has passed every test is worth; whoever looks on is told.
-pub fn rated(problem: &mut Problem<'_>, candidate: Candidate, configured: Configured, utilisation: f64) -> Feasible {
-    let comfort = comfort(problem, &candidate, &configured);
+pub fn rated(
+    problem: &mut Problem<'_>,
+    candidate: Candidate,
+    configured: Configured,
+    comfort: Comfort,
+    utilisation: f64,
+) -> Feasible {
     problem.watch.found(&comfort);
     Feasible { candidate, configured, comfort, worth: comfort.objective, utilisation }
 }

@@ -29,6 +29,8 @@ const TRIES: usize = 12;
 const FIRST_TRIES: usize = 200;
 /// Probability that a second arm holds the edge opposite to the first's, not the same one.
 const OPPOSITE: f64 = 0.7;
+/// One in so many of the robot's points does for a first look.
+const GLANCE: usize = 3;
 /// The bank's seed: it is the same for every search.
 const SEED: u128 = 0x0b0a_7d00_ba4c_0001;
 /// First configurations that are drawn for each hold that is wanted, at most.
@@ -47,6 +49,8 @@ pub struct BankedHold {
     pub hold: KnownHold,
     /// The robot's points that peripersonal comfort looks at, W.
     pub robot_points_w: Vec<Point3<f64>>,
+    /// A few of them, for a first look.
+    pub glance_w: Vec<Point3<f64>>,
 }
 
 /// So many holds of the map's size of board, or fewer where they are rare, and how often one was looked for.
@@ -84,9 +88,10 @@ fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<BankedHold> {
     }
     let poses = map.link_poses(&holds);
     let touches = map.collision.first_violation(&map.scene(&poses, x_wo)).is_some();
-    (!touches).then(|| BankedHold {
-        robot_points_w: comfort::robot_points_w(&map.robot, &poses),
-        hold: KnownHold { x_wo, holds },
+    (!touches).then(|| {
+        let robot_points_w = comfort::robot_points_w(&map.robot, &poses);
+        let glance_w = robot_points_w.iter().step_by(GLANCE).copied().collect();
+        BankedHold { hold: KnownHold { x_wo, holds }, robot_points_w, glance_w }
     })
 }
 

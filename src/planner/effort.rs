@@ -3,7 +3,7 @@
 use crate::model::scenario::Budget;
 
 /// The numbers of a budget.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Effort {
     /// Postures of the person's arm that are drawn.
     pub postures: usize,
@@ -13,45 +13,68 @@ pub struct Effort {
     pub disposed: usize,
     /// The best proposals that keep every constraint: where refinement starts.
     pub starts: usize,
-    /// Steps from each start.
-    pub first_steps: usize,
-    /// The best of those.
-    pub finalists: usize,
-    /// Steps from each finalist.
-    pub last_steps: usize,
+    /// At most so many of them hold the same edges the same way.
+    pub starts_of_a_kind: usize,
+    /// Refinement goes in heats: the best so many take so many steps more.
+    pub heats: Vec<Heat>,
+    /// Holds that the search for a whole circle climbs from, and the steps of each climb.
+    pub circle_climbs: usize,
+    pub circle_steps: usize,
+}
+
+/// One heat of the refinement.
+#[derive(Clone, Copy, Debug)]
+pub struct Heat {
+    /// Climbs that take part, the best first.
+    pub climbs: usize,
+    /// Steps that each takes.
+    pub steps: usize,
 }
 
 impl Effort {
     /// The numbers of a budget.
-    pub fn of(budget: Budget) -> Self {
+    pub fn of(budget: Budget) -> Self { Self::of_(budget).tuned() }
+    fn of_(budget: Budget) -> Self {
         match budget {
             Budget::Fast => Self {
-                postures: 10_000,
+                postures: 100_000,
                 postures_a_cell: 4,
                 disposed: 400,
-                starts: 4,
-                first_steps: 5,
-                finalists: 1,
-                last_steps: 25,
+                starts: 8,
+                starts_of_a_kind: 2,
+                heats: vec![Heat { climbs: 8, steps: 6 }, Heat { climbs: 3, steps: 10 }, Heat { climbs: 1, steps: 20 }],
+                circle_climbs: 1,
+                circle_steps: 25,
             },
             Budget::Default => Self {
-                postures: 20_000,
-                postures_a_cell: 8,
-                disposed: 800,
-                starts: 12,
-                first_steps: 6,
-                finalists: 3,
-                last_steps: 30,
+                postures: 100_000,
+                postures_a_cell: 4,
+                disposed: 1_500,
+                starts: 24,
+                starts_of_a_kind: 3,
+                heats: vec![
+                    Heat { climbs: 24, steps: 6 },
+                    Heat { climbs: 12, steps: 6 },
+                    Heat { climbs: 6, steps: 10 },
+                    Heat { climbs: 2, steps: 25 },
+                ],
+                circle_climbs: 3,
+                circle_steps: 30,
             },
             Budget::Exhaustive => Self {
-                postures: 200_000,
-                postures_a_cell: 100,
+                postures: 400_000,
+                postures_a_cell: 40,
                 disposed: 50_000,
                 starts: 400,
-                first_steps: 15,
-                finalists: 60,
-                last_steps: 100,
+                starts_of_a_kind: 400,
+                heats: vec![Heat { climbs: 400, steps: 40 }, Heat { climbs: 60, steps: 100 }],
+                circle_climbs: 60,
+                circle_steps: 100,
             },
         }
     }
 }
+fn env(name: &str, default: usize) -> usize { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
+impl Effort { pub fn tuned(self) -> Self {
+    let heats: Vec<Heat> = std::env::var("HEATS").map(|h| h.split(',').map(|x| { let (a, b) = x.split_once('x').unwrap(); Heat { climbs: a.parse().unwrap(), steps: b.parse().unwrap() } }).collect()).unwrap_or(self.heats.clone());
+    Self { postures: env("POSTURES", self.postures), postures_a_cell: env("KEPT", self.postures_a_cell), disposed: env("DISPOSED", self.disposed), starts: env("STARTS", self.starts), starts_of_a_kind: env("KIND", self.starts_of_a_kind), heats, ..self } } }

@@ -35,6 +35,9 @@ const WRENCH_UNIT: f64 = 1e-9;
 /// How many of the body's points a posture keeps: a quarter tells promising postures from others.
 pub const SKETCH_POINTS: usize = BODY_POINTS / 4;
 
+/// The first so many of them, spread over the body, do for a first look.
+pub const GLANCE_POINTS: usize = SKETCH_POINTS / 4;
+
 /// A posture of the person's arm.
 #[derive(Clone, Copy, Debug)]
 pub struct Posture {
@@ -134,7 +137,9 @@ impl PersonMap {
         let kept = map.origin.kept;
         let sketched = |(_, q_h_rad, x_bt, worth): &(f64, ArmAngles, Pose, f64)| {
             let points = human.body_points_w(&Pose::identity(), q_h_rad);
-            let sketch_b = std::array::from_fn(|point| points[point * BODY_POINTS / SKETCH_POINTS + 1]);
+            // A permutation of 0 to 15 in which the first four are far apart.
+            let spread = |place: usize| 4 * (place % GLANCE_POINTS) + place / GLANCE_POINTS;
+            let sketch_b = std::array::from_fn(|place| points[spread(place) * BODY_POINTS / SKETCH_POINTS + 1]);
             Posture { q_h_rad: *q_h_rad, x_bt: *x_bt, worth: *worth, sketch_b }
         };
         map.cells = found

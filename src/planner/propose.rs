@@ -7,7 +7,8 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use arrayvec::ArrayVec;
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64;
 
@@ -17,7 +18,7 @@ use super::{
     bank::BankedHold,
     candidate::Candidate,
     effort::Effort,
-    person_map::{PersonMap, Posture},
+    person_map::{GLANCE_POINTS, PersonMap, Posture, SKETCH_POINTS},
 };
 use crate::{
     human::{ArmAngles, peripersonal_m},
@@ -32,12 +33,16 @@ pub const DEPTH_M: [f64; 2] = [0.020, 0.060];
 /// Turn of the gripper in the plane of the board, rad (METHOD section 2).
 pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
 
+/// Hands by which kinds of holds are told apart.
+const MAX_HANDS: usize = 4;
+/// How many of the pairs that look best at first are looked at again for each that is tested in earnest.
+const SECOND_LOOKS: usize = 3;
+
 /// A hold of the bank and a posture that nearly answers it.
+#[derive(Clone, Copy)]
 struct Proposal<'a> {
     known: &'a BankedHold,
     posture: &'a Posture,
-    roll_rad: f64,
-    x_wb: Pose,
     worth: f64,
 }
 
@@ -55,7 +60,7 @@ pub fn best_candidates(problem: &mut Problem<'_>, effort: &Effort, tally: &mut T
     if map.bank.is_empty() {
         tally.remove_all(map.drawn, Rejection::RobotReach);
     }
-    let mut proposals = Vec::new();
+    let mut proposals = Vec::with_capacity(map.bank.len() * effort.postures_a_cell);
     for known in &map.bank {
         if tally.is_exhausted() {
             break;
@@ -65,21 +70,36 @@ pub fn best_candidates(problem: &mut Problem<'_>, effort: &Effort, tally: &mut T
             tally.remove(Rejection::Strength);
             continue;
         }
-        let before = proposals.len();
-        propose(problem, person, known, &mut proposals);
-        if proposals.len() == before {
+        let x_wt = known.hold.x_wo * problem.scenario.operation.x_ot;
+        let postures = person.postures(&x_wt, map.robot.floor_z_m);
+        if postures.is_empty() {
             tally.remove(Rejection::PersonReach);
         }
+        proposals.extend(postures.iter().map(|posture| {
+            let (robot_w, body_b) = (known.glance_w.as_slice(), &posture.sketch_b[..GLANCE_POINTS]);
+            Proposal { known, posture, worth: worth(problem, known, posture, robot_w, body_b) }
+        }));
     }
-    proposals.sort_by(|a, b| b.worth.total_cmp(&a.worth));
+    keep_best(&mut proposals, SECOND_LOOKS * effort.disposed);
+    for Proposal { known, posture, worth: seen } in &mut proposals {
+        *seen = worth(problem, known, posture, &known.robot_points_w, &posture.sketch_b);
+    }
+    keep_best(&mut proposals, effort.disposed);
     dispose(problem, effort, &proposals, tally)
 }
 
-/// Makes the most promising proposals fit, and returns those worth most then that keep every constraint, one a hold, the
-/// best first.
+/// Keeps so many of the proposals that are worth most, the best first.
+fn keep_best(proposals: &mut Vec<Proposal<'_>>, count: usize) {
+    // Stable, so that equals stay in the order of the maps.
+    proposals.sort_by(|a, b| b.worth.total_cmp(&a.worth));
+    proposals.truncate(count);
+}
+
+/// Makes the most promising proposals fit, and returns those worth most then that keep every constraint, one a hold and a
+/// few of a kind, the best first.
 fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>], tally: &mut Tally) -> Vec<Feasible> {
     let mut fitting = Vec::with_capacity(effort.disposed);
-    for proposal in proposals.iter().take(effort.disposed) {
+    for proposal in proposals {
         match fit(problem, proposal) {
             Some(candidate) => {
                 let configured = Configured::new(problem, &candidate);
@@ -99,7 +119,8 @@ fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>
         if kept.len() == effort.starts || tally.is_exhausted() {
             break;
         }
-        if used.iter().any(|other| std::ptr::eq(*other, known)) {
+        let alike = used.iter().filter(|other| kind(other) == kind(known)).count();
+        if alike == effort.starts_of_a_kind || used.iter().any(|other| std::ptr::eq(*other, known)) {
             continue;
         }
         tally.draw();
@@ -114,22 +135,43 @@ fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>
     kept
 }
 
-/// Pairs a hold with the postures that its tool pose asks for.
-fn propose<'a>(problem: &Problem<'_>, person: &'a PersonMap, known: &'a BankedHold, proposals: &mut Vec<Proposal<'a>>) {
-    let operation = &problem.scenario.operation;
+/// What a climb does not change about a hold: which edges are held, and which way up the hands are.
+fn kind(known: &BankedHold) -> ArrayVec<(Edge, bool), MAX_HANDS> {
+    known.hold.holds.iter().take(MAX_HANDS).map(|hold| (hold.grasp.edge, hold.grasp.flipped)).collect()
+}
+
+/// What a hold and a posture would be worth if they fitted exactly, by these points of the robot (W) and of the body (B).
+fn worth(
+    problem: &Problem<'_>,
+    known: &BankedHold,
+    posture: &Posture,
+    robot_w: &[Point3<f64>],
+    body_b: &[Point3<f64>],
+) -> f64 {
     let settings = &problem.objective;
-    let floor_z_m = problem.map.robot.floor_z_m;
+    let x_wb = meeting(problem, known, posture).x_wb;
+    let body_w: ArrayVec<_, SKETCH_POINTS> = body_b.iter().map(|p_b| x_wb * p_b).collect();
+    let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body_w, robot_w);
+    posture.worth + settings.weight_peripersonal * distance_m
+}
+
+/// How a posture answers a hold.
+struct Meeting {
+    roll_rad: f64,
+    x_wt: Pose,
+    x_wb: Pose,
+}
+
+fn meeting(problem: &Problem<'_>, known: &BankedHold, posture: &Posture) -> Meeting {
+    let operation = &problem.scenario.operation;
+    let mut x_wt = known.hold.x_wo * operation.x_ot;
+    let mut roll_rad = 0.0;
     // Where the tool may roll, all rolls share a cell; which one a posture needs is worked out.
-    let x_wt = known.hold.x_wo * operation.x_ot;
-    for posture in person.postures(&x_wt, floor_z_m) {
-        let roll_rad = if operation.kind.roll_is_free() { roll_between(&x_wt, &posture.x_bt) } else { 0.0 };
-        let x_wt = known.hold.x_wo * operation.rolled(roll_rad).x_ot;
-        let x_wb = standing(&x_wt, &posture.x_bt, floor_z_m);
-        let body = posture.sketch_w(&x_wb);
-        let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, &known.robot_points_w);
-        let worth = posture.worth + settings.weight_peripersonal * distance_m;
-        proposals.push(Proposal { known, posture, roll_rad, x_wb, worth });
+    if operation.kind.roll_is_free() {
+        roll_rad = roll_between(&x_wt, &posture.x_bt);
+        x_wt = known.hold.x_wo * operation.rolled(roll_rad).x_ot;
     }
+    Meeting { roll_rad, x_wt, x_wb: standing(&x_wt, &posture.x_bt, problem.map.robot.floor_z_m) }
 }
 
 /// The roll about the tool's axis that brings the vertical, seen from the tool, from one pose to another.
@@ -154,8 +196,8 @@ pub fn standing(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
 
 /// The pair with a posture that brings the tool exactly to its place; none when the arm cannot.
 fn fit(problem: &Problem<'_>, proposal: &Proposal<'_>) -> Option<Candidate> {
-    let Proposal { known, posture, roll_rad, x_wb, .. } = proposal;
-    let x_wt = known.hold.x_wo * problem.scenario.operation.rolled(*roll_rad).x_ot;
+    let Proposal { known, posture, .. } = proposal;
+    let Meeting { roll_rad, x_wt, x_wb } = meeting(problem, known, posture);
     let x_bt = x_wb.inverse() * x_wt;
     let swivel_rad = problem.human.swivel_rad(&posture.q_h_rad);
     let apart = |q: &ArmAngles| q.iter().zip(&posture.q_h_rad).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
@@ -166,7 +208,7 @@ fn fit(problem: &Problem<'_>, proposal: &Proposal<'_>) -> Option<Candidate> {
     Some(Candidate {
         q_h_rad,
         heading_rad: heading.y.atan2(heading.x),
-        roll_rad: *roll_rad,
+        roll_rad,
         p_wo_xy_m: [p_wo.x, p_wo.y],
         holds: known.hold.holds.clone(),
     })

@@ -59,7 +59,8 @@ pub fn top<'a>(
     let mut tally = Tally::new(count);
     let effort = Effort::of(scenario.planner.budget);
     let starts = effort.starts.max(STARTS_A_PLAN.saturating_mul(wanted));
-    let effort = Effort { starts, finalists: effort.finalists.max(2 * wanted), ..effort };
+    let mut effort = Effort { starts, ..effort };
+    effort.heats.iter_mut().for_each(|heat| heat.climbs = heat.climbs.max(2 * wanted));
     let mut plans: Vec<Plan> = Vec::with_capacity(wanted);
     for found in search(&mut problem, &effort, &mut tally) {
         if plans.len() == wanted {

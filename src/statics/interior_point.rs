@@ -26,10 +26,13 @@ use crate::model::wrench::Wrench;
 
 /// Rows of the balance and of up to four grips.
 const ROWS: usize = 6 + MAX_HANDS;
+/// Rows that a hand has a part in: the balance and its own grip.
+const OWN_ROWS: usize = 7;
 
 /// The variables of a hand: those of its two pads.
 type Variables = SVector<f64, 12>;
 type Rows = SVector<f64, ROWS>;
+type HandRows = SMatrix<f64, 12, OWN_ROWS>;
 
 /// Iterations after which it is given up; 8 to 14 are usual.
 const MAX_ITERATIONS: usize = 25;
@@ -45,8 +48,8 @@ const INSIDE: f64 = 0.99;
 struct HandProgram {
     /// Second derivatives of the energy.
     energy: SMatrix<f64, 12, 12>,
-    /// Rows of the balance and of the grips, transposed.
-    rows: SMatrix<f64, 12, ROWS>,
+    /// Its part of the rows of the balance and its grip's row, transposed.
+    rows: HandRows,
     friction: [f64; 2],
 }
 
@@ -70,13 +73,13 @@ impl HoldProgram {
                 return None;
             }
             wanted[6 + number] = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-            hands.push(hand_program(hand, energy, number));
+            hands.push(hand_program(hand, energy));
         }
         Some(Self { hands, wanted })
     }
 }
 
-fn hand_program(hand: &HandModel, energy: &HandEnergy, number: usize) -> HandProgram {
+fn hand_program(hand: &HandModel, energy: &HandEnergy) -> HandProgram {
     let units = program::wrench_units();
     let mut about_grasp = SMatrix::<f64, 6, 12>::zeros();
     let mut about_object = SMatrix::<f64, 6, 12>::zeros();
@@ -88,10 +91,10 @@ fn hand_program(hand: &HandModel, energy: &HandEnergy, number: usize) -> HandPro
             map.fixed_view_mut::<6, 6>(0, 6 * index).copy_from(&of_pad);
         }
     }
-    let mut rows = SMatrix::<f64, 12, ROWS>::zeros();
+    let mut rows = HandRows::zeros();
     rows.fixed_view_mut::<12, 6>(0, 0).copy_from(&about_object.transpose());
-    rows[(2, 6 + number)] = 1.0;
-    rows[(8, 6 + number)] = 1.0;
+    rows[(2, 6)] = 1.0;
+    rows[(8, 6)] = 1.0;
     HandProgram {
         energy: about_grasp.tr_mul(&(energy.arm * about_grasp)) + SMatrix::from_diagonal_element(energy.pads),
         rows,
@@ -154,7 +157,7 @@ struct HandFactor {
     /// M, the energy and the curvature of the limits.
     own: Cholesky<f64, Const<12>>,
     /// `M^-1 rows`.
-    solved_rows: SMatrix<f64, 12, ROWS>,
+    solved_rows: HandRows,
 }
 
 /// An equilibrium, with what it takes to step to a near one.
@@ -243,12 +246,27 @@ impl Residuals {
 /// `energy x + rows y - K' z`, and `sum rows' x - wanted`.
 fn residuals(program: &HoldProgram, hands: &[HandPoint], y: &Rows) -> Residuals {
     let mut primal = -program.wanted;
-    let dual = program.hands.iter().zip(hands).map(|(hand, point)| {
-        primal += hand.rows.tr_mul(&point.x);
-        hand.energy * point.x + hand.rows * y - joined_gradient(&point.z, &hand.friction)
+    let dual = program.hands.iter().zip(hands).enumerate().map(|(number, (hand, point))| {
+        add_own(&mut primal, number, &hand.rows.tr_mul(&point.x));
+        hand.energy * point.x + hand.rows * own(y, number) - joined_gradient(&point.z, &hand.friction)
     });
     let dual = dual.collect();
     Residuals { dual, primal }
+}
+
+/// The entries of the rows that a hand has a part in.
+fn own(rows: &Rows, number: usize) -> SVector<f64, OWN_ROWS> {
+    let mut own = SVector::<f64, OWN_ROWS>::zeros();
+    own.fixed_rows_mut::<6>(0).copy_from(&rows.fixed_rows::<6>(0));
+    own[6] = rows[6 + number];
+    own
+}
+
+/// Adds to the rows that a hand has a part in.
+fn add_own(rows: &mut Rows, number: usize, own: &SVector<f64, OWN_ROWS>) {
+    let mut balance = rows.fixed_rows_mut::<6>(0);
+    balance += own.fixed_rows::<6>(0);
+    rows[6 + number] += own[6];
 }
 
 /// `K' z` of both pads.
@@ -273,7 +291,7 @@ fn factorised(program: &HoldProgram, points: &[HandPoint]) -> Option<Factor> {
     let mut balance = SMatrix::<f64, ROWS, ROWS>::zeros();
     (6 + points.len()..ROWS).for_each(|absent| balance[(absent, absent)] = 1.0);
     let mut hands = Vec::with_capacity(points.len());
-    for (hand, point) in program.hands.iter().zip(points) {
+    for (number, (hand, point)) in program.hands.iter().zip(points).enumerate() {
         let scalings = [0, 1].map(|pad| Scaling::new(&point.slack(hand, pad), &point.z[pad]));
         let mut own = hand.energy;
         for (pad, scaling) in scalings.iter().enumerate() {
@@ -282,7 +300,12 @@ fn factorised(program: &HoldProgram, points: &[HandPoint]) -> Option<Factor> {
         }
         let own = own.cholesky()?;
         let solved_rows = own.solve(&hand.rows);
-        balance += hand.rows.tr_mul(&solved_rows);
+        let part = hand.rows.tr_mul(&solved_rows);
+        let mut shared = balance.fixed_view_mut::<6, 6>(0, 0);
+        shared += part.fixed_view::<6, 6>(0, 0);
+        balance.fixed_view_mut::<6, 1>(0, 6 + number).copy_from(&part.fixed_view::<6, 1>(0, 6));
+        balance.fixed_view_mut::<1, 6>(6 + number, 0).copy_from(&part.fixed_view::<1, 6>(6, 0));
+        balance[(6 + number, 6 + number)] = part[(6, 6)];
         hands.push(HandFactor { scalings, own, solved_rows });
     }
     Some(Factor { hands, balance: balance.cholesky()? })
@@ -293,18 +316,20 @@ fn factorised(program: &HoldProgram, points: &[HandPoint]) -> Option<Factor> {
 fn newton_step(program: &HoldProgram, factor: &Factor, residual: &Residuals, wanted: &[[Slack; 2]]) -> Step {
     let mut missing = residual.primal;
     let mut free = Vec::with_capacity(program.hands.len());
-    for (((hand, own), dual), wanted) in program.hands.iter().zip(&factor.hands).zip(&residual.dual).zip(wanted) {
-        let pull = [0, 1].map(|pad| own.scalings[pad].apply_inverse(&wanted[pad]));
-        let x = own.own.solve(&(joined_gradient(&pull, &hand.friction) - dual));
-        missing += hand.rows.tr_mul(&x);
+    for (number, hand) in program.hands.iter().enumerate() {
+        let HandFactor { scalings, own, .. } = &factor.hands[number];
+        let pull = [0, 1].map(|pad| scalings[pad].apply_inverse(&wanted[number][pad]));
+        let x = own.solve(&(joined_gradient(&pull, &hand.friction) - residual.dual[number]));
+        add_own(&mut missing, number, &hand.rows.tr_mul(&x));
         free.push(x);
     }
     let y = factor.balance.solve(&missing);
-    let hands = program.hands.iter().zip(&factor.hands).zip(free).zip(wanted).map(|(((hand, own), free), wanted)| {
-        let x = free - own.solved_rows * y;
+    let hands = program.hands.iter().zip(free).enumerate().map(|(number, (hand, free))| {
+        let (factor, wanted) = (&factor.hands[number], &wanted[number]);
+        let x = free - factor.solved_rows * own(&y, number);
         let s = [0, 1].map(|pad| pad_cone::slack(&pad_part(&x, pad), hand.friction[pad]));
         let z = [0, 1].map(|pad| {
-            let scaling = &own.scalings[pad];
+            let scaling = &factor.scalings[pad];
             scaling.apply_inverse(&(wanted[pad] - scaling.apply_inverse(&s[pad])))
         });
         HandStep { x, s, z }

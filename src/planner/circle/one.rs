@@ -34,7 +34,7 @@ const NARROWER: f64 = 0.96;
 /// The best holds that are found for all points, the best first; each climbed to.
 pub fn holds(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served> {
     let mut starts = promising(circle, onlooker);
-    starts.truncate(circle.effort.finalists);
+    starts.truncate(circle.effort.circle_climbs);
     let mut climbed: Vec<_> = starts.into_iter().map(|start| climb(circle, start, onlooker)).collect();
     climbed.sort_by(|a, b| a.score.order(&b.score));
     climbed
@@ -61,7 +61,7 @@ fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served
 
 fn climb(circle: &mut Circle<'_>, mut here: Served, onlooker: &mut Onlooker<'_>) -> Served {
     let mut scale = 1.0_f64;
-    for _ in 0..TRIES_A_STEP * circle.effort.last_steps {
+    for _ in 0..TRIES_A_STEP * circle.effort.circle_steps {
         if circle.is_stopped(onlooker) {
             break;
         }

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     collision::{Carrier, Near},
-    model::scenario::StabilityKind,
+    model::{plan::Comfort, scenario::StabilityKind},
     statics::NearbyResponse,
 };
 
@@ -71,10 +71,10 @@ impl Linear {
         problem: &Problem<'_>,
         candidate: &Candidate,
         configured: &Configured,
+        comfort: &Comfort,
         d: &DVector<f64>,
         rows: &mut [Row],
     ) -> bool {
-        let comfort = assess::comfort(problem, candidate, configured);
         let there = plain_margins(problem, candidate, configured, &comfort.activations);
         let near = problem.map.collision.near(&configured.scene(problem), WATCHED_M);
         let mut broken = near.iter().any(|near| near.margin_m <= 0.0 && !self.near.contains(&near.carriers));

@@ -38,17 +38,14 @@ const CORRECTIONS: usize = 2;
 
 /// What steps lead to from the starts, the best first.
 pub fn refine(problem: &mut Problem<'_>, starts: Vec<Feasible>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
-    let mut found: Vec<_> =
-        starts.into_iter().map(|start| Climb::new(problem, start).run(problem, effort.first_steps, tally)).collect();
-    sort_best_first(&mut found);
-    let mut finalists: Vec<_> = found.drain(..effort.finalists.min(found.len())).collect();
-    for climb in &mut finalists {
-        let taken = std::mem::replace(climb, climb.clone());
-        *climb = taken.run(problem, effort.last_steps, tally);
+    let mut climbs: Vec<_> = starts.into_iter().map(|start| Climb::new(problem, start)).collect();
+    for heat in &effort.heats {
+        for climb in climbs.iter_mut().take(heat.climbs) {
+            climb.run(problem, heat.steps, tally);
+        }
+        sort_best_first(&mut climbs);
     }
-    finalists.extend(found);
-    sort_best_first(&mut finalists);
-    finalists.into_iter().map(|climb| climb.here).collect()
+    climbs.into_iter().map(|climb| climb.here).collect()
 }
 
 fn sort_best_first(found: &mut [Climb]) {
@@ -84,7 +81,7 @@ impl Climb {
         Self { here, linear, curvature, radius: START_RADIUS }
     }
 
-    fn run(mut self, problem: &mut Problem<'_>, steps: usize, tally: &mut Tally) -> Self {
+    fn run(&mut self, problem: &mut Problem<'_>, steps: usize, tally: &mut Tally) {
         for _ in 0..steps {
             if self.radius < RADIUS_RANGE[0] || tally.is_exhausted() {
                 break;
@@ -93,7 +90,6 @@ impl Climb {
                 break;
             }
         }
-        self
     }
 
     /// One step; false when no step promises anything.
@@ -136,16 +132,18 @@ impl Climb {
     fn trial(&mut self, problem: &mut Problem<'_>, d: &DVector<f64>, rows: &[Row]) -> Trial {
         let Some(candidate) = self.linear.moves.make(problem, &self.here.candidate, d) else { return Trial::Lost };
         let configured = assess::Configured::new(problem, &candidate);
+        let comfort = assess::comfort(problem, &candidate, &configured);
         let mut corrected = rows.to_vec();
-        if self.linear.correct(problem, &candidate, &configured, d, &mut corrected) {
+        // The bodies' margins are those that a test for collisions asks for.
+        if self.linear.correct(problem, &candidate, &configured, &comfort, d, &mut corrected) {
             return Trial::Broken(corrected);
         }
-        if assess::free(problem, &candidate, &configured).is_err() {
+        if !problem.watch.allows() || assess::place(problem, &candidate).is_err() {
             return Trial::Lost;
         }
         let utilisation = assess::utilisation(problem, &candidate, &configured.placed.x_wo);
         if utilisation <= 1.0 {
-            return Trial::Feasible(Box::new(assess::rated(problem, candidate, configured, utilisation)));
+            return Trial::Feasible(Box::new(assess::rated(problem, candidate, configured, comfort, utilisation)));
         }
         if self.linear.correct_stability(problem, &self.here, utilisation, d, &mut corrected) {
             Trial::Broken(corrected)
