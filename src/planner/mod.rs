@@ -25,6 +25,7 @@ mod robot_map;
 mod top;
 mod verify;
 mod watch;
+mod work_map;
 
 use std::rc::Rc;
 
@@ -45,14 +46,15 @@ use crate::{
 };
 use assess::{Configured, Feasible, Rejection, Tally};
 use candidate::{Candidate, Placed};
+use person_map::PersonMap;
 use effort::Effort;
 pub use front::{Front, FrontOutcome, FrontPoint, front};
-pub use person_map::PersonMap;
 pub use robot_map::RobotMap;
 pub use top::{TopOutcome, differ, top};
 pub use verify::{Flaw, first_touch, verify};
 use watch::{Count, Watch};
 pub use watch::{Onlooker, Progress, nobody};
+pub use work_map::WorkMap;
 
 /// What the search came to.
 #[derive(Clone, Debug)]
@@ -136,20 +138,29 @@ pub fn plan_on(scenario: &Scenario, map: &RobotMap) -> Result<PlanOutcome, Human
     plan_until(scenario, map, &mut nobody)
 }
 
-/// As [`plan_until`], with the person's map at hand; one that does not serve the scenario is not used.
+/// As [`plan_until`], with the map of the scenario's kind of work at hand; one that does not serve it is not used.
 ///
 /// # Errors
 /// As [`plan`].
 pub fn plan_with<'a>(
     scenario: &'a Scenario,
     map: &'a RobotMap,
-    person: &'a PersonMap,
+    work: &'a WorkMap,
     onlooker: &'a mut Onlooker<'a>,
 ) -> Result<PlanOutcome, HumanError> {
+    if !work.serves(scenario) {
+        return plan_until(scenario, map, onlooker);
+    }
     let count = Count::of_at_most(scenario.planner.evaluations);
     let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
-    problem.person = person.serves(scenario).then_some(person);
-    best_plan(&mut problem, count)
+    problem.person = Some(&work.person);
+    let mut tally = Tally::new(count);
+    for found in search(&mut problem, Some(work), &Effort::of(scenario.planner.budget), &mut tally) {
+        if let Some(plan) = checked(&mut problem, &found, &mut tally)? {
+            return Ok(PlanOutcome::Found(Box::new(plan)));
+        }
+    }
+    Ok(PlanOutcome::Infeasible(tally.into_infeasible()))
 }
 
 /// As [`plan_on`], with somebody who looks on: told of every better hold, and asked with every candidate whether to go on.
@@ -163,27 +174,19 @@ pub fn plan_until<'a>(
     map: &'a RobotMap,
     onlooker: &'a mut Onlooker<'a>,
 ) -> Result<PlanOutcome, HumanError> {
-    let count = Count::of_at_most(scenario.planner.evaluations);
-    best_plan(&mut Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?, count)
-}
-
-fn best_plan(problem: &mut Problem<'_>, count: Rc<Count>) -> Result<PlanOutcome, HumanError> {
-    let mut tally = Tally::new(count);
-    for found in search(problem, &Effort::of(problem.scenario.planner.budget), &mut tally) {
-        if let Some(plan) = checked(problem, &found, &mut tally)? {
-            return Ok(PlanOutcome::Found(Box::new(plan)));
-        }
-    }
-    Ok(PlanOutcome::Infeasible(tally.into_infeasible()))
+    plan_with(scenario, map, &WorkMap::new(scenario, map)?, onlooker)
 }
 
 /// The holds that the scenario's planner finds, the best first.
-fn search(problem: &mut Problem<'_>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
+fn search(problem: &mut Problem<'_>, work: Option<&WorkMap>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
     let PlannerSettings { kind, seed, .. } = problem.scenario.planner;
     let found = if kind == PlannerKind::Random {
         random::draw(problem, &mut Pcg64::new(u128::from(seed), 0), tally).into_iter().collect()
     } else {
-        let starts = propose::best_candidates(problem, effort, tally);
+        let mut starts = work.map_or_else(Vec::new, |work| work.starts(problem, effort.known_starts, tally));
+        if starts.is_empty() || effort.looks_further {
+            starts.extend(propose::best_candidates(problem, effort, tally));
+        }
         refine::refine(problem, starts, effort, tally)
     };
     answer::rank(problem, found)

@@ -15,7 +15,7 @@ use rand_pcg::Pcg64;
 use super::{
     Problem,
     assess::{self, Configured, Feasible, Rejection, Tally},
-    bank::BankedHold,
+    bank::{BankedHold, KnownHold},
     candidate::Candidate,
     effort::Effort,
     person_map::{GLANCE_POINTS, PersonMap, Posture, SKETCH_POINTS},
@@ -100,7 +100,7 @@ fn keep_best(proposals: &mut Vec<Proposal<'_>>, count: usize) {
 fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>], tally: &mut Tally) -> Vec<Feasible> {
     let mut fitting = Vec::with_capacity(effort.disposed);
     for proposal in proposals {
-        match fit(problem, proposal) {
+        match fit(problem, &proposal.known.hold, &proposal.posture.q_h_rad, &proposal.posture.x_bt) {
             Some(candidate) => {
                 let configured = Configured::new(problem, &candidate);
                 let worth = assess::comfort(problem, &candidate, &configured).objective;
@@ -149,7 +149,7 @@ fn worth(
     body_b: &[Point3<f64>],
 ) -> f64 {
     let settings = &problem.objective;
-    let x_wb = meeting(problem, known, posture).x_wb;
+    let x_wb = meeting(problem, &known.hold, &posture.x_bt).x_wb;
     let body_w: ArrayVec<_, SKETCH_POINTS> = body_b.iter().map(|p_b| x_wb * p_b).collect();
     let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body_w, robot_w);
     posture.worth + settings.weight_peripersonal * distance_m
@@ -162,20 +162,20 @@ struct Meeting {
     x_wb: Pose,
 }
 
-fn meeting(problem: &Problem<'_>, known: &BankedHold, posture: &Posture) -> Meeting {
+fn meeting(problem: &Problem<'_>, hold: &KnownHold, x_bt: &Pose) -> Meeting {
     let operation = &problem.scenario.operation;
-    let mut x_wt = known.hold.x_wo * operation.x_ot;
+    let mut x_wt = hold.x_wo * operation.x_ot;
     let mut roll_rad = 0.0;
     // Where the tool may roll, all rolls share a cell; which one a posture needs is worked out.
     if operation.kind.roll_is_free() {
-        roll_rad = roll_between(&x_wt, &posture.x_bt);
-        x_wt = known.hold.x_wo * operation.rolled(roll_rad).x_ot;
+        roll_rad = roll_between(&x_wt, x_bt);
+        x_wt = hold.x_wo * operation.rolled(roll_rad).x_ot;
     }
-    Meeting { roll_rad, x_wt, x_wb: standing(&x_wt, &posture.x_bt, problem.map.robot.floor_z_m) }
+    Meeting { roll_rad, x_wt, x_wb: standing(&x_wt, x_bt, problem.map.robot.floor_z_m) }
 }
 
 /// The roll about the tool's axis that brings the vertical, seen from the tool, from one pose to another.
-fn roll_between(x_wt: &Pose, x_bt: &Pose) -> f64 {
+pub fn roll_between(x_wt: &Pose, x_bt: &Pose) -> f64 {
     let azimuth = |pose: &Pose| {
         let up_t = pose.rotation.inverse() * Vector3::z();
         up_t.y.atan2(up_t.x)
@@ -194,23 +194,23 @@ pub fn standing(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
     Isometry3::from_parts(Vector3::new(tip.x - from_body.x, tip.y - from_body.y, floor_z_m).into(), heading)
 }
 
-/// The pair with a posture that brings the tool exactly to its place; none when the arm cannot.
-fn fit(problem: &Problem<'_>, proposal: &Proposal<'_>) -> Option<Candidate> {
-    let Proposal { known, posture, .. } = proposal;
-    let Meeting { roll_rad, x_wt, x_wb } = meeting(problem, known, posture);
+/// A hold with a posture near this one that brings the tool exactly to its place; none when the arm cannot. `x_bt` is where
+/// the posture has the tool.
+pub fn fit(problem: &Problem<'_>, hold: &KnownHold, near_q_rad: &ArmAngles, x_bt: &Pose) -> Option<Candidate> {
+    let Meeting { roll_rad, x_wt, x_wb } = meeting(problem, hold, x_bt);
     let x_bt = x_wb.inverse() * x_wt;
-    let swivel_rad = problem.human.swivel_rad(&posture.q_h_rad);
-    let apart = |q: &ArmAngles| q.iter().zip(&posture.q_h_rad).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    let swivel_rad = problem.human.swivel_rad(near_q_rad);
+    let apart = |q: &ArmAngles| q.iter().zip(near_q_rad).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
     let q_h_rad =
         problem.human.arm_solutions(&x_bt, swivel_rad).into_iter().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
     let heading = x_wb.rotation * Vector3::x();
-    let p_wo = known.hold.x_wo.translation.vector;
+    let p_wo = hold.x_wo.translation.vector;
     Some(Candidate {
         q_h_rad,
         heading_rad: heading.y.atan2(heading.x),
         roll_rad,
         p_wo_xy_m: [p_wo.x, p_wo.y],
-        holds: known.hold.holds.clone(),
+        holds: hold.holds.clone(),
     })
 }
 

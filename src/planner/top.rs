@@ -62,7 +62,7 @@ pub fn top<'a>(
     let mut effort = Effort { starts, ..effort };
     effort.heats.iter_mut().for_each(|heat| heat.climbs = heat.climbs.max(2 * wanted));
     let mut plans: Vec<Plan> = Vec::with_capacity(wanted);
-    for found in search(&mut problem, &effort, &mut tally) {
+    for found in search(&mut problem, None, &effort, &mut tally) {
         if plans.len() == wanted {
             break;
         }

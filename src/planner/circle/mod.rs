@@ -20,7 +20,7 @@ pub use motion::{MotionStep, STEP_RAD};
 
 use serve::Circle;
 
-use super::{Onlooker, PlanOutcome, RobotMap, bank::KnownHold, plan_until};
+use super::{Onlooker, PlanOutcome, RobotMap, WorkMap, bank::KnownHold, plan_with};
 use crate::{
     comfort::{Answer, curve},
     human::HumanError,
@@ -90,13 +90,15 @@ fn plans<'h>(
     answered.enumerate().map(plan).collect()
 }
 
-/// A plan for every point by itself: [`plan_until`] on each.
+/// A plan for every point by itself: [`plan_with`] on each.
 ///
 /// # Errors
 /// As [`super::plan`].
 pub fn separate(points: &[Scenario], map: &RobotMap, onlooker: &mut Onlooker<'_>) -> Result<PlansByPoint, HumanError> {
+    let Some(first) = points.first() else { return Ok(Vec::new()) };
+    let work = WorkMap::new(first, map)?;
     let plan = |scenario| {
-        Ok(match plan_until(scenario, map, &mut *onlooker)? {
+        Ok(match plan_with(scenario, map, &work, &mut *onlooker)? {
             PlanOutcome::Found(plan) => Some(*plan),
             PlanOutcome::Infeasible(_) => None,
         })

@@ -1,0 +1,251 @@
+//! What is learned once about one kind of work: good holds for a few places on the board, which serve all others.
+//!
+//! The holes of a board, or the points of a line that is cut, ask for nearly the same: the same person with the same tool
+//! and force, somewhere else on the board or in another direction. So the search practises on a few such operations, with
+//! more effort than a plan may take, and keeps the best holds that differ. A plan then begins where they ended: each is
+//! turned by quarters about the board's normal (a rectangle looks the same after half a turn, and nearly so after a quarter
+//! one), the person or the board moves so that the tool is where this operation wants it, and what keeps every constraint
+//! is refined like any other start.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+use super::{
+    Count, Effort, Problem, RobotMap, Tally, Watch,
+    assess::{self, Configured, Feasible, Rejection},
+    bank::KnownHold,
+    candidate::{Candidate, Hold},
+    person_map::PersonMap,
+    propose, refine, wrench_t,
+};
+use crate::{
+    human::{ArmAngles, HumanError},
+    model::{
+        frames::Pose,
+        grasp::{Edge, EdgeGrasp},
+        operation::Operation,
+        scenario::{PlannerKind, PlannerSettings, Scenario},
+        wrench::Wrench,
+    },
+};
+
+/// Poses and wrenches are rounded to this, so that operations that differ by rounding share a map: m, N, N m or 1.
+const ROUNDING_UNIT: f64 = 1e-9;
+/// Below this share of its length in the board's plane the tool's x axis does not tell where it points.
+const LEVEL: f64 = 1e-3;
+
+/// The map of one kind of work. It serves every scenario that differs in the place of the operation on the board and its
+/// direction in the board's plane alone, of the same robot map. A plan does not depend on whether the map was at hand or
+/// made for it.
+pub struct WorkMap {
+    /// The scenario without what it may differ in.
+    origin: Scenario,
+    pub(super) person: PersonMap,
+    good: Vec<GoodHold>,
+}
+
+/// A hold and a posture that were good for some place on the board.
+struct GoodHold {
+    hold: KnownHold,
+    candidate: Candidate,
+    /// The tool at the practised operation, its roll included.
+    x_ot: Pose,
+}
+
+impl WorkMap {
+    /// Practises a scenario's kind of work on the robot's map. Nothing is learned for the random planner.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is none.
+    pub fn new(scenario: &Scenario, map: &RobotMap) -> Result<Self, HumanError> {
+        let origin = canonical(scenario);
+        let mut work = Self { person: PersonMap::new(&origin)?, good: Vec::new(), origin };
+        let effort = Effort::of(scenario.planner.budget).practice();
+        if scenario.planner.kind == PlannerKind::Random || effort.practised == 0 {
+            return Ok(work);
+        }
+        for practised in practised(&work.origin) {
+            let mut problem = Problem::new(&practised, map, Watch::unseen())?;
+            problem.person = Some(&work.person);
+            let mut tally = Tally::new(Count::of_at_most(None));
+            let starts = propose::best_candidates(&mut problem, &effort, &mut tally);
+            let found = refine::refine(&mut problem, starts, &effort, &mut tally);
+            work.good.extend(distinct(found, effort.practised).into_iter().map(|found| GoodHold {
+                hold: KnownHold { x_wo: found.configured.placed.x_wo, holds: found.candidate.holds.clone() },
+                x_ot: practised.operation.rolled(found.candidate.roll_rad).x_ot,
+                candidate: found.candidate,
+            }));
+        }
+        Ok(work)
+    }
+
+    /// True when this is a map of the scenario's kind of work.
+    pub fn serves(&self, scenario: &Scenario) -> bool {
+        self.origin == canonical(scenario)
+    }
+
+    /// The good holds made to fit the problem's operation, those worth most that keep every constraint first, so many at
+    /// most.
+    pub(super) fn starts(&self, problem: &mut Problem<'_>, count: usize, tally: &mut Tally) -> Vec<Feasible> {
+        let mut fitting = Vec::with_capacity(8 * self.good.len());
+        for good in &self.good {
+            for quarters in 0..Edge::ALL.len() {
+                for fitted in good.fitted(problem, quarters) {
+                    let Some(candidate) = fitted else {
+                        tally.draw();
+                        tally.remove(Rejection::RobotReach);
+                        continue;
+                    };
+                    let configured = Configured::new(problem, &candidate);
+                    fitting.push((assess::comfort(problem, &candidate, &configured).objective, candidate));
+                }
+            }
+        }
+        fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut kept = Vec::with_capacity(count);
+        for (_, candidate) in fitting {
+            if kept.len() == count || tally.is_exhausted() {
+                break;
+            }
+            tally.draw();
+            match assess::feasible(problem, candidate) {
+                Ok(found) => kept.push(found),
+                Err(why) => tally.remove(why),
+            }
+        }
+        kept
+    }
+}
+
+impl GoodHold {
+    /// The hold with the board turned by quarters about its normal and the tool where the problem's operation wants it: once
+    /// with the board left in place and the person moved, once the other way round.
+    fn fitted(&self, problem: &Problem<'_>, quarters: usize) -> [Option<Candidate>; 2] {
+        let Some(hold) = turned(problem.map, &self.hold, quarters) else { return [None, None] };
+        [self.person_moved(problem, &hold), self.board_moved(problem, &hold)]
+    }
+
+    fn person_moved(&self, problem: &Problem<'_>, hold: &KnownHold) -> Option<Candidate> {
+        let q_h_rad: &ArmAngles = &self.candidate.q_h_rad;
+        let x_bt = problem.human.tool_pose_b(q_h_rad);
+        propose::fit(problem, hold, q_h_rad, &x_bt)
+    }
+
+    fn board_moved(&self, problem: &Problem<'_>, hold: &KnownHold) -> Option<Candidate> {
+        let mut candidate = Candidate { holds: hold.holds.clone(), ..self.candidate.clone() };
+        // The roll that leaves the vertical, seen from the tool, as it was.
+        candidate.roll_rad = 0.0;
+        if problem.scenario.operation.kind.roll_is_free() {
+            let x_wt = hold.x_wo * problem.scenario.operation.x_ot;
+            candidate.roll_rad = propose::roll_between(&x_wt, &problem.human.tool_pose_b(&candidate.q_h_rad));
+        }
+        // The person stands where they stood: the tip stays, and the board moves under it.
+        let tip_w = self.hold.x_wo * self.x_ot.translation.vector;
+        let placed = candidate.placed(problem);
+        let missed = tip_w - placed.x_wo * problem.scenario.operation.x_ot.translation.vector;
+        candidate.p_wo_xy_m[0] += missed.x;
+        candidate.p_wo_xy_m[1] += missed.y;
+        let x_wo = candidate.x_wo(problem);
+        follow(problem.map, &mut candidate.holds, &x_wo).then_some(candidate)
+    }
+}
+
+/// The hold with the board turned by quarters about its normal: each hand takes the edge that comes to lie where its own
+/// was. None when an arm cannot make up for the board's unequal sides.
+fn turned(map: &RobotMap, hold: &KnownHold, quarters: usize) -> Option<KnownHold> {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2 * quarters as f64);
+    let x_wo = Isometry3::from_parts(hold.x_wo.translation, hold.x_wo.rotation * turn);
+    let holds = hold.holds.iter().map(|Hold { grasp, q_rad }| {
+        let place = Edge::ALL.iter().position(|edge| *edge == grasp.edge).unwrap_or(0);
+        let edge = Edge::ALL[(place + Edge::ALL.len() - quarters) % Edge::ALL.len()];
+        let half_m = |edge: Edge| edge.reach_and_half_length_m(map.size_m).1;
+        let along_m = grasp.along_m * half_m(edge) / half_m(grasp.edge);
+        Hold { grasp: EdgeGrasp { edge, along_m, ..*grasp }, q_rad: q_rad.clone() }
+    });
+    let mut holds: Vec<_> = holds.collect();
+    // After half a turn the hands are where they were.
+    (quarters.is_multiple_of(2) || follow(map, &mut holds, &x_wo)).then_some(KnownHold { x_wo, holds })
+}
+
+/// Brings the arms to their grasps of a board at this pose; false when one cannot.
+fn follow(map: &RobotMap, holds: &mut [Hold], x_wo: &Pose) -> bool {
+    map.arms.iter().zip(holds).all(|(arm, hold)| {
+        let x_wg = x_wo * hold.grasp.x_og(map.size_m);
+        let found = arm.inverse.local(&x_wg, &hold.q_rad).found();
+        let reached = found.is_some();
+        hold.q_rad = found.unwrap_or_default();
+        reached
+    })
+}
+
+/// So many of the holds, the best first, of which no two hold the same edges the same way with nearly the same comfort.
+fn distinct(found: Vec<Feasible>, count: usize) -> Vec<Feasible> {
+    /// Holds of a kind whose worth differs by less than this share are taken for one that was climbed to twice.
+    const SAME: f64 = 1e-3;
+    let mut kept: Vec<Feasible> = Vec::with_capacity(count);
+    for hold in found {
+        let kind = |hold: &Feasible| {
+            hold.candidate.holds.iter().map(|hold| (hold.grasp.edge, hold.grasp.flipped)).collect::<Vec<_>>()
+        };
+        let same = |other: &Feasible| (other.worth - hold.worth).abs() < SAME * hold.worth.abs() && kind(other) == kind(&hold);
+        if kept.len() < count && !kept.iter().any(same) {
+            kept.push(hold);
+        }
+    }
+    kept
+}
+
+/// A scenario without what a map's scenarios may differ in: its operation at the board's centre, its tool's x axis above
+/// x_O, everything rounded.
+fn canonical(scenario: &Scenario) -> Scenario {
+    let Operation { x_ot, .. } = scenario.operation;
+    let axes = [Vector3::x(), Vector3::y()].map(|axis| x_ot.rotation * axis);
+    let pointer = if axes[0].xy().norm() > LEVEL { axes[0] } else { axes[1] };
+    let upright = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -pointer.y.atan2(pointer.x));
+    let mut coords = (upright * x_ot.rotation).into_inner().coords;
+    // Of the two quaternions of a rotation the one whose largest part is positive.
+    coords *= coords[coords.iamax()].signum();
+    let rotation = UnitQuaternion::from_quaternion(coords.map(rounded).into());
+    let wrench_t = wrench_t(&scenario.operation);
+    let wrench_t = Wrench::new(wrench_t.force_n.map(rounded), wrench_t.moment_nm.map(rounded));
+    let height_m = rounded(x_ot.translation.vector.z);
+    Scenario {
+        name: String::new(),
+        operation: placed(&scenario.operation, &wrench_t, Vector3::new(0.0, 0.0, height_m), rotation),
+        planner: PlannerSettings { evaluations: None, ..scenario.planner.clone() },
+        ..scenario.clone()
+    }
+}
+
+fn rounded(v: f64) -> f64 {
+    (v / ROUNDING_UNIT).round() * ROUNDING_UNIT
+}
+
+/// An operation with this wrench in the tool's axes, the tool at this pose on the board.
+fn placed(operation: &Operation, wrench_t: &Wrench, p_ot_m: Vector3<f64>, r_ot: UnitQuaternion<f64>) -> Operation {
+    Operation {
+        x_ot: Isometry3::from_parts(p_ot_m.into(), r_ot),
+        wrench_o: Wrench::new(r_ot * wrench_t.force_n, r_ot * wrench_t.moment_nm),
+        ..*operation
+    }
+}
+
+/// The operations that are practised. Half turns of the board bring what they stand for to the other half of it.
+fn practised(origin: &Scenario) -> Vec<Scenario> {
+    let operation = &origin.operation;
+    let wrench_t = wrench_t(operation);
+    let Pose { translation, rotation } = operation.x_ot;
+    let at = |p_ot_m: Vector3<f64>, turn_rad: f64| {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad);
+        Scenario { operation: placed(operation, &wrench_t, p_ot_m, turn * rotation), ..origin.clone() }
+    };
+    let centre_m = translation.vector;
+    if operation.kind.roll_is_free() {
+        // Directions are the tool's own affair; places are the centre and two corners of the board's middle.
+        let [width_m, height_m, _] = origin.object.size_m;
+        let corner = |x: f64, y: f64| centre_m + Vector3::new(x * width_m / 4.0, y * height_m / 4.0, 0.0);
+        return vec![at(centre_m, 0.0), at(corner(1.0, 1.0), 0.0), at(corner(1.0, -1.0), 0.0)];
+    }
+    (0..4).map(|eighths| at(centre_m, f64::from(eighths) * FRAC_PI_4)).collect()
+}
