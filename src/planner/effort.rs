@@ -93,7 +93,7 @@ impl Effort {
     /// The effort of practising a kind of work once.
     pub fn practice(self) -> Self { let h = env("PSTEPS", 30); let n = env("PSTARTS", 32); Self { starts: n, heats: vec![Heat { climbs: n, steps: 8 }, Heat { climbs: n/2, steps: h } ], ..self } }
 }
-fn env(name: &str, default: usize) -> usize { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
+pub fn env(name: &str, default: usize) -> usize { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
 impl Effort { pub fn tuned(self) -> Self {
     let heats: Vec<Heat> = std::env::var("HEATS").map(|h| h.split(',').map(|x| { let (a, b) = x.split_once('x').unwrap(); Heat { climbs: a.parse().unwrap(), steps: b.parse().unwrap() } }).collect()).unwrap_or(self.heats.clone());
     Self { postures: env("POSTURES", self.postures), postures_a_cell: env("KEPT", self.postures_a_cell), disposed: env("DISPOSED", self.disposed), starts: env("STARTS", self.starts), starts_of_a_kind: env("KIND", self.starts_of_a_kind), heats, known_starts: env("KNOWN", self.known_starts), practised: env("PRACTISED", self.practised), looks_further: env("FURTHER", self.looks_further as usize) > 0, ..self } } }

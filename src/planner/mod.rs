@@ -27,8 +27,6 @@ mod verify;
 mod watch;
 mod work_map;
 
-use std::rc::Rc;
-
 use rand_pcg::Pcg64;
 
 use crate::{

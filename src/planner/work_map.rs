@@ -7,7 +7,7 @@
 //! one), the person or the board moves so that the tool is where this operation wants it, and what keeps every constraint
 //! is refined like any other start.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -32,6 +32,8 @@ use crate::{
 
 /// Poses and wrenches are rounded to this, so that operations that differ by rounding share a map: m, N, N m or 1.
 const ROUNDING_UNIT: f64 = 1e-9;
+/// Places along and across the tool's direction are rounded to this: near enough for a hold to be made to fit, m.
+const PLACE_UNIT_M: f64 = 0.04;
 /// Below this share of its length in the board's plane the tool's x axis does not tell where it points.
 const LEVEL: f64 = 1e-3;
 
@@ -69,7 +71,8 @@ impl WorkMap {
             let mut problem = Problem::new(&practised, map, Watch::unseen())?;
             problem.person = Some(&work.person);
             let mut tally = Tally::new(Count::of_at_most(None));
-            let starts = propose::best_candidates(&mut problem, &effort, &mut tally);
+            let mut starts = work.starts(&mut problem, super::effort::env("PKNOWN", 8), &mut tally);
+            starts.extend(propose::best_candidates(&mut problem, &effort, &mut tally));
             let found = refine::refine(&mut problem, starts, &effort, &mut tally);
             work.good.extend(distinct(found, effort.practised).into_iter().map(|found| GoodHold {
                 hold: KnownHold { x_wo: found.configured.placed.x_wo, holds: found.candidate.holds.clone() },
@@ -108,11 +111,7 @@ impl WorkMap {
             if kept.len() == count || tally.is_exhausted() {
                 break;
             }
-            tally.draw();
-            match assess::feasible(problem, candidate) {
-                Ok(found) => kept.push(found),
-                Err(why) => tally.remove(why),
-            }
+            kept.extend(refine::restored(problem, candidate, tally));
         }
         kept
     }
@@ -209,10 +208,12 @@ fn canonical(scenario: &Scenario) -> Scenario {
     let rotation = UnitQuaternion::from_quaternion(coords.map(rounded).into());
     let wrench_t = wrench_t(&scenario.operation);
     let wrench_t = Wrench::new(wrench_t.force_n.map(rounded), wrench_t.moment_nm.map(rounded));
-    let height_m = rounded(x_ot.translation.vector.z);
+    let mut p_ot_m = upright * x_ot.translation.vector;
+    let coarse = |v: f64| if scenario.operation.kind.roll_is_free() { 0.0 } else { (v / PLACE_UNIT_M).round() * PLACE_UNIT_M };
+    p_ot_m = Vector3::new(coarse(p_ot_m.x), coarse(p_ot_m.y), rounded(p_ot_m.z));
     Scenario {
         name: String::new(),
-        operation: placed(&scenario.operation, &wrench_t, Vector3::new(0.0, 0.0, height_m), rotation),
+        operation: placed(&scenario.operation, &wrench_t, p_ot_m, rotation),
         planner: PlannerSettings { evaluations: None, ..scenario.planner.clone() },
         ..scenario.clone()
     }
@@ -240,12 +241,17 @@ fn practised(origin: &Scenario) -> Vec<Scenario> {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad);
         Scenario { operation: placed(operation, &wrench_t, p_ot_m, turn * rotation), ..origin.clone() }
     };
-    let centre_m = translation.vector;
     if operation.kind.roll_is_free() {
-        // Directions are the tool's own affair; places are the centre and two corners of the board's middle.
+        // Directions are the tool's own affair.
         let [width_m, height_m, _] = origin.object.size_m;
-        let corner = |x: f64, y: f64| centre_m + Vector3::new(x * width_m / 4.0, y * height_m / 4.0, 0.0);
-        return vec![at(centre_m, 0.0), at(corner(1.0, 1.0), 0.0), at(corner(1.0, -1.0), 0.0)];
+        let place = |x: f64, y: f64| translation.vector + Vector3::new(x * width_m, y * height_m, 0.0);
+        return [place(0.25, 0.25), place(0.25, -0.25), place(0.125, 0.0)].map(|p_ot_m| at(p_ot_m, 0.0)).to_vec();
     }
-    (0..4).map(|eighths| at(centre_m, f64::from(eighths) * FRAC_PI_4)).collect()
+    // Between the board's axes and its diagonals: where cuts seldom go, so that all have one some way off.
+    let n = super::effort::env("PDIRS", 8);
+    let off = super::effort::env("POFF", 50) as f64 / 100.0;
+    (0..n).map(|number| {
+        let turn_rad = PI * (number as f64 + off) / n as f64;
+        at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * translation.vector, turn_rad)
+    }).collect()
 }

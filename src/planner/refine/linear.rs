@@ -118,6 +118,14 @@ impl Linear {
         true
     }
 
+    /// Takes stability into the rows where it is near its limit or beyond.
+    pub fn watch_stability(&mut self, problem: &mut Problem<'_>, here: &Feasible) {
+        if here.utilisation >= RELAXED && here.utilisation.is_finite() {
+            let gradient = -self.stability_gradient(problem, here);
+            self.rows.push(Row { gradient, margin: FULL - here.utilisation });
+        }
+    }
+
     fn stability_gradient(&mut self, problem: &mut Problem<'_>, here: &Feasible) -> DVector<f64> {
         if let Some(known) = &self.stability {
             return known.clone();

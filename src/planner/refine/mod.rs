@@ -19,6 +19,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{
     Problem,
     assess::{self, Feasible, Tally},
+    candidate::Candidate,
     effort::Effort,
 };
 use linear::Linear;
@@ -33,6 +34,8 @@ const GOOD: f64 = 0.7;
 const POOR: f64 = 0.25;
 /// A predicted gain below this share of what the hold is worth ends the climb.
 const LEAST_GAIN: f64 = 1e-4;
+/// Moves after which a candidate that breaks a constraint is given up.
+const RESTORING_MOVES: usize = 4;
 /// How often a move that breaks a constraint is bent back.
 const CORRECTIONS: usize = 2;
 
@@ -46,6 +49,36 @@ pub fn refine(problem: &mut Problem<'_>, starts: Vec<Feasible>, effort: &Effort,
         sort_best_first(&mut climbs);
     }
     climbs.into_iter().map(|climb| climb.here).collect()
+}
+
+/// The candidate itself when it keeps every constraint, or else one near it that does: the least moves that keep the
+/// linearised constraints are made until they keep the exact ones. None when a few of them do not lead there.
+pub fn restored(problem: &mut Problem<'_>, mut candidate: Candidate, tally: &mut Tally) -> Option<Feasible> {
+    for _ in 0..=RESTORING_MOVES {
+        if tally.is_exhausted() {
+            return None;
+        }
+        tally.draw();
+        let why = match assess::feasible(problem, candidate.clone()) {
+            Ok(found) => return Some(found),
+            Err(why) => why,
+        };
+        tally.remove(why);
+        candidate = towards_feasible(problem, candidate)?;
+    }
+    None
+}
+
+fn towards_feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Option<Candidate> {
+    let configured = assess::Configured::new(problem, &candidate);
+    let comfort = assess::comfort(problem, &candidate, &configured);
+    let utilisation = assess::utilisation(problem, &candidate, &configured.placed.x_wo);
+    let here = Feasible { worth: comfort.objective, candidate, configured, comfort, utilisation };
+    let mut linear = Linear::at(problem, &here);
+    linear.watch_stability(problem, &here);
+    let count = linear.gradient.len();
+    let d = best_move(&DVector::zeros(count), &DMatrix::identity(count, count), &linear.rows, RADIUS_RANGE[1])?;
+    linear.moves.make(problem, &here.candidate, &d)
 }
 
 fn sort_best_first(found: &mut [Climb]) {
