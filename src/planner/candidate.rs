@@ -1,9 +1,13 @@
 //! A candidate: the numbers that the search chooses, and the poses that follow from them.
 
+use arrayvec::ArrayVec;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::Problem;
-use crate::model::{frames::Pose, grasp::EdgeGrasp};
+use crate::model::{
+    frames::Pose,
+    grasp::{Edge, EdgeGrasp},
+};
 
 /// One hold and one answer of the person to it.
 #[derive(Clone, Debug)]
@@ -63,7 +67,21 @@ impl Stance {
     }
 }
 
+/// What a climb does not change about a hold: for each hand the edge that it holds and which way up it is. Hands beyond the
+/// fourth do not count.
+pub type HoldKind = ArrayVec<(Edge, bool), 4>;
+
+/// The kind of a hold.
+pub fn hold_kind(holds: &[Hold]) -> HoldKind {
+    holds.iter().take(4).map(|hold| (hold.grasp.edge, hold.grasp.flipped)).collect()
+}
+
 impl Candidate {
+    /// See [`hold_kind`].
+    pub fn kind(&self) -> HoldKind {
+        hold_kind(&self.holds)
+    }
+
     /// All but how the robot holds the board.
     pub fn stance(&self) -> Stance {
         let Self { q_h_rad, heading_rad, roll_rad, p_wo_xy_m, .. } = *self;

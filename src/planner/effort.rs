@@ -21,8 +21,6 @@ pub struct Effort {
     pub known_starts: usize,
     /// Proposals are climbed from even when such starts are there.
     pub looks_further: bool,
-    /// Holds that are kept of each practised operation; none when nothing is practised.
-    pub practised: usize,
     /// Holds that the search for a whole circle climbs from, and the steps of each climb.
     pub circle_climbs: usize,
     pub circle_steps: usize,
@@ -37,10 +35,14 @@ pub struct Heat {
     pub steps: usize,
 }
 
+/// So many climbs with so many steps each, heat by heat.
+fn heats(heats: &[[usize; 2]]) -> Vec<Heat> {
+    heats.iter().map(|&[climbs, steps]| Heat { climbs, steps }).collect()
+}
+
 impl Effort {
     /// The numbers of a budget.
-    pub fn of(budget: Budget) -> Self { Self::of_(budget).tuned() }
-    fn of_(budget: Budget) -> Self {
+    pub fn of(budget: Budget) -> Self {
         match budget {
             Budget::Fast => Self {
                 postures: 100_000,
@@ -48,10 +50,9 @@ impl Effort {
                 disposed: 400,
                 starts: 8,
                 starts_of_a_kind: 2,
-                heats: vec![Heat { climbs: 8, steps: 6 }, Heat { climbs: 3, steps: 10 }, Heat { climbs: 1, steps: 20 }],
+                heats: heats(&[[8, 6], [3, 10], [1, 20]]),
                 known_starts: 0,
                 looks_further: true,
-                practised: 0,
                 circle_climbs: 1,
                 circle_steps: 25,
             },
@@ -61,15 +62,9 @@ impl Effort {
                 disposed: 1_500,
                 starts: 24,
                 starts_of_a_kind: 3,
-                heats: vec![
-                    Heat { climbs: 24, steps: 6 },
-                    Heat { climbs: 12, steps: 6 },
-                    Heat { climbs: 6, steps: 10 },
-                    Heat { climbs: 2, steps: 25 },
-                ],
-                known_starts: 8,
+                heats: heats(&[[24, 6], [12, 8], [2, 25]]),
+                known_starts: 12,
                 looks_further: false,
-                practised: 8,
                 circle_climbs: 3,
                 circle_steps: 30,
             },
@@ -79,21 +74,35 @@ impl Effort {
                 disposed: 50_000,
                 starts: 400,
                 starts_of_a_kind: 400,
-                heats: vec![Heat { climbs: 400, steps: 40 }, Heat { climbs: 60, steps: 100 }],
+                heats: heats(&[[440, 40], [60, 100]]),
                 known_starts: 40,
                 looks_further: true,
-                practised: 8,
                 circle_climbs: 60,
                 circle_steps: 100,
             },
         }
     }
+
+    /// The numbers of a search that practises a kind of work, once for many plans; none when nothing is practised.
+    pub fn of_practice(budget: Budget) -> Option<Self> {
+        let plan = Self::of(budget);
+        match budget {
+            Budget::Fast => None,
+            Budget::Default => Some(Self {
+                disposed: 4_000,
+                starts: 48,
+                starts_of_a_kind: 2,
+                heats: heats(&[[56, 8], [24, 30]]),
+                known_starts: 8,
+                ..plan
+            }),
+            Budget::Exhaustive => Some(Self {
+                disposed: 20_000,
+                starts: 200,
+                starts_of_a_kind: 10,
+                heats: heats(&[[240, 15], [60, 60]]),
+                ..plan
+            }),
+        }
+    }
 }
-impl Effort {
-    /// The effort of practising a kind of work once.
-    pub fn practice(self) -> Self { let h = env("PSTEPS", 30); let n = env("PSTARTS", 32); Self { starts: n, heats: vec![Heat { climbs: n, steps: 8 }, Heat { climbs: n/2, steps: h } ], ..self } }
-}
-pub fn env(name: &str, default: usize) -> usize { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
-impl Effort { pub fn tuned(self) -> Self {
-    let heats: Vec<Heat> = std::env::var("HEATS").map(|h| h.split(',').map(|x| { let (a, b) = x.split_once('x').unwrap(); Heat { climbs: a.parse().unwrap(), steps: b.parse().unwrap() } }).collect()).unwrap_or(self.heats.clone());
-    Self { postures: env("POSTURES", self.postures), postures_a_cell: env("KEPT", self.postures_a_cell), disposed: env("DISPOSED", self.disposed), starts: env("STARTS", self.starts), starts_of_a_kind: env("KIND", self.starts_of_a_kind), heats, known_starts: env("KNOWN", self.known_starts), practised: env("PRACTISED", self.practised), looks_further: env("FURTHER", self.looks_further as usize) > 0, ..self } } }

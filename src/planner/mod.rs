@@ -44,9 +44,9 @@ use crate::{
 };
 use assess::{Configured, Feasible, Rejection, Tally};
 use candidate::{Candidate, Placed};
-use person_map::PersonMap;
 use effort::Effort;
 pub use front::{Front, FrontOutcome, FrontPoint, front};
+use person_map::PersonMap;
 pub use robot_map::RobotMap;
 pub use top::{TopOutcome, differ, top};
 pub use verify::{Flaw, first_touch, verify};

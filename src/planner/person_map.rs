@@ -13,12 +13,8 @@ use rand_pcg::Pcg64;
 
 use super::{Effort, assess, propose::uniform};
 use crate::{
-    human::{ArmAngles, BODY_POINTS, Human, HumanError},
-    model::{
-        frames::Pose,
-        scenario::{Person, Scenario, StrengthDirection, Tool},
-        wrench::Wrench,
-    },
+    human::{ArmAngles, BODY_POINTS, Human},
+    model::{frames::Pose, scenario::Scenario},
 };
 
 /// Height of a cell, m.
@@ -30,8 +26,6 @@ const DIRECTIONS: usize = 6 * CELLS_A_SIDE * CELLS_A_SIDE;
 const RINGS: usize = 15;
 /// Heights above the floor that are looked at, m: a person's arm does not get beyond them.
 const HEIGHT_M: f64 = 3.0;
-/// The wrench in the tool's axes is rounded to this, N and N m, so that operations that differ by rounding share a map.
-const WRENCH_UNIT: f64 = 1e-9;
 /// How many of the body's points a posture keeps: a quarter tells promising postures from others.
 pub const SKETCH_POINTS: usize = BODY_POINTS / 4;
 
@@ -57,84 +51,33 @@ impl Posture {
     }
 }
 
-/// All that a map depends on.
-#[derive(Clone, Debug, PartialEq)]
-struct Origin {
-    person: Person,
-    tool: Tool,
-    /// About the tip in T axes.
-    wrench_t: Wrench,
-    direction: StrengthDirection,
-    /// Of muscular and of peripersonal comfort.
-    weights: [f64; 2],
-    roll_is_free: bool,
-    seed: u64,
-    postures: usize,
-    kept: usize,
-}
-
-impl Origin {
-    fn of(scenario: &Scenario) -> Self {
-        let objective = scenario.planner.kind.objective(scenario.comfort);
-        let Effort { postures, postures_a_cell: kept, .. } = Effort::of(scenario.planner.budget);
-        let round = |v: &f64| (v / WRENCH_UNIT).round() * WRENCH_UNIT;
-        let wrench_t = super::wrench_t(&scenario.operation);
-        Self {
-            person: scenario.human,
-            tool: scenario.tool,
-            wrench_t: Wrench::new(wrench_t.force_n.map(|v| round(&v)), wrench_t.moment_nm.map(|v| round(&v))),
-            direction: scenario.comfort.direction,
-            weights: [objective.weight_muscular, objective.weight_peripersonal],
-            roll_is_free: scenario.operation.kind.roll_is_free(),
-            seed: scenario.planner.seed,
-            postures,
-            kept,
-        }
-    }
-}
-
-/// The map. It serves every scenario with the same person, tool, comfort, seed and budget whose operation asks for the same
-/// force in the tool's axes, wherever on the board: all holes of a board, all points of a circle. A plan does not depend on
-/// whether the map was at hand or made for it.
+/// The map.
 pub struct PersonMap {
-    origin: Origin,
+    roll_is_free: bool,
     cells: Vec<Vec<Posture>>,
 }
 
 impl PersonMap {
     /// The map of a scenario's person.
-    ///
-    /// # Errors
-    /// When the scenario's person or tool is none.
-    pub fn new(scenario: &Scenario) -> Result<Self, HumanError> {
-        Ok(Self::of(scenario, &Human::new(&scenario.human, &scenario.tool)?))
-    }
-
-    /// True when this is a scenario's map.
-    pub fn serves(&self, scenario: &Scenario) -> bool {
-        self.origin == Origin::of(scenario)
-    }
-
-    /// The map of a scenario whose person is at hand.
-    pub(super) fn of(scenario: &Scenario, human: &Human) -> Self {
-        let origin = Origin::of(scenario);
-        let mut map = Self { cells: Vec::new(), origin };
+    pub fn of(scenario: &Scenario, human: &Human) -> Self {
+        let objective = scenario.planner.kind.objective(scenario.comfort);
+        let Effort { postures, postures_a_cell: kept, .. } = Effort::of(scenario.planner.budget);
+        let wrench_t = super::wrench_t(&scenario.operation);
+        let mut map = Self { roll_is_free: scenario.operation.kind.roll_is_free(), cells: Vec::new() };
         let mut found = vec![Vec::new(); map.cell_count()];
-        let mut random = Pcg64::new(u128::from(map.origin.seed), 0);
-        for _ in 0..map.origin.postures {
+        let mut random = Pcg64::new(u128::from(scenario.planner.seed), 0);
+        for _ in 0..postures {
             let q_h_rad = human.arm().limits_rad.map(|[low, high]| uniform(&mut random, low, high));
-            let Origin { wrench_t, direction, weights: [weight_muscular, weight_peripersonal], .. } = &map.origin;
-            let x_bt = human.tool_pose_b(&q_h_rad);
-            let Some(muscular) = assess::posture_comfort(human, &q_h_rad, &x_bt, wrench_t, *direction) else {
+            let (x_bt, direction) = (human.tool_pose_b(&q_h_rad), objective.direction);
+            let Some(muscular) = assess::posture_comfort(human, &q_h_rad, &x_bt, &wrench_t, direction) else {
                 continue;
             };
             let Some(cell) = map.cell(&x_bt, 0.0) else { continue };
-            let worth = weight_muscular * muscular.regularised;
+            let worth = objective.weight_muscular * muscular.regularised;
             // The robot is where the board is: who works at arm's length keeps away from it by as much.
-            let rank = worth + weight_peripersonal * x_bt.translation.vector.xy().norm();
+            let rank = worth + objective.weight_peripersonal * x_bt.translation.vector.xy().norm();
             found[cell].push((rank, q_h_rad, x_bt, worth));
         }
-        let kept = map.origin.kept;
         let sketched = |(_, q_h_rad, x_bt, worth): &(f64, ArmAngles, Pose, f64)| {
             let points = human.body_points_w(&Pose::identity(), q_h_rad);
             // A permutation of 0 to 15 in which the first four are far apart.
@@ -153,7 +96,7 @@ impl PersonMap {
     }
 
     fn cell_count(&self) -> usize {
-        (HEIGHT_M / CELL_M) as usize * if self.origin.roll_is_free { RINGS } else { DIRECTIONS }
+        (HEIGHT_M / CELL_M) as usize * if self.roll_is_free { RINGS } else { DIRECTIONS }
     }
 
     /// True when no posture is known at all.
@@ -169,7 +112,7 @@ impl PersonMap {
     fn cell(&self, x_t: &Pose, floor_z_m: f64) -> Option<usize> {
         let level = ((x_t.translation.z - floor_z_m) / CELL_M).floor();
         let up_t = x_t.rotation.inverse() * Vector3::z();
-        let (directions, direction) = if self.origin.roll_is_free {
+        let (directions, direction) = if self.roll_is_free {
             let ring = up_t.z.clamp(-1.0, 1.0).acos() / PI * RINGS as f64;
             (RINGS, (ring as usize).min(RINGS - 1))
         } else {

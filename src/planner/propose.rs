@@ -16,7 +16,7 @@ use super::{
     Problem,
     assess::{self, Configured, Feasible, Rejection, Tally},
     bank::{BankedHold, KnownHold},
-    candidate::Candidate,
+    candidate::{Candidate, hold_kind},
     effort::Effort,
     person_map::{GLANCE_POINTS, PersonMap, Posture, SKETCH_POINTS},
 };
@@ -33,8 +33,6 @@ pub const DEPTH_M: [f64; 2] = [0.020, 0.060];
 /// Turn of the gripper in the plane of the board, rad (METHOD section 2).
 pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
 
-/// Hands by which kinds of holds are told apart.
-const MAX_HANDS: usize = 4;
 /// How many of the pairs that look best at first are looked at again for each that is tested in earnest.
 const SECOND_LOOKS: usize = 3;
 
@@ -119,7 +117,8 @@ fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>
         if kept.len() == effort.starts || tally.is_exhausted() {
             break;
         }
-        let alike = used.iter().filter(|other| kind(other) == kind(known)).count();
+        let kind = hold_kind(&known.hold.holds);
+        let alike = used.iter().filter(|other| hold_kind(&other.hold.holds) == kind).count();
         if alike == effort.starts_of_a_kind || used.iter().any(|other| std::ptr::eq(*other, known)) {
             continue;
         }
@@ -133,11 +132,6 @@ fn dispose(problem: &mut Problem<'_>, effort: &Effort, proposals: &[Proposal<'_>
         }
     }
     kept
-}
-
-/// What a climb does not change about a hold: which edges are held, and which way up the hands are.
-fn kind(known: &BankedHold) -> ArrayVec<(Edge, bool), MAX_HANDS> {
-    known.hold.holds.iter().take(MAX_HANDS).map(|hold| (hold.grasp.edge, hold.grasp.flipped)).collect()
 }
 
 /// What a hold and a posture would be worth if they fitted exactly, by these points of the robot (W) and of the body (B).

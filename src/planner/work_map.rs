@@ -9,7 +9,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
 use super::{
     Count, Effort, Problem, RobotMap, Tally, Watch,
@@ -20,7 +20,7 @@ use super::{
     propose, refine, wrench_t,
 };
 use crate::{
-    human::{ArmAngles, HumanError},
+    human::{ArmAngles, Human, HumanError},
     model::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
@@ -30,6 +30,14 @@ use crate::{
     },
 };
 
+/// Directions within half a turn that are practised, where a tool's roll is not free.
+const DIRECTIONS: usize = 8;
+/// How often all of them are gone through: what one teaches helps its neighbours the next time.
+const PASSES: usize = 2;
+/// Holds that are kept of each practised operation.
+const KEPT: usize = 5;
+/// Fitted holds that are tried for each start that is wanted.
+const TRIES_A_START: usize = 3;
 /// Poses and wrenches are rounded to this, so that operations that differ by rounding share a map: m, N, N m or 1.
 const ROUNDING_UNIT: f64 = 1e-9;
 /// Places along and across the tool's direction are rounded to this: near enough for a hold to be made to fit, m.
@@ -47,12 +55,14 @@ pub struct WorkMap {
     good: Vec<GoodHold>,
 }
 
-/// A hold and a posture that were good for some place on the board.
+/// A hold and a posture that were good for a practised operation.
 struct GoodHold {
-    hold: KnownHold,
+    /// The operation's number.
+    practised: usize,
     candidate: Candidate,
-    /// The tool at the practised operation, its roll included.
-    x_ot: Pose,
+    x_wo: Pose,
+    /// The tool's tip on the board.
+    tip_o_m: Point3<f64>,
 }
 
 impl WorkMap {
@@ -62,25 +72,45 @@ impl WorkMap {
     /// When the scenario's person or tool is none.
     pub fn new(scenario: &Scenario, map: &RobotMap) -> Result<Self, HumanError> {
         let origin = canonical(scenario);
-        let mut work = Self { person: PersonMap::new(&origin)?, good: Vec::new(), origin };
-        let effort = Effort::of(scenario.planner.budget).practice();
-        if scenario.planner.kind == PlannerKind::Random || effort.practised == 0 {
-            return Ok(work);
-        }
-        for practised in practised(&work.origin) {
-            let mut problem = Problem::new(&practised, map, Watch::unseen())?;
-            problem.person = Some(&work.person);
-            let mut tally = Tally::new(Count::of_at_most(None));
-            let mut starts = work.starts(&mut problem, super::effort::env("PKNOWN", 8), &mut tally);
-            starts.extend(propose::best_candidates(&mut problem, &effort, &mut tally));
-            let found = refine::refine(&mut problem, starts, &effort, &mut tally);
-            work.good.extend(distinct(found, effort.practised).into_iter().map(|found| GoodHold {
-                hold: KnownHold { x_wo: found.configured.placed.x_wo, holds: found.candidate.holds.clone() },
-                x_ot: practised.operation.rolled(found.candidate.roll_rad).x_ot,
-                candidate: found.candidate,
-            }));
+        let person = PersonMap::of(&origin, &Human::new(&origin.human, &origin.tool)?);
+        let mut work = Self { person, good: Vec::new(), origin };
+        let effort = Effort::of_practice(scenario.planner.budget);
+        let Some(effort) = effort.filter(|_| scenario.planner.kind != PlannerKind::Random) else { return Ok(work) };
+        let operations = practised(&work.origin);
+        for pass in 0..PASSES {
+            for (number, practised) in operations.iter().enumerate() {
+                work.practise(practised, number, pass == 0, map, &effort)?;
+            }
         }
         Ok(work)
+    }
+
+    /// Searches for holds for one practised operation, from what was learned so far and, at first, from proposals too; what
+    /// is found takes the place of what was known for it.
+    fn practise(
+        &mut self,
+        practised: &Scenario,
+        number: usize,
+        first: bool,
+        map: &RobotMap,
+        effort: &Effort,
+    ) -> Result<(), HumanError> {
+        let mut problem = Problem::new(practised, map, Watch::unseen())?;
+        problem.person = Some(&self.person);
+        let mut tally = Tally::new(Count::of_at_most(None));
+        let mut starts = self.starts(&mut problem, effort.known_starts, &mut tally);
+        if first {
+            starts.extend(propose::best_candidates(&mut problem, effort, &mut tally));
+        }
+        let found = distinct(refine::refine(&mut problem, starts, effort, &mut tally), KEPT);
+        self.good.retain(|good| good.practised != number);
+        self.good.extend(found.into_iter().map(|found| GoodHold {
+            practised: number,
+            x_wo: found.configured.placed.x_wo,
+            tip_o_m: practised.operation.x_ot.translation.vector.into(),
+            candidate: found.candidate,
+        }));
+        Ok(())
     }
 
     /// True when this is a map of the scenario's kind of work.
@@ -106,8 +136,8 @@ impl WorkMap {
             }
         }
         fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut kept = Vec::with_capacity(count);
-        for (_, candidate) in fitting {
+        let mut kept: Vec<Feasible> = Vec::with_capacity(count);
+        for (_, candidate) in fitting.into_iter().take(TRIES_A_START * count) {
             if kept.len() == count || tally.is_exhausted() {
                 break;
             }
@@ -121,7 +151,8 @@ impl GoodHold {
     /// The hold with the board turned by quarters about its normal and the tool where the problem's operation wants it: once
     /// with the board left in place and the person moved, once the other way round.
     fn fitted(&self, problem: &Problem<'_>, quarters: usize) -> [Option<Candidate>; 2] {
-        let Some(hold) = turned(problem.map, &self.hold, quarters) else { return [None, None] };
+        let hold = KnownHold { x_wo: self.x_wo, holds: self.candidate.holds.clone() };
+        let Some(hold) = turned(problem.map, &hold, quarters) else { return [None, None] };
         [self.person_moved(problem, &hold), self.board_moved(problem, &hold)]
     }
 
@@ -140,9 +171,8 @@ impl GoodHold {
             candidate.roll_rad = propose::roll_between(&x_wt, &problem.human.tool_pose_b(&candidate.q_h_rad));
         }
         // The person stands where they stood: the tip stays, and the board moves under it.
-        let tip_w = self.hold.x_wo * self.x_ot.translation.vector;
-        let placed = candidate.placed(problem);
-        let missed = tip_w - placed.x_wo * problem.scenario.operation.x_ot.translation.vector;
+        let tip_o_m = Point3::from(problem.scenario.operation.x_ot.translation.vector);
+        let missed = self.x_wo * self.tip_o_m - candidate.x_wo(problem) * tip_o_m;
         candidate.p_wo_xy_m[0] += missed.x;
         candidate.p_wo_xy_m[1] += missed.y;
         let x_wo = candidate.x_wo(problem);
@@ -184,10 +214,10 @@ fn distinct(found: Vec<Feasible>, count: usize) -> Vec<Feasible> {
     const SAME: f64 = 1e-3;
     let mut kept: Vec<Feasible> = Vec::with_capacity(count);
     for hold in found {
-        let kind = |hold: &Feasible| {
-            hold.candidate.holds.iter().map(|hold| (hold.grasp.edge, hold.grasp.flipped)).collect::<Vec<_>>()
+        let same = |other: &Feasible| {
+            (other.worth - hold.worth).abs() < SAME * hold.worth.abs()
+                && other.candidate.kind() == hold.candidate.kind()
         };
-        let same = |other: &Feasible| (other.worth - hold.worth).abs() < SAME * hold.worth.abs() && kind(other) == kind(&hold);
         if kept.len() < count && !kept.iter().any(same) {
             kept.push(hold);
         }
@@ -209,7 +239,8 @@ fn canonical(scenario: &Scenario) -> Scenario {
     let wrench_t = wrench_t(&scenario.operation);
     let wrench_t = Wrench::new(wrench_t.force_n.map(rounded), wrench_t.moment_nm.map(rounded));
     let mut p_ot_m = upright * x_ot.translation.vector;
-    let coarse = |v: f64| if scenario.operation.kind.roll_is_free() { 0.0 } else { (v / PLACE_UNIT_M).round() * PLACE_UNIT_M };
+    let coarse =
+        |v: f64| if scenario.operation.kind.roll_is_free() { 0.0 } else { (v / PLACE_UNIT_M).round() * PLACE_UNIT_M };
     p_ot_m = Vector3::new(coarse(p_ot_m.x), coarse(p_ot_m.y), rounded(p_ot_m.z));
     Scenario {
         name: String::new(),
@@ -248,10 +279,9 @@ fn practised(origin: &Scenario) -> Vec<Scenario> {
         return [place(0.25, 0.25), place(0.25, -0.25), place(0.125, 0.0)].map(|p_ot_m| at(p_ot_m, 0.0)).to_vec();
     }
     // Between the board's axes and its diagonals: where cuts seldom go, so that all have one some way off.
-    let n = super::effort::env("PDIRS", 8);
-    let off = super::effort::env("POFF", 50) as f64 / 100.0;
-    (0..n).map(|number| {
-        let turn_rad = PI * (number as f64 + off) / n as f64;
+    let direction = |number: usize| {
+        let turn_rad = PI * (number as f64 + 0.5) / DIRECTIONS as f64;
         at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * translation.vector, turn_rad)
-    }).collect()
+    };
+    (0..DIRECTIONS).map(direction).collect()
 }
