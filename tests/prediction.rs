@@ -92,10 +92,8 @@ fn small_deflections_are_predicted() {
     for (case, (predicted, simulated)) in cases.iter().zip(found) {
         let (name, off) = (&case.plan.name, predicted / simulated - 1.0);
         println!("| {name} | {predicted:.4} | {simulated:.4} | {:+.1} % |", 100.0 * off);
-        // A hand turns on the board already under this load, and how far depends on what its pads hold: with 15 % more
-        // friction the prediction is the simulation's. The module's text has the reason.
-        let bound = if name == "cut-13" { 0.08 } else { 0.05 };
-        if off.abs() > bound {
+        // What the contacts of the simulation give way, and pads of five points for a face, cost up to 4.5 %.
+        if off.abs() > 0.05 {
             too_far.push(name.as_str());
         }
     }

@@ -8,8 +8,10 @@ use super::{
     body_chain::{BodyChain, ChainLink},
     gripper::SimGripper,
     pad::PadContact,
+    pad_shape::{Hand, Pressing},
     self_check::{JointState, drive_work_j, mechanical_energy_j},
     servo::Servo,
+    world::contact_softness_s2,
 };
 use crate::{
     model::{
@@ -59,7 +61,9 @@ impl SimArm {
         let place = |joint: usize| chain.links[merged.of_joint[joint]];
         let arm_joints: Vec<_> = (0..arm.joints.len()).map(place).collect();
         let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
-        let contact = PadContact::new(world, conditions.real_friction(), grip_force_n, object.mass_kg);
+        let hand = Hand { arm, bodies: &merged, x_og: hold.x_og };
+        let pressing = Pressing::new(&hand, object, grip_force_n, contact_softness_s2(world));
+        let contact = PadContact { friction: conditions.real_friction(), pressing };
         let mut gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
         let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
 

@@ -4,8 +4,8 @@
 //! data too: MuJoCo does not act on `<custom>` fields, whoever simulates the file lays the wrench on the board's site
 //! `tool`. It must never contain what only the engine here needs.
 //!
-//! Checked by hand in MuJoCo 3 (`scenarios/plans/cut-rim.json`, masses exact): the tool point gives way by 5.39 mm there
-//! and by 5.35 mm here.
+//! Checked by hand in MuJoCo 3 with pads of a core and a face (`scenarios/plans/cut-rim.json`, masses exact): the tool
+//! point gave way by 5.39 mm there and by 5.35 mm here.
 //!
 //! What the file says beyond MJCF:
 //! - the key frame `planned` holds the planned state; its controls are the servos' rest angles `q + tau_ff / K`, the
@@ -25,7 +25,8 @@ use super::{
     bodies::{ArmBodies, MovingBody},
     check,
     gripper::FINGER_DAMPING_N_S_M,
-    pad::{PadBox, pad_boxes, x_gp},
+    pad::x_gp,
+    pad_shape::{Hand, PadPart, Pressing, Solid, pad_parts},
 };
 use crate::{
     model::{
@@ -37,11 +38,12 @@ use crate::{
     robot::{Arm, Finger, JointKind, Robot},
 };
 
-/// How far the whole face of a pad lies behind its core, m: a few times what contacts sink in with [`CONTACT`].
-const RECESS_M: f64 = 2e-5;
-
-/// Contacts as stiff as MuJoCo takes them at a time step of 2 ms: they sink in by micrometres.
+/// Contacts as stiff as MuJoCo takes them at a time step of 2 ms.
 const CONTACT: [(&str, &str); 2] = [("solref", "0.004 1"), ("solimp", "0.99 0.999 0.0001")];
+
+/// How soft they are, s^2: MuJoCo's contacts of time constant `t`, damping ratio 1 and impedance `d` sink in by
+/// `(1 - d) / d * (d t)^2 * F / m`, as its documentation has it, with `d` and `t` of [`CONTACT`].
+const SOFTNESS_S2: f64 = 0.01 * 0.99 * 0.004 * 0.004;
 
 type Xml = Writer<Vec<u8>>;
 
@@ -52,6 +54,7 @@ struct ExportedArm<'a> {
     bodies: ArmBodies,
     weight_nm: Vec<f64>,
     finger_m: [f64; 2],
+    pressing: Pressing,
 }
 
 /// Writes the scene of a plan as MJCF.
@@ -69,7 +72,12 @@ pub fn mjcf(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Strin
             let finger_m =
                 [0, 1].map(|k| arm.gripper.fingers[k].joint_position_m(arm.gripper.travel_for_gap_m(k, gap_m)));
             let weight_nm = weight_torque_nm(robot, holding.arm_index, &holding.hold.q_rad, gap_m);
-            ExportedArm { arm, hold: holding.hold, bodies: ArmBodies::new(robot, arm), weight_nm, finger_m }
+            let hold = holding.hold;
+            let bodies = ArmBodies::new(robot, arm);
+            let hand = Hand { arm, bodies: &bodies, x_og: hold.x_og };
+            let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
+            let pressing = Pressing::new(&hand, &plan.object, grip_force_n, SOFTNESS_S2);
+            ExportedArm { arm, hold, bodies, weight_nm, finger_m, pressing }
         })
         .collect();
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
@@ -190,26 +198,30 @@ fn inertial(xml: &mut Xml, body: &MovingBody) -> io::Result<()> {
     empty(xml, "inertial", &attributes)
 }
 
-fn pad_geom_name(arm: &ExportedArm<'_>, k: usize, part: usize) -> String {
-    format!("{} {} {}", arm.hold.name, arm.arm.gripper.fingers[k].pad.name, ["core", "face"][part])
+fn pad_geom_name(arm: &ExportedArm<'_>, k: usize, part: &PadPart) -> String {
+    format!("{} {} {}", arm.hold.name, arm.arm.gripper.fingers[k].pad.name, part.name)
 }
 
-/// The boxes of a finger's pad, in the finger's body.
+/// The parts of a finger's pad, in the finger's body.
 fn pads(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, k: usize, body: &MovingBody) -> io::Result<()> {
     let finger: &Finger = &arm.arm.gripper.fingers[k];
     let seat = arm.bodies.seats[arm.arm.gripper.frame_link];
     let axis_j: Vector3<f64> = robot.joints[finger.joint].axis_j.into_inner();
     let x_gf = seat.x_bl.inverse() * body.x_pj * Translation3::from(axis_j * finger.closed_m);
     let x_fp = x_gf.inverse() * x_gp(&finger.pad, k);
-    for (part, PadBox { half_m, x_pc }) in pad_boxes(&finger.pad, RECESS_M).into_iter().enumerate() {
-        geom(xml, &pad_geom_name(arm, k, part), half_m, &(x_fp * x_pc))?;
+    for part in pad_parts(&finger.pad, &arm.pressing) {
+        geom(xml, &pad_geom_name(arm, k, &part), &part.solid, &(x_fp * part.x_pc))?;
     }
     Ok(())
 }
 
-/// A box that touches only what a pair names, without a mass of its own.
-fn geom(xml: &mut Xml, name: &str, half_m: [f64; 3], x_bc: &Pose) -> io::Result<()> {
-    let mut attributes = vec![("name", name.to_owned()), ("type", "box".into()), ("size", numbers(&half_m))];
+/// A solid that touches only what a pair names, without a mass of its own.
+fn geom(xml: &mut Xml, name: &str, solid: &Solid, x_bc: &Pose) -> io::Result<()> {
+    let (kind, size) = match solid {
+        Solid::Box { half_m } => ("box", numbers(half_m)),
+        Solid::Ball { radius_m } => ("sphere", numbers(&[*radius_m])),
+    };
+    let mut attributes = vec![("name", name.to_owned()), ("type", kind.into()), ("size", size)];
     attributes.extend(pose_attributes(x_bc));
     attributes.extend([("contype", "0".into()), ("conaffinity", "0".into()), ("mass", "0".into())]);
     empty(xml, "geom", &attributes)
@@ -225,7 +237,7 @@ fn board(xml: &mut Xml, object: &PlacedObject, x_ot: &Pose) -> io::Result<()> {
         let attributes =
             [("pos", "0 0 0".to_owned()), ("mass", object.mass_kg.to_string()), ("diaginertia", numbers(&inertia))];
         empty(xml, "inertial", &attributes)?;
-        geom(xml, "board", object.size_m.map(|side| side / 2.0), &Pose::identity())?;
+        geom(xml, "board", &Solid::Box { half_m: object.size_m.map(|side| side / 2.0) }, &Pose::identity())?;
         let mut site = vec![("name", "tool".to_owned())];
         site.extend(pose_attributes(x_ot));
         empty(xml, "site", &site)
@@ -233,15 +245,17 @@ fn board(xml: &mut Xml, object: &PlacedObject, x_ot: &Pose) -> io::Result<()> {
     Ok(())
 }
 
-/// Which boxes touch, and how.
+/// Which solids touch, and how.
 fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], friction: f64) -> io::Result<()> {
     // MuJoCo knows no pair without friction.
     let mu = friction.max(1e-5);
     xml.create_element("contact").write_inner_content(|xml| {
         for arm in arms {
-            for (k, part) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let fingers = arm.arm.gripper.fingers.iter().enumerate();
+            let parts = fingers.flat_map(|(k, finger)| pad_parts(&finger.pad, &arm.pressing).map(|part| (k, part)));
+            for (k, part) in parts {
                 let mut attributes = vec![
-                    ("geom1", pad_geom_name(arm, k, part)),
+                    ("geom1", pad_geom_name(arm, k, &part)),
                     ("geom2", "board".to_owned()),
                     ("condim", "3".into()),
                     ("friction", numbers(&[mu, mu, 0.005, 0.0001, 0.0001])),

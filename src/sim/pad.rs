@@ -1,4 +1,4 @@
-//! The pads: their shape in the engine, and what they do to the board.
+//! The pads in the engine, and what they do to the board.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::{
@@ -7,15 +7,13 @@ use rapier3d_f64::prelude::{
 
 use super::{
     border,
-    world::{pad_groups, penetration_m, substep_s},
+    pad_shape::{PadPart, Pressing, Solid, pad_parts},
+    world::{pad_groups, substep_s},
 };
 use crate::{
     model::{frames::Pose, trace::PadSample, wrench::Wrench},
     robot::Pad,
 };
-
-/// Depth of the collider behind a pad's face, m: nothing reaches its back.
-const DEPTH_M: f64 = 0.004;
 
 /// The board, as the pads see it.
 #[derive(Clone, Copy)]
@@ -31,51 +29,8 @@ pub(super) struct TouchedBoard {
 pub(super) struct PadContact {
     /// Coulomb coefficient.
     pub friction: f64,
-    /// How far the whole face lies behind the core that carries the load, m.
-    recess_m: f64,
-}
-
-impl PadContact {
-    /// The contact of pads that grip a board of this mass with this force. The recess is twice what the core sinks
-    /// in: an evenly pressed pad rests on the core alone, and a pad that tilts meets the edge of its whole face
-    /// after a fraction of a milliradian.
-    pub fn new(world: &PhysicsWorld, friction: f64, grip_force_n: f64, board_mass_kg: f64) -> Self {
-        Self { friction, recess_m: 2.0 * penetration_m(world, grip_force_n, board_mass_kg) }
-    }
-}
-
-/// Mean distance of a rectangle's points from its centre, m: `(1/A) integral of r dA` for half sides a and b,
-/// `(d + a^2/(2b) ln((b+d)/a) + b^2/(2a) ln((a+d)/b)) / 3` with `d` the half diagonal (METHOD section 6).
-fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
-    let d = a.hypot(b);
-    (d + a * a / (2.0 * b) * ((b + d) / a).ln() + b * b / (2.0 * a) * ((a + d) / b).ln()) / 3.0
-}
-
-/// A pad as boxes: half sides along x_P and y_P, and how far the box lies behind the face, m.
-///
-/// The engine holds two flat boxes together in four corners. Corners of the whole face would turn too hard; those of a
-/// face shrunk until they lie at its mean radius turn exactly as hard as an evenly pressed face. The whole face, a
-/// little recessed, comes to bear where the pad tilts.
-fn boxes(half_m: [f64; 2], recess_m: f64) -> [([f64; 2], f64); 2] {
-    let [a, b] = half_m;
-    let shrink = mean_radius_m(half_m) / a.hypot(b);
-    [(half_m.map(|half| half * shrink), 0.0), (half_m, recess_m)]
-}
-
-/// A box of a pad.
-pub(super) struct PadBox {
-    /// Half sides, m.
-    pub half_m: [f64; 3],
-    /// Pose of its centre in P.
-    pub x_pc: Pose,
-}
-
-/// The boxes of a pad, its face recessed behind its core.
-pub(super) fn pad_boxes(pad: &Pad, recess_m: f64) -> [PadBox; 2] {
-    boxes(pad.size_m.map(|side| side / 2.0), recess_m).map(|([x, y], recess_m)| PadBox {
-        half_m: [x, y, DEPTH_M / 2.0],
-        x_pc: Isometry3::translation(0.0, 0.0, -recess_m - DEPTH_M / 2.0),
-    })
+    /// What presses it.
+    pub pressing: Pressing,
 }
 
 /// Pose of the pad of finger `k` (0 on the +y_G side) in G when its travel is 0: x_P along x_G, z_P into the object.
@@ -94,8 +49,8 @@ pub(super) struct SimPad {
     finger: RigidBodyHandle,
     /// P in the finger's body: x_P along x_G, z_P into the board, at the centre of the face.
     x_fp: Pose,
-    /// The core, then the whole face.
-    colliders: [ColliderHandle; 2],
+    /// One a part.
+    colliders: [ColliderHandle; 3],
 }
 
 impl SimPad {
@@ -109,8 +64,12 @@ impl SimPad {
         contact: PadContact,
     ) -> Self {
         let x_fp = x_gf.inverse() * x_gp(pad, k);
-        let colliders = pad_boxes(pad, contact.recess_m).map(|PadBox { half_m: [x, y, z], x_pc }| {
-            let collider = ColliderBuilder::cuboid(x, y, z)
+        let colliders = pad_parts(pad, &contact.pressing).map(|PadPart { solid, x_pc, .. }| {
+            let collider = match solid {
+                Solid::Box { half_m: [x, y, z] } => ColliderBuilder::cuboid(x, y, z),
+                Solid::Ball { radius_m } => ColliderBuilder::ball(radius_m),
+            };
+            let collider = collider
                 .density(0.0)
                 .friction(contact.friction)
                 .position(border::engine_pose(&(x_fp * x_pc)))
@@ -122,7 +81,7 @@ impl SimPad {
 
     /// How deep the pad's contacts with the board sank in before the last step, m: nothing where it does not touch.
     pub fn penetration_m(&self, world: &PhysicsWorld, board: TouchedBoard) -> f64 {
-        let pairs = self.colliders.iter().filter_map(|core| world.narrow_phase.contact_pair(*core, board.collider));
+        let pairs = self.colliders.iter().filter_map(|part| world.narrow_phase.contact_pair(*part, board.collider));
         let points = pairs.flat_map(|pair| pair.solver_manifolds()).flat_map(|manifold| &manifold.points);
         points.map(|point| -point.dist).fold(0.0, f64::max)
     }
@@ -164,15 +123,4 @@ fn impulse_on_board(
         total = total + Wrench::from_force(border::from_vector(impulse)).about(&(p_w - about_w));
     }
     total
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_mean_radius_is_that_of_the_rectangle() {
-        // 14.63 mm for the pad of 40.4 x 36.0 mm (METHOD section 6), given to four digits.
-        assert!((mean_radius_m([0.0202, 0.018]) - 0.01463).abs() < 5e-6);
-    }
 }

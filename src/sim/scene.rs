@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     model::{
+        GRAVITY_W,
         frames::Pose,
         load::ForceFrame,
         plan::{PlacedObject, Plan},
@@ -26,6 +27,11 @@ use crate::{
 /// A joint speed that no servo reaches, rad/s: beyond it the engine has lost the state. (A board that was dropped may
 /// well reach any speed under a steady load.)
 const LOST_RAD_S: f64 = 100.0;
+
+/// In what time a board is handed over to the arms, s, at most half of the settling. A weight that comes at once makes
+/// them swing out by a fifth too far, and hands that slide in the swing stay askew: under a tenth of their load some then
+/// turn by less than hands do that were loaded gently. With 0.1 to 0.25 s the difference is gone.
+const HAND_OVER_S: f64 = 0.15;
 
 /// A board held by arms, stepped by hand. `sim::simulate` runs one through a plan's load; tests load it as they like.
 pub struct Scene {
@@ -44,6 +50,8 @@ pub struct Scene {
     tool: ToolState,
     /// Its wrench then, about the tool point, world axes.
     tool_wrench_w: Wrench,
+    /// Steps until now, and those in which the board is handed over.
+    steps: [usize; 2],
     /// Momentum and energy.
     books: Books,
 }
@@ -57,7 +65,8 @@ impl Scene {
     pub fn new(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Self, SimError> {
         let holds = check::holds(robot, plan)?;
         conditions.check()?;
-        let mut world = new_world(conditions.settings.timestep_s, conditions.uncertainty.contact_stiffness_scale);
+        let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
+        let mut world = new_world(conditions.settings.timestep_s, stiffness_scale, plan.object.mass_kg);
         let board = insert_board(&mut world, &plan.object, conditions.real_friction());
         let mut arms = Vec::with_capacity(holds.len());
         for hold in holds {
@@ -67,6 +76,7 @@ impl Scene {
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;
+        let hand_over_s = HAND_OVER_S.min(conditions.settings.settle_s / 2.0);
         Ok(Self {
             books: Books::new(&world, board.body, energy_j),
             world,
@@ -76,6 +86,7 @@ impl Scene {
             p_ot_m,
             frame: conditions.load.frame,
             x_wo_planned: plan.object.x_wo,
+            steps: [0, (hand_over_s / conditions.settings.timestep_s).round() as usize],
             tool: ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m },
             tool_wrench_w: Wrench::default(),
         })
@@ -106,12 +117,24 @@ impl Scene {
         let x_wo = self.x_wo();
         self.tool_wrench_w = wrench_w(self.frame, &self.tool.wrench_o, &x_wo, &self.x_wo_planned);
         let tip_w = x_wo * Point3::from(self.tool.p_ot_m);
-        self.books.open_step(&self.world, &self.tool_wrench_w, &tip_w.coords);
+        let body = &self.world.bodies[self.board.body];
+        let com_w = body.center_of_mass();
+        let support = Wrench::from_force(GRAVITY_W * (-body.mass() * self.supported_share()));
+        let outer_w = self.tool_wrench_w + support.about(&(border::from_vector(com_w) - tip_w.coords));
+        self.books.open_step(&self.world, &outer_w, &tip_w.coords);
+        self.steps[0] += 1;
         let body = &mut self.world.bodies[self.board.body];
         body.reset_forces(false);
         body.reset_torques(false);
         body.add_force_at_point(border::vector(&self.tool_wrench_w.force_n), border::vector(&tip_w.coords), false);
         body.add_torque(border::vector(&self.tool_wrench_w.moment_nm), false);
+        body.add_force_at_point(border::vector(&support.force_n), com_w, false);
+    }
+
+    /// The part of the board's weight that whoever hands it over still carries in this step.
+    fn supported_share(&self) -> f64 {
+        let [step, hand_over] = self.steps;
+        if step >= hand_over { 0.0 } else { 1.0 - step as f64 / hand_over as f64 }
     }
 
     /// Pose of the board.

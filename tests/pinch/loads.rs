@@ -140,8 +140,8 @@ fn what_departs_from_the_plan_shows_where_it_should() {
     assert_eq!(tight.2, 24.0);
     let yielding = with(Uncertainty { contact_stiffness_scale: 0.1, ..Uncertainty::default() });
     let ratio = yielding.1.self_check.penetration_m / plain.1.self_check.penetration_m;
-    // The deepest of sixteen corners; the load presses them unevenly in either case.
-    assert!((ratio - 10.0).abs() < 1.0, "{ratio}");
+    // The deepest of all corners: how unevenly they press depends on how the hands came to rest, and friction keeps it.
+    assert!((ratio - 10.0).abs() < 2.0, "{ratio}");
 
     let grip = Grip { force_n: 30.0, friction: 0.6, mass_kg: LIGHT_KG };
     let slip_n = 2.0 * grip.friction * grip.force_n - grip.mass_kg * GRAVITY_M_S2;

@@ -213,15 +213,17 @@ fn two_arms_give_way_as_if_welded_under_a_small_load() {
         Operation::drill([0.1, 0.1], 1.5, THICKNESS_M),
         Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M),
     ];
-    // The engine's contacts are as stiff as the lightest body is heavy, so a lighter board sits softer in its hands:
-    // 1.3 % were measured with 1 kg, 4 to 6 % (0.006 mm) with the foam board.
-    for (mass_kg, tolerance) in [(1.0, 0.02), (BOARD_KG, 0.07)] {
+    // The engine's contacts are as stiff as the lightest body is heavy, so a lighter board sits softer in its hands.
+    // 3 % were measured with 0.5 kg, 7 % (0.008 mm) with the foam board. (A board of 1 kg asks more of the pads by its
+    // weight than they hold without turning: by the compliant prediction the cut bends it 2.3 times as far as welds would.)
+    for (mass_kg, tolerance) in [(0.5, 0.04), (BOARD_KG, 0.08)] {
         for operation in operations {
             let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
             let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
             let found_m = displacement_m(&trace, last(&trace, Phase::Hold));
             let welded_m = welded_displacement_m(&robot, &plan);
             let error = (found_m - welded_m).norm() / welded_m.norm();
+            println!("{mass_kg} kg: off by {:.4} mm, {:.2} %", (found_m - welded_m).norm() * 1e3, 100.0 * error);
             assert!(error < tolerance, "{mass_kg} kg, {operation:?}: found {found_m}, welded {welded_m}: {error}");
         }
     }
@@ -248,17 +250,32 @@ fn forces_and_moments_on_the_board_balance_in_the_hold() {
 #[test]
 fn no_board_rings_between_the_hands() {
     let robot = baxter::robot();
-    let mut plan = baxter::plan(&robot, drill(15.0), BOARD_KG, 30.0);
-    for mass_kg in [0.03, 0.1, 0.21, 0.5, 1.5] {
-        plan.object.mass_kg = mass_kg;
-        let settings = SimulationSettings { ramp_s: 0.3, hold_s: 0.3, release_s: 0.0, ..QUICK };
-        let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
-        let normal_n = |step: usize| trace.samples[step].arms[0].pads[0].normal_force_n;
-        let steps = trace.samples.len();
-        let jump_n = (steps - 50..steps).map(|step| (normal_n(step) - normal_n(step - 1)).abs()).fold(0.0, f64::max);
-        // 0.01 N a step is the end of the arms' swing; boards that ring do so by 0.1 N and more.
-        assert!(jump_n < 0.03, "{mass_kg} kg: the pads' force jumps by {jump_n} N from step to step");
+    let cut = Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M);
+    for (operation, mass_kg) in [drill(15.0), cut].iter().flat_map(|operation| MASSES_KG.map(|kg| (*operation, kg))) {
+        for timestep_s in [0.001, 0.002] {
+            let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
+            let settings = SimulationSettings { ramp_s: 0.3, hold_s: 0.3, release_s: 0.0, timestep_s, ..QUICK };
+            let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
+            let jump_n = largest_jump_n(&trace);
+            println!("{mass_kg} kg, {timestep_s} s: {jump_n:.4} N from step to step");
+            // 0.04 N a step is the end of a swing; boards that ring do so by 1 N and more.
+            assert!(jump_n < 0.1, "{mass_kg} kg, {timestep_s} s: a pad's force jumps by {jump_n} N from step to step");
+        }
     }
+}
+
+/// From foam that weighs next to nothing to wood.
+const MASSES_KG: [f64; 9] = [0.03, 0.05, 0.07, 0.1, 0.21, 0.35, 0.5, 1.0, 2.0];
+
+/// By how much the force of any pad changes from a step to the next, at most, in the last fifty, N.
+fn largest_jump_n(trace: &Trace) -> f64 {
+    let force_n = |step: usize, arm: usize, pad: usize| trace.samples[step].arms[arm].pads[pad].wrench_w.force_n;
+    let steps = trace.samples.len() - 50..trace.samples.len();
+    let jumps_n = steps.flat_map(|step| {
+        [(0, 0), (0, 1), (1, 0), (1, 1)]
+            .map(|(arm, pad)| (force_n(step, arm, pad) - force_n(step - 1, arm, pad)).norm())
+    });
+    jumps_n.fold(0.0, f64::max)
 }
 
 #[test]

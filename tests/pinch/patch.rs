@@ -76,8 +76,8 @@ fn force_and_torsion_together_slip_on_the_limit_surface() {
     let radius_m = mean_distance_from_centre_m(PAD_HALF_M);
     let grip = Grip { force_n: 30.0, friction: 0.6, mass_kg: 0.02 };
     let whole_n = 2.0 * grip.friction * grip.force_n;
-    for way_deg in [0.0_f64, 45.0, 90.0] {
-        for mix_deg in [30.0_f64, 45.0, 60.0] {
+    for way_deg in [0.0_f64, 22.5, 45.0, 67.5, 90.0] {
+        for mix_deg in [15.0_f64, 30.0, 45.0, 60.0, 75.0, 90.0] {
             let (mix_sin, mix_cos) = mix_deg.to_radians().sin_cos();
             let (sin, cos) = way_deg.to_radians().sin_cos();
             let force = Vector2::new(cos, sin) * mix_cos;
@@ -88,11 +88,9 @@ fn force_and_torsion_together_slip_on_the_limit_surface() {
             );
             let found = found_limit(&grip, wrench_g, 1e-3);
             println!("force at {way_deg} degrees, share of torsion {mix_deg} degrees: {found:.3} of the uniform patch");
-            // A pad is four corners of equal radius in the engine. When the centre about which it turns comes to lie at a
-            // corner, that corner gives nothing: by the theory of four points 1 to 3 % are missing along the pad's axes
-            // and 6 to 9 % along its diagonals. Never is anything gained.
-            let missing = if way_deg == 45.0 { 0.10 } else { 0.05 };
-            assert!(found < 1.01 && found > 1.0 - missing, "{way_deg}, {mix_deg} degrees: {found}");
+            // A pad is five points in the engine. By their theory up to 4 % are missing when the centre about which it
+            // turns comes to lie at a corner, and up to 4 % are gained when it lies elsewhere; 5 % is asked for.
+            assert!((found - 1.0).abs() < 0.05, "{way_deg}, {mix_deg} degrees: {found}");
         }
     }
 }
