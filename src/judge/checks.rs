@@ -68,8 +68,15 @@ impl Channel {
 
 /// Every check, in the order of tables. `judged` are the samples from the reference to the end of the load, and
 /// `measures` begins at the same sample. Creep is left out when the hold is too short to have a
-/// slope, or its load does not stay the same: a hand that follows the load does not creep.
-pub(super) fn findings(trace: &Trace, judged: &[Sample], measures: &Measures, limits: &Limits) -> Vec<Finding> {
+/// slope, or its load does not stay the same: a hand that follows the load does not creep. So it is where the hold was cut
+/// short, `to_the_end` being false: the second half of it is not known.
+pub(super) fn findings(
+    trace: &Trace,
+    judged: &[Sample],
+    measures: &Measures,
+    limits: &Limits,
+    to_the_end: bool,
+) -> Vec<Finding> {
     let count = judged.len();
     let hand = |kind, limit, series: fn(&HandMeasures) -> &[f64]| {
         let channel = |hand: &HandMeasures| Channel::new(format!("{} hand", hand.name), &series(hand)[..count]);
@@ -82,7 +89,7 @@ pub(super) fn findings(trace: &Trace, judged: &[Sample], measures: &Measures, li
         hand(CheckKind::SlipRotation, limits.slip_deg, |hand| &hand.slip_deg),
         sampled(CheckKind::Deflection, limits.deflection_mm, vec![deflection]),
     ];
-    findings.extend(creep(trace, judged, limits.creep_mm_s));
+    findings.extend(if to_the_end { creep(trace, judged, limits.creep_mm_s) } else { None });
     findings.extend([
         sampled(CheckKind::TorqueRatio, limits.torque_ratio, measures.joints.iter().map(joint).collect()),
         sampled(CheckKind::PadOpen, OPEN_LIMIT_MS, pad_open_channels(trace, judged)),

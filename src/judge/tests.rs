@@ -314,6 +314,67 @@ fn broken_traces_give_no_verdict_and_a_reason() {
     assert_eq!(reason(&weak), "found a joint of the right arm without torque, expected positive limits");
 }
 
+/// A hold that is slid past its limit in the ramp and breaks down in the hold.
+fn broken_after_a_slip() -> Trace {
+    let mut trace = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
+    trace.samples.truncate(SETTLE + RAMP + 20);
+    Trace { broke_down: Some("the joint speeds have blown up".into()), ..trace }
+}
+
+#[test]
+fn a_limit_crossed_before_the_breakdown_names_the_verdict() {
+    let judgement = judge(&broken_after_a_slip(), &limits());
+    assert_eq!((judgement.verdict, judgement.reason), (VerdictKind::Slips, None));
+    assert_eq!(judgement.first_failure.unwrap().time_s, (SETTLE + 59) as f64 * STEP_S);
+    // What the second half of a hold would have been is not known.
+    assert!(judgement.checks.iter().all(|check| check.name != CheckKind::Creep));
+    let last = judgement.events.last().unwrap();
+    assert_eq!(last.kind, EventKind::BrokeDown);
+    assert_eq!(last.text, "the simulation ends here: the joint speeds have blown up");
+}
+
+#[test]
+fn a_breakdown_without_a_crossing_has_no_verdict_whatever_was_kept_until_then() {
+    let trace = broken_after_a_slip();
+    // The same trace under a limit that it kept: it holds as far as it goes, which is no hold.
+    let judgement = judge(&trace, &Limits { slip_mm: 2.0, ..limits() });
+    assert_eq!(judgement.verdict, VerdictKind::NoVerdict);
+    assert_eq!(judgement.reason.unwrap(), "the joint speeds have blown up");
+    assert!(judgement.checks.is_empty());
+}
+
+#[test]
+fn a_crossing_that_the_self_checks_do_not_bear_out_is_none() {
+    let mut trace = broken_after_a_slip();
+    trace.samples[SETTLE + 40].self_check.contact_energy_j = 0.6;
+    let judgement = judge(&trace, &limits());
+    assert_eq!(judgement.verdict, VerdictKind::NoVerdict);
+    assert!(judgement.reason.unwrap().starts_with("the simulation cannot be believed: energy_created"));
+}
+
+#[test]
+fn a_number_that_is_not_finite_ends_what_can_be_believed() {
+    let mut slid = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
+    slid.samples[SETTLE + RAMP].arms[0].x_oc.translation.vector.x = f64::NAN;
+    let judgement = judge(&slid, &limits());
+    assert_eq!(judgement.verdict, VerdictKind::Slips);
+    assert!(judgement.checks.iter().all(|check| check.value.is_finite()));
+    slid.samples[0].time_s = f64::NAN;
+    assert_eq!(judge(&slid, &limits()).verdict, VerdictKind::NoVerdict);
+}
+
+#[test]
+fn a_breakdown_while_settling_has_no_verdict_but_a_loss_then_drops() {
+    let broken = |mut trace: Trace| {
+        trace.samples.truncate(SETTLE - 5);
+        judge(&Trace { broke_down: Some("it is gone".into()), ..trace }, &limits())
+    };
+    assert_eq!(broken(still()).reason.unwrap(), "it is gone");
+    let lost =
+        |s: &mut Sample| s.arms.iter_mut().flat_map(|arm| &mut arm.pads).for_each(|pad| pad.normal_force_n = 0.0);
+    assert_eq!(broken(changed(SETTLE - 20, lost)).verdict, VerdictKind::Drops);
+}
+
 #[test]
 fn events_are_the_phases_and_the_first_crossings_in_order() {
     let trace = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
