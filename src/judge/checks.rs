@@ -20,12 +20,15 @@ const OPEN_LIMIT_MS: f64 = 30.0;
 /// How long the board may be without any contact, ms: not at all (METHOD section 8).
 const CONTACT_LOST_LIMIT_MS: f64 = 0.0;
 
+/// How far robot and board may reach into the person, mm: not at all.
+const PERSON_OVERLAP_LIMIT_MM: f64 = 0.0;
+
 /// Slip at which the board counts as dropped, mm (METHOD section 8).
 const DROP_MM: f64 = 50.0;
 
 /// Which check names the verdict when two cross at the same sample: the loss of the board first, then what happens at
 /// the contacts, then what follows from it.
-const PRECEDENCE: [CheckKind; 8] = [
+const PRECEDENCE: [CheckKind; 9] = [
     CheckKind::Drop,
     CheckKind::ContactLost,
     CheckKind::PadOpen,
@@ -33,6 +36,7 @@ const PRECEDENCE: [CheckKind; 8] = [
     CheckKind::SlipRotation,
     CheckKind::TorqueRatio,
     CheckKind::Deflection,
+    CheckKind::PersonOverlap,
     CheckKind::Creep,
 ];
 
@@ -96,6 +100,7 @@ pub(super) fn findings(
         sampled(CheckKind::ContactLost, CONTACT_LOST_LIMIT_MS, vec![contact_lost_channel(judged)]),
         hand(CheckKind::Drop, DROP_MM, |hand| &hand.slip_mm),
     ]);
+    findings.extend(person_overlap(trace, judged));
     findings
 }
 
@@ -126,6 +131,17 @@ fn pad_open_channels(trace: &Trace, judged: &[Sample]) -> Vec<Channel> {
 /// How long no pad of any hand has touched the board at each sample, ms.
 fn contact_lost_channel(judged: &[Sample]) -> Channel {
     Channel { what: String::new(), values: duration_ms(judged, |sample| !sample.is_touched()) }
+}
+
+/// How deep robot or board reach into the person; none when nobody stands there.
+fn person_overlap(trace: &Trace, judged: &[Sample]) -> Option<Finding> {
+    let overlaps_mm: Vec<f64> = judged.iter().map(|s| s.person_distance_m.map(|m| -1e3 * m)).collect::<Option<_>>()?;
+    let deepest = overlaps_mm.iter().copied().reduce(f64::max)?;
+    let crossing = overlaps_mm.iter().position(|&mm| is_crossed(mm, PERSON_OVERLAP_LIMIT_MM)).map(|sample| Crossing {
+        sample,
+        what: trace.person_touch.as_ref().map_or(String::new(), |touch| format!("{} and {}", touch.body, touch.part)),
+    });
+    Some(Finding { check: check(CheckKind::PersonOverlap, deepest, PERSON_OVERLAP_LIMIT_MM), crossing })
 }
 
 /// How long a condition has lasted at each sample, ms: 0 where it does not hold. A sample's forces are those of the

@@ -79,6 +79,7 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
         CheckKind::PadOpen => "has been open for more than",
         CheckKind::ContactLost => "no pad touches the board: past",
         CheckKind::Drop => "has lost the board: past",
+        CheckKind::PersonOverlap => "overlap: past",
         CheckKind::Penetration | CheckKind::EnergyCreated | CheckKind::ForceResidual | CheckKind::CouplingDrift => {
             "the simulation leaves the laws of mechanics: past"
         }

@@ -7,7 +7,7 @@ use super::*;
 use crate::model::{
     frames::Pose,
     measures::EventKind,
-    trace::{ArmSample, ArmTrace, PadSample, StepCheck},
+    trace::{ArmSample, ArmTrace, PadSample, PersonTouch, StepCheck},
     verdict::CheckKind,
     wrench::Wrench,
 };
@@ -73,12 +73,14 @@ fn still() -> Trace {
         p_ot_m: Vector3::new(0.1, 0.05, 0.015),
         self_check: StepCheck::default(),
         arms: vec![arm_sample.clone(); 2],
+        person_distance_m: None,
     };
     Trace {
         arms: vec![arm("left"), arm("right")],
         p_ot_m: Vector3::new(0.1, 0.05, 0.015),
         samples: (0..SETTLE + RAMP + HOLD + RELEASE).map(sample).collect(),
         broke_down: None,
+        person_touch: None,
     }
 }
 
@@ -130,6 +132,35 @@ fn each_failure_is_named_after_its_own_limit() {
     assert_eq!(outcome(&changed(at, |s| slide(s, 0, 50.1))), (VerdictKind::Drops, Some(at)));
     // Fifteen steps of 2 ms are allowed; the sixteenth is one too many.
     assert_eq!(outcome(&changed(at, |s| s.arms[0].pads[1].normal_force_n = 1.4)), (VerdictKind::Opens, Some(at + 15)));
+}
+
+/// A still hold beside a person, with the distance to them from a sample on.
+fn beside_a_person(from: usize, distance_m: f64) -> Trace {
+    let mut trace = still();
+    for (index, sample) in trace.samples.iter_mut().enumerate() {
+        sample.person_distance_m = Some(if index < from { 0.05 } else { distance_m });
+    }
+    let touch = PersonTouch { body: "the board".into(), part: "the person's Head".into() };
+    Trace { person_touch: (distance_m < 0.0).then_some(touch), ..trace }
+}
+
+#[test]
+fn a_person_who_is_reached_is_touched() {
+    let at = SETTLE + 60;
+    let touched = judge(&beside_a_person(at, -0.002), &limits());
+    assert_eq!(touched.verdict, VerdictKind::Touches);
+    assert_eq!(touched.first_failure.unwrap().time_s, at as f64 * STEP_S);
+    let check = touched.checks.iter().find(|check| check.name == CheckKind::PersonOverlap).unwrap();
+    assert_eq!((check.value, check.limit, check.margin), (2.0, 0.0, -2.0));
+    let told = "the board and the person's Head overlap: past 0 mm at load factor 0.61";
+    assert!(touched.events.iter().any(|event| event.text == told), "{:?}", touched.events);
+
+    // Skin on wood is no overlap, and a plan without a person has no such check: never a pass of nothing.
+    let apart = judge(&beside_a_person(at, 0.0), &limits());
+    assert_eq!((apart.verdict, value(&apart, CheckKind::PersonOverlap)), (VerdictKind::Holds, 0.0));
+    let clear = judge(&beside_a_person(at, 0.032), &limits());
+    assert_eq!((clear.verdict, value(&clear, CheckKind::PersonOverlap)), (VerdictKind::Holds, -32.0));
+    assert!(judge(&still(), &limits()).checks.iter().all(|check| check.name != CheckKind::PersonOverlap));
 }
 
 #[test]

@@ -10,6 +10,8 @@
 //! - Grippers: two fingers coupled to open alike, each pushed with a constant force that the palm feels too.
 //! - The board, a free body under gravity and the tool's wrench over time (`tool.rs`). Pads and board touch; nothing else does. Joint limits
 //!   of the arms are not modelled: a plan's angles are inside them, and servos give way by milliradians.
+//! - The person of a plan stands still and is looked at, not touched: the trace tells their distance from robot and board
+//!   (`person.rs`).
 //!
 //! # The pads
 //! The engine joins two flat boxes in four corners, which resist turning by their distance from the centre. What
@@ -73,6 +75,7 @@ mod gripper;
 mod load;
 mod mjcf;
 mod pad;
+mod person;
 mod scene;
 mod self_check;
 mod servo;
@@ -82,6 +85,7 @@ mod world;
 pub use conditions::Conditions;
 pub use error::SimError;
 pub use mjcf::mjcf;
+use person::Bystander;
 pub use scene::{Scene, blank_sample};
 use tool::ToolLoad;
 
@@ -113,6 +117,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<T
     let tool = ToolLoad::new(plan, conditions)?;
     let timestep_s = conditions.settings.timestep_s;
     let mut scene = Scene::new(robot, plan, conditions)?;
+    let mut person = Bystander::of(robot, plan, conditions)?;
     let mut trace = empty_trace(robot, plan, conditions, tool.steps() + 1);
     let mut untouched_s = 0.0;
     for step in 0..=tool.steps() {
@@ -129,6 +134,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<T
         let sample = &mut trace.samples[step];
         (sample.time_s, sample.phase) = (time_s, phase);
         scene.observe(sample);
+        sample.person_distance_m = person.as_mut().map(|person| person.distance_m(step, sample));
         // Before the first step there are no forces yet.
         untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + timestep_s };
         if untouched_s > LOST_AFTER_S {
@@ -136,6 +142,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<T
             break;
         }
     }
+    trace.person_touch = person.and_then(|person| person.touch);
     Ok(trace)
 }
 
@@ -156,5 +163,6 @@ fn empty_trace(robot: &Robot, plan: &Plan, conditions: &Conditions, samples: usi
         p_ot_m: plan.operation.x_ot.translation.vector,
         samples: vec![blank_sample(plan); samples],
         broke_down: None,
+        person_touch: None,
     }
 }
