@@ -1,4 +1,9 @@
 //! The person as they stand, against a robot and a board that move: how far apart they are, and which bodies are nearest.
+//!
+//! What a plan keeps at a distance is looked at. What a plan lets come as near as it likes is not: tool and working hand, and the
+//! forearm behind them, against the board; the tool against the robot. They are at the board by their trade and go where
+//! it goes, with the hands that hold it, by the few millimetres that a hold gives way; only a person who stood like a statue would
+//! be pushed by them.
 
 use super::{Body, CollisionModel, PersonPart, point_w, shapes::Piece};
 use crate::{human::BodyPart, model::frames::Pose};
@@ -15,8 +20,10 @@ struct StandingPart {
     name: BodyPart,
     /// In W.
     capsule: Piece,
-    /// Tool and working hand are at the board by their trade.
-    may_touch_board: bool,
+    /// Whether a plan keeps it at a distance from the board.
+    keeps_off_board: bool,
+    /// Whether a plan keeps it at a distance from the robot.
+    keeps_off_robot: bool,
 }
 
 /// The two bodies of a scene, one of them the person's, that come nearest to each other.
@@ -29,13 +36,14 @@ pub struct Nearest {
 }
 
 impl StandingPerson {
-    /// A person of these parts at a board of these sides. The distances that the parts must keep in a plan are no matter
-    /// here, but what may touch the board is left out against it as there.
+    /// A person of these parts at a board of these sides. How large the distances are that the parts must keep in a plan is no
+    /// matter here.
     pub fn new(parts: &[PersonPart], board_size_m: [f64; 3]) -> Self {
         let parts = parts.iter().map(|part| StandingPart {
             name: part.name,
             capsule: Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m),
-            may_touch_board: part.board_clearance_m.is_none(),
+            keeps_off_board: part.board_clearance_m.is_some_and(|clearance_m| clearance_m > 0.0),
+            keeps_off_robot: part.robot_clearance_m > 0.0,
         });
         Self { parts: parts.collect(), board: Piece::cuboid(board_size_m) }
     }
@@ -58,10 +66,11 @@ impl CollisionModel {
         for part in &person.parts {
             let capsule = part.capsule.placed(&Pose::identity());
             let name = Body::Person(part.name);
-            if !part.may_touch_board {
+            if part.keeps_off_board {
                 found.offer([Body::Board, name], capsule.signed_distance_within(&board, found.bound_m));
             }
-            for (index, (link, x_wl)) in self.links.iter().zip(link_poses).enumerate() {
+            let links = self.links.iter().zip(link_poses).enumerate();
+            for (index, (link, x_wl)) in links.filter(|_| part.keeps_off_robot) {
                 if !link.pieces.is_empty() && capsule.meets_sphere(centres_w[index], link.radius_m + found.bound_m) {
                     let distance_m = link.signed_distance_within(x_wl, &capsule, found.bound_m);
                     found.offer([Body::Link(index), name], distance_m);

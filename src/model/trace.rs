@@ -91,8 +91,8 @@ pub struct Sample {
     pub arms: Vec<ArmSample>,
     /// What the engine makes of the laws of mechanics.
     pub self_check: StepCheck,
-    /// Least distance of robot and board from the person, who stands still, m; the depth of an overlap as a negative number. Tool
-    /// and working hand may be at the board. Measured every 10 ms, in every step where it is below 1 cm, and held in
+    /// Least distance of robot and board from the person, who stands still, m; the depth of an overlap as a negative number. Tool,
+    /// working hand and forearm may be at the board. Measured every 10 ms, in every step where it is below 1 cm, and held in
     /// between. None when the plan has no person.
     pub person_distance_m: Option<f64>,
 }

@@ -19,7 +19,8 @@ pub struct Conditions {
     pub load_scale: f64,
     /// How far the simulation departs from what the plan counts on.
     pub uncertainty: Uncertainty,
-    /// The tool in the person's hand, which arms and hands must not touch; the usual one for the operation when none is given.
+    /// The tool in the hand of the plan's person, whose arm ends where it begins; the usual one for the operation when none is
+    /// given.
     pub tool: Option<Tool>,
 }
 

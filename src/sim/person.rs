@@ -1,8 +1,8 @@
 //! The person beside the hold: how far robot and board are from them while the arms give way.
 //!
-//! The person stands still in the posture of the plan, tool in hand, and nothing pushes them: they are looked at, not
-//! simulated. Against them go all links of the robot and the board; tool and working hand are left out against the board, as in
-//! the check of the planned pose (METHOD section 3). What the distance means is the judge's business.
+//! The person stands still in the posture of the plan and nothing pushes them: they are looked at, not simulated. Against
+//! them go all links of the robot and the board; what goes with the tool is left out, as
+//! [`StandingPerson`] has it. What the distance means is the judge's business.
 
 use super::{Conditions, SimError};
 use crate::{
@@ -15,11 +15,11 @@ use crate::{
     robot::{ArmState, Robot},
 };
 
-/// How often the distance is measured, s. It is some 20 GJK runs, a tenth of a step's time.
+/// How often the distance is measured, s.
 const INTERVAL_S: f64 = 0.01;
 
-/// Bodies nearer than this are measured in every step, m: what comes closer by 1 m/s, ten times the speed of arms that give way
-/// before a limit is crossed, does not go unseen between two measurements.
+/// Bodies nearer than this are measured in every step, m: at up to 1 m/s nothing comes from beyond it to a touch between two
+/// measurements.
 const NEAR_M: f64 = 0.01;
 
 /// How much farther away than last time the nearest bodies are looked for at first, m: nearly always enough, and little to
