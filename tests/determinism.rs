@@ -18,7 +18,7 @@ use serde_json::Value;
 /// ```
 ///
 /// A change that is meant to change the simulation renews it: the failing test tells the new one.
-const SHORT_HOLD: &str = "";
+const SHORT_HOLD: &str = "882f38669817ac63a8e87bca804655a14648e321895bd429f8dbe7e0d3935ff0";
 
 const SCENARIOS: [&str; 2] = ["scenarios/quickstart.toml", "scenarios/cut-rim.toml"];
 
