@@ -74,9 +74,9 @@ pub fn timed_plan(
     maps: &Maps,
     onlooker: &mut Onlooker<'_>,
 ) -> Result<PlanOutcome, CliError> {
-    maps.with(robot, scenario.object.size_m, |map, map_ms| {
+    Ok(maps.with_work(robot, scenario, |map, work, map_ms| {
         let start = Instant::now();
-        let mut outcome = planner::plan_until(scenario, map, onlooker)?;
+        let mut outcome = planner::plan_with(scenario, map, work, onlooker)?;
         if let PlanOutcome::Found(plan) = &mut outcome
             && let Some(record) = &mut plan.planner
         {
@@ -84,7 +84,7 @@ pub fn timed_plan(
             record.map_ms = Some(map_ms);
         }
         Ok(outcome)
-    })
+    })?)
 }
 
 /// The verdict on a scenario that has nothing to simulate.

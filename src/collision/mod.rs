@@ -7,6 +7,7 @@
 mod near;
 mod person;
 mod shapes;
+mod standing;
 
 use nalgebra::Point3;
 use parry3d_f64::glamx::DVec3;
@@ -14,6 +15,7 @@ use parry3d_f64::glamx::DVec3;
 use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
 pub use near::{Carrier, Near};
 use shapes::{Measure, Piece, Placed, place_all, point_w, sphere_about};
+pub use standing::{Nearest, StandingPerson};
 
 /// A scene to be checked, in W.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +60,17 @@ pub enum Body {
     Person(BodyPart),
 }
 
+impl Body {
+    /// What it is, in words: `left_wrist`, `the board`, `the person's Head`.
+    pub fn describe(self, robot: &Robot) -> String {
+        match self {
+            Self::Link(link) => robot.links[link].name.clone(),
+            Self::Board => "the board".to_owned(),
+            Self::Person(part) => format!("the person's {part:?}"),
+        }
+    }
+}
+
 /// Two bodies that touch or come closer than they may.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
@@ -72,11 +85,7 @@ pub struct Violation {
 impl Violation {
     /// The rule that is broken, in words: `left_wrist is 12 mm from the person's Head, expected more than 50 mm`.
     pub fn describe(&self, robot: &Robot) -> String {
-        let [one, other] = self.bodies.map(|body| match body {
-            Body::Link(link) => robot.links[link].name.clone(),
-            Body::Board => "the board".to_owned(),
-            Body::Person(part) => format!("the person's {part:?}"),
-        });
+        let [one, other] = self.bodies.map(|body| body.describe(robot));
         if self.distance_m.is_nan() {
             return format!("{one} has a pose or a size that is not finite, expected finite numbers");
         }
@@ -110,6 +119,11 @@ impl LinkShapes {
         }
         let others = place_all(&other.pieces, x_wm);
         others.fold(bound_m, |bound_m, other| self.distance_to_within(x_wl, &other, bound_m, measure))
+    }
+
+    /// The lesser of `bound_m` and the signed distance to a foreign body, m.
+    fn signed_distance_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64) -> f64 {
+        place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.signed_distance_within(other, bound_m))
     }
 
     /// The lesser of `bound_m` and what is measured to a foreign body, m.

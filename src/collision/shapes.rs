@@ -149,6 +149,14 @@ impl Placed<'_> {
         })
     }
 
+    /// The lesser of `bound_m` and the signed distance of two primitives, m. Bodies of a person and a robot are long and
+    /// mostly far apart, so each is first tested as it is against a sphere about the other.
+    pub fn signed_distance_within(&self, other: &Placed<'_>, bound_m: f64) -> f64 {
+        let near = self.meets_sphere(other.pose.translation, other.radius_m + bound_m)
+            && other.meets_sphere(self.pose.translation, self.radius_m + bound_m);
+        if near { bound_m.min(self.signed_distance_m(other)) } else { bound_m }
+    }
+
     /// False when the primitive is outside this sphere of the world.
     pub fn meets_sphere(&self, centre_w: DVec3, radius_m: f64) -> bool {
         let reach_m = self.radius_m + radius_m;

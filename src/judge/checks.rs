@@ -20,12 +20,15 @@ const OPEN_LIMIT_MS: f64 = 30.0;
 /// How long the board may be without any contact, ms: not at all (METHOD section 8).
 const CONTACT_LOST_LIMIT_MS: f64 = 0.0;
 
+/// How far robot and board may reach into the person, mm: not at all.
+const PERSON_OVERLAP_LIMIT_MM: f64 = 0.0;
+
 /// Slip at which the board counts as dropped, mm (METHOD section 8).
 const DROP_MM: f64 = 50.0;
 
 /// Which check names the verdict when two cross at the same sample: the loss of the board first, then what happens at
 /// the contacts, then what follows from it.
-const PRECEDENCE: [CheckKind; 8] = [
+const PRECEDENCE: [CheckKind; 9] = [
     CheckKind::Drop,
     CheckKind::ContactLost,
     CheckKind::PadOpen,
@@ -33,6 +36,7 @@ const PRECEDENCE: [CheckKind; 8] = [
     CheckKind::SlipRotation,
     CheckKind::TorqueRatio,
     CheckKind::Deflection,
+    CheckKind::PersonOverlap,
     CheckKind::Creep,
 ];
 
@@ -68,8 +72,15 @@ impl Channel {
 
 /// Every check, in the order of tables. `judged` are the samples from the reference to the end of the load, and
 /// `measures` begins at the same sample. Creep is left out when the hold is too short to have a
-/// slope, or its load does not stay the same: a hand that follows the load does not creep.
-pub(super) fn findings(trace: &Trace, judged: &[Sample], measures: &Measures, limits: &Limits) -> Vec<Finding> {
+/// slope, or its load does not stay the same: a hand that follows the load does not creep. So it is where the hold was cut
+/// short, `to_the_end` being false: the second half of it is not known.
+pub(super) fn findings(
+    trace: &Trace,
+    judged: &[Sample],
+    measures: &Measures,
+    limits: &Limits,
+    to_the_end: bool,
+) -> Vec<Finding> {
     let count = judged.len();
     let hand = |kind, limit, series: fn(&HandMeasures) -> &[f64]| {
         let channel = |hand: &HandMeasures| Channel::new(format!("{} hand", hand.name), &series(hand)[..count]);
@@ -82,13 +93,14 @@ pub(super) fn findings(trace: &Trace, judged: &[Sample], measures: &Measures, li
         hand(CheckKind::SlipRotation, limits.slip_deg, |hand| &hand.slip_deg),
         sampled(CheckKind::Deflection, limits.deflection_mm, vec![deflection]),
     ];
-    findings.extend(creep(trace, judged, limits.creep_mm_s));
+    findings.extend(if to_the_end { creep(trace, judged, limits.creep_mm_s) } else { None });
     findings.extend([
         sampled(CheckKind::TorqueRatio, limits.torque_ratio, measures.joints.iter().map(joint).collect()),
         sampled(CheckKind::PadOpen, OPEN_LIMIT_MS, pad_open_channels(trace, judged)),
         sampled(CheckKind::ContactLost, CONTACT_LOST_LIMIT_MS, vec![contact_lost_channel(judged)]),
         hand(CheckKind::Drop, DROP_MM, |hand| &hand.slip_mm),
     ]);
+    findings.extend(person_overlap(trace, judged));
     findings
 }
 
@@ -119,6 +131,17 @@ fn pad_open_channels(trace: &Trace, judged: &[Sample]) -> Vec<Channel> {
 /// How long no pad of any hand has touched the board at each sample, ms.
 fn contact_lost_channel(judged: &[Sample]) -> Channel {
     Channel { what: String::new(), values: duration_ms(judged, |sample| !sample.is_touched()) }
+}
+
+/// How deep robot or board reach into the person; none when nobody stands there.
+fn person_overlap(trace: &Trace, judged: &[Sample]) -> Option<Finding> {
+    let overlaps_mm: Vec<f64> = judged.iter().map(|s| s.person_distance_m.map(|m| -1e3 * m)).collect::<Option<_>>()?;
+    let deepest = overlaps_mm.iter().copied().reduce(f64::max)?;
+    let crossing = overlaps_mm.iter().position(|&mm| is_crossed(mm, PERSON_OVERLAP_LIMIT_MM)).map(|sample| Crossing {
+        sample,
+        what: trace.person_touch.as_ref().map_or(String::new(), |touch| format!("{} and {}", touch.body, touch.part)),
+    });
+    Some(Finding { check: check(CheckKind::PersonOverlap, deepest, PERSON_OVERLAP_LIMIT_MM), crossing })
 }
 
 /// How long a condition has lasted at each sample, ms: 0 where it does not hold. A sample's forces are those of the

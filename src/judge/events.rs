@@ -9,20 +9,31 @@ use crate::model::{
     verdict::CheckKind,
 };
 
-/// Phases and crossings, in the order of time.
-pub(super) fn events(trace: &Trace, judged: &[Sample], findings: &[Finding]) -> Vec<Event> {
-    let mut events = phase_events(trace);
+/// Phases and crossings, in the order of time, and the end of a trace that broke down after the crossing that decided.
+pub(super) fn events(
+    trace: &Trace,
+    believed: &[Sample],
+    judged: &[Sample],
+    findings: &[Finding],
+    ends_because: Option<&str>,
+) -> Vec<Event> {
+    let mut events = phase_events(trace, believed);
     events.extend(findings.iter().filter_map(|finding| crossing_event(judged, finding)));
+    events.extend(ends_because.map(|reason| end(believed, format!("the simulation ends here: {reason}"))));
     in_order(events)
 }
 
 /// Phases and the end of a trace that allows no verdict.
 pub(super) fn events_without_verdict(trace: &Trace, reason: &str) -> Vec<Event> {
-    let mut events = phase_events(trace);
-    let time_s = trace.samples.last().map_or(0.0, |sample| sample.time_s);
-    let text = format!("no verdict: {reason}");
-    events.push(Event { time_s, kind: EventKind::BrokeDown, text, what: String::new() });
+    let mut events = phase_events(trace, &trace.samples);
+    events.push(end(&trace.samples, format!("no verdict: {reason}")));
     in_order(events)
+}
+
+/// The last that is known.
+fn end(samples: &[Sample], text: String) -> Event {
+    let time_s = samples.last().map_or(0.0, |sample| sample.time_s);
+    Event { time_s, kind: EventKind::BrokeDown, text, what: String::new() }
 }
 
 fn in_order(mut events: Vec<Event>) -> Vec<Event> {
@@ -31,9 +42,9 @@ fn in_order(mut events: Vec<Event>) -> Vec<Event> {
     events
 }
 
-fn phase_events(trace: &Trace) -> Vec<Event> {
-    let first = trace.samples.first().into_iter();
-    let changes = trace.samples.windows(2).filter(|pair| pair[0].phase != pair[1].phase).map(|pair| &pair[1]);
+fn phase_events(trace: &Trace, samples: &[Sample]) -> Vec<Event> {
+    let first = samples.first().into_iter();
+    let changes = samples.windows(2).filter(|pair| pair[0].phase != pair[1].phase).map(|pair| &pair[1]);
     first
         .chain(changes)
         .map(|sample| Event {
@@ -68,6 +79,7 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
         CheckKind::PadOpen => "has been open for more than",
         CheckKind::ContactLost => "no pad touches the board: past",
         CheckKind::Drop => "has lost the board: past",
+        CheckKind::PersonOverlap => "overlap: past",
         CheckKind::Penetration | CheckKind::EnergyCreated | CheckKind::ForceResidual | CheckKind::CouplingDrift => {
             "the simulation leaves the laws of mechanics: past"
         }

@@ -88,8 +88,13 @@ mod tests {
 
     /// A hold that stands every load below `limit`, and how often it was asked.
     fn search(guess: f64, limit: f64) -> FailingLoad {
-        let empty =
-            Trace { arms: Vec::new(), p_ot_m: nalgebra::Vector3::zeros(), samples: Vec::new(), broke_down: None };
+        let empty = Trace {
+            arms: Vec::new(),
+            p_ot_m: nalgebra::Vector3::zeros(),
+            samples: Vec::new(),
+            broke_down: None,
+            person_touch: None,
+        };
         let limits = Limits {
             slip_mm: 1.0,
             slip_deg: 2.0,

@@ -9,7 +9,8 @@ use crate::model::{
 };
 
 /// SHA-256 of the trace's numbers, in lowercase hexadecimal: the little-endian bits of every f64 in the order of the
-/// fields, the phase as its place in time (0 to 3), the tool point where it has left its start. Names are no part of it,
+/// fields, the phase as its place in time (0 to 3), the person's distance where the plan has a person, the tool point where it
+/// has left its start. Names are no part of it,
 /// nor are the self-checks, which only repeat what the rest implies. Equal fingerprints mean simulations that
 /// agree bit by bit.
 pub fn fingerprint(trace: &Trace) -> String {
@@ -56,6 +57,7 @@ fn visit_sample(sample: &Sample, visit: &mut impl FnMut(f64)) {
     for arm in &sample.arms {
         visit_arm(arm, visit);
     }
+    visit_all(sample.person_distance_m.as_slice(), visit);
 }
 
 fn visit_arm(arm: &ArmSample, visit: &mut impl FnMut(f64)) {

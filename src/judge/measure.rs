@@ -6,15 +6,12 @@ use crate::model::{
     trace::{Sample, Trace},
 };
 
-/// Slip, deflection and torque ratios (METHOD section 8) of every sample from the reference on:
+/// Slip, deflection and torque ratios (METHOD section 8) of samples of a trace, the first of which is the reference:
 ///
 /// - slip of a hand: `|p_OC(t) - p_OC(ref)|` and the angle of `R_OC(ref)' R_OC(t)`, C between the hand's pads;
 /// - deflection: `|X_WO(t) p_OT - X_WO(ref) p_OT|`, T the tool point at that time;
 /// - torque ratio of a joint: `|tau_demanded| / tau_max`.
-///
-/// `reference` is an index into the trace's samples.
-pub(super) fn measures(trace: &Trace, reference: usize) -> Measures {
-    let samples = &trace.samples[reference..];
+pub(super) fn measures(trace: &Trace, samples: &[Sample]) -> Measures {
     let deflection_mm = |sample: &Sample| {
         let p_ot = nalgebra::Point3::from(sample.p_ot_m);
         1e3 * (sample.x_wo * p_ot - samples[0].x_wo * p_ot).norm()

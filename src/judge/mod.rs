@@ -79,22 +79,29 @@ impl Judgement {
 ///
 /// The reference is the last sample of settling; a board lost before that drops. What is judged reaches from there to the end of the load; the release
 /// is not. A value at its limit keeps it. The earliest crossing names the verdict; of several at the same sample, the
-/// loss of the board goes before the contacts (pad, slip, rotation), and these before torque, deflection and creep.
+/// loss of the board goes before the contacts (pad, slip, rotation), and these before torque, deflection, the person
+/// and creep.
+///
+/// A trace that breaks down is judged as far as it can be believed: a limit that was crossed before names the verdict, for
+/// nothing that comes later could take it back. Without such a crossing there is no verdict: what the rest
+/// of the load would have done is not known.
 pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     if let Some(reason) = malformed(trace) {
         return no_verdict(trace, Measures::default(), Vec::new(), reason);
     }
-    let reference = reference(trace);
-    let measures = measure::measures(trace, reference);
-    let judged = judged(trace, reference);
-    if let Some(reason) = undecidable(trace, judged) {
+    let Believed { samples, ends_because } = believed(trace);
+    let reference = reference(samples);
+    let measures = measure::measures(trace, &samples[reference..]);
+    let judged = judged(samples, reference);
+    if let Some(reason) = undecidable(trace, judged, ends_because.as_deref()) {
         return no_verdict(trace, measures, Vec::new(), reason);
     }
-    let findings = checks::findings(trace, judged, &measures, limits);
+    let findings = checks::findings(trace, judged, &measures, limits, ends_because.is_none());
     let first = checks::first_failure(&findings);
-    let decided = first.map_or(trace.samples.len(), |(_, crossing)| reference + crossing.sample + 1);
-    let self_checks = self_check::self_checks(&trace.samples[..decided]);
-    if let Some(reason) = self_check::distrust(&self_checks) {
+    let decided = first.map_or(samples.len(), |(_, crossing)| reference + crossing.sample + 1);
+    let self_checks = self_check::self_checks(&samples[..decided]);
+    let unfinished = ends_because.clone().filter(|_| first.is_none());
+    if let Some(reason) = unfinished.or_else(|| self_check::distrust(&self_checks)) {
         return no_verdict(trace, measures, self_checks, reason);
     }
     Judgement {
@@ -107,31 +114,52 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
         peak_torque_ratio: peak_torque_ratio(&measures, judged.len()),
         reason: None,
         fingerprint: fingerprint(trace),
-        events: events::events(trace, judged, &findings),
+        events: events::events(trace, samples, judged, &findings, ends_because.as_deref()),
         self_checks,
         checks: findings.into_iter().map(|finding| finding.check).collect(),
         measures,
     }
 }
 
+/// The part of a trace that can be believed.
+struct Believed<'a> {
+    /// The samples, up to the last good one; never none.
+    samples: &'a [Sample],
+    /// Why there are no more although the load went on, in words; none when the trace ran to its end.
+    ends_because: Option<String>,
+}
+
+/// The samples before the first number that is not finite, all of them when there is none; a simulation that broke down
+/// has left out what came after. A trace whose very first sample is none is left to [`malformed`].
+fn believed(trace: &Trace) -> Believed<'_> {
+    match trace.samples.iter().position(|sample| !fingerprint::sample_is_finite(sample)) {
+        Some(bad) => Believed { samples: &trace.samples[..bad], ends_because: Some(not_finite(&trace.samples[bad])) },
+        None => Believed { samples: &trace.samples, ends_because: trace.broke_down.clone() },
+    }
+}
+
+fn not_finite(sample: &Sample) -> String {
+    format!("found a number that is not finite in the sample at {} s", sample.time_s)
+}
+
 /// Index of the reference: the last sample of settling, or the first of a trace that never settled. A board that is lost
 /// while settling never meets the load: then it is the first sample in which no pad touches any more.
-fn reference(trace: &Trace) -> usize {
-    let settled = trace.samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0);
-    if trace.samples.iter().any(|sample| sample.phase.is_loaded()) {
+fn reference(samples: &[Sample]) -> usize {
+    let settled = samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0);
+    if samples.iter().any(|sample| sample.phase.is_loaded()) {
         return settled;
     }
-    let last_touch = trace.samples.iter().rposition(Sample::is_touched).map_or(0, |last| last + 1);
+    let last_touch = samples.iter().rposition(Sample::is_touched).map_or(0, |last| last + 1);
     settled.min(last_touch)
 }
 
 /// The samples from the reference to the end of the load; to the end of the trace when the board was lost before the
 /// load; none when the load never acted for another reason.
-fn judged(trace: &Trace, reference: usize) -> &[Sample] {
-    let end = trace.samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
-    let lost = !trace.samples[reference].is_touched();
-    let end = end.unwrap_or(if lost { trace.samples.len() } else { reference });
-    &trace.samples[reference..end.max(reference)]
+fn judged(samples: &[Sample], reference: usize) -> &[Sample] {
+    let end = samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
+    let lost = !samples[reference].is_touched();
+    let end = end.unwrap_or(if lost { samples.len() } else { reference });
+    &samples[reference..end.max(reference)]
 }
 
 fn peak_torque_ratio(measures: &Measures, count: usize) -> BTreeMap<String, f64> {
@@ -139,11 +167,11 @@ fn peak_torque_ratio(measures: &Measures, count: usize) -> BTreeMap<String, f64>
     measures.joints.iter().map(|joint| (joint.name.clone(), peak(&joint.torque_ratio))).collect()
 }
 
-/// Why a trace cannot be measured: nothing in it, or arms of different shapes.
+/// Why a trace cannot be measured: nothing in it, arms of different shapes, or nothing to measure from.
 fn malformed(trace: &Trace) -> Option<String> {
-    if trace.samples.is_empty() {
+    let Some(first) = trace.samples.first() else {
         return Some(trace.broke_down.clone().unwrap_or_else(|| "the trace is empty".to_owned()));
-    }
+    };
     let shapes_agree = |sample: &Sample| {
         sample.arms.len() == trace.arms.len()
             && sample.arms.iter().zip(&trace.arms).all(|(found, arm)| {
@@ -152,18 +180,14 @@ fn malformed(trace: &Trace) -> Option<String> {
                     && arm.effort_nm.len() == arm.joints.len()
             })
     };
-    let odd = trace.samples.iter().find(|sample| !shapes_agree(sample))?;
-    Some(format!("the sample at {} s does not have one entry an arm, joint and pad", odd.time_s))
+    if let Some(odd) = trace.samples.iter().find(|sample| !shapes_agree(sample)) {
+        return Some(format!("the sample at {} s does not have one entry an arm, joint and pad", odd.time_s));
+    }
+    (!fingerprint::sample_is_finite(first)).then(|| not_finite(first))
 }
 
-/// Why a well-formed trace allows no verdict.
-fn undecidable(trace: &Trace, judged: &[Sample]) -> Option<String> {
-    if trace.broke_down.is_some() {
-        return trace.broke_down.clone();
-    }
-    if let Some(sample) = trace.samples.iter().find(|sample| !fingerprint::sample_is_finite(sample)) {
-        return Some(format!("found a number that is not finite in the sample at {} s", sample.time_s));
-    }
+/// Why a well-formed trace allows no verdict whatever its limits; `ends_because` says why it was cut short, if so.
+fn undecidable(trace: &Trace, judged: &[Sample], ends_because: Option<&str>) -> Option<String> {
     if !fingerprint::constants_are_finite(trace) {
         return Some("found a limit or a tool point that is not finite".to_owned());
     }
@@ -172,7 +196,7 @@ fn undecidable(trace: &Trace, judged: &[Sample]) -> Option<String> {
         return Some(format!("found a joint of the {} arm without torque, expected positive limits", arm.name));
     }
     if judged.is_empty() {
-        return Some("the load never acted".to_owned());
+        return Some(ends_because.unwrap_or("the load never acted").to_owned());
     }
     None
 }

@@ -7,7 +7,7 @@ use super::*;
 use crate::model::{
     frames::Pose,
     measures::EventKind,
-    trace::{ArmSample, ArmTrace, PadSample, StepCheck},
+    trace::{ArmSample, ArmTrace, PadSample, PersonTouch, StepCheck},
     verdict::CheckKind,
     wrench::Wrench,
 };
@@ -73,12 +73,14 @@ fn still() -> Trace {
         p_ot_m: Vector3::new(0.1, 0.05, 0.015),
         self_check: StepCheck::default(),
         arms: vec![arm_sample.clone(); 2],
+        person_distance_m: None,
     };
     Trace {
         arms: vec![arm("left"), arm("right")],
         p_ot_m: Vector3::new(0.1, 0.05, 0.015),
         samples: (0..SETTLE + RAMP + HOLD + RELEASE).map(sample).collect(),
         broke_down: None,
+        person_touch: None,
     }
 }
 
@@ -130,6 +132,35 @@ fn each_failure_is_named_after_its_own_limit() {
     assert_eq!(outcome(&changed(at, |s| slide(s, 0, 50.1))), (VerdictKind::Drops, Some(at)));
     // Fifteen steps of 2 ms are allowed; the sixteenth is one too many.
     assert_eq!(outcome(&changed(at, |s| s.arms[0].pads[1].normal_force_n = 1.4)), (VerdictKind::Opens, Some(at + 15)));
+}
+
+/// A still hold beside a person, with the distance to them from a sample on.
+fn beside_a_person(from: usize, distance_m: f64) -> Trace {
+    let mut trace = still();
+    for (index, sample) in trace.samples.iter_mut().enumerate() {
+        sample.person_distance_m = Some(if index < from { 0.05 } else { distance_m });
+    }
+    let touch = PersonTouch { body: "the board".into(), part: "the person's Head".into() };
+    Trace { person_touch: (distance_m < 0.0).then_some(touch), ..trace }
+}
+
+#[test]
+fn a_person_who_is_reached_is_touched() {
+    let at = SETTLE + 60;
+    let touched = judge(&beside_a_person(at, -0.002), &limits());
+    assert_eq!(touched.verdict, VerdictKind::Touches);
+    assert_eq!(touched.first_failure.unwrap().time_s, at as f64 * STEP_S);
+    let check = touched.checks.iter().find(|check| check.name == CheckKind::PersonOverlap).unwrap();
+    assert_eq!((check.value, check.limit, check.margin), (2.0, 0.0, -2.0));
+    let told = "the board and the person's Head overlap: past 0 mm at load factor 0.61";
+    assert!(touched.events.iter().any(|event| event.text == told), "{:?}", touched.events);
+
+    // Skin on wood is no overlap, and a plan without a person has no such check: never a pass of nothing.
+    let apart = judge(&beside_a_person(at, 0.0), &limits());
+    assert_eq!((apart.verdict, value(&apart, CheckKind::PersonOverlap)), (VerdictKind::Holds, 0.0));
+    let clear = judge(&beside_a_person(at, 0.032), &limits());
+    assert_eq!((clear.verdict, value(&clear, CheckKind::PersonOverlap)), (VerdictKind::Holds, -32.0));
+    assert!(judge(&still(), &limits()).checks.iter().all(|check| check.name != CheckKind::PersonOverlap));
 }
 
 #[test]
@@ -312,6 +343,67 @@ fn broken_traces_give_no_verdict_and_a_reason() {
     let mut weak = still();
     weak.arms[1].effort_nm[0] = 0.0;
     assert_eq!(reason(&weak), "found a joint of the right arm without torque, expected positive limits");
+}
+
+/// A hold that is slid past its limit in the ramp and breaks down in the hold.
+fn broken_after_a_slip() -> Trace {
+    let mut trace = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
+    trace.samples.truncate(SETTLE + RAMP + 20);
+    Trace { broke_down: Some("the joint speeds have blown up".into()), ..trace }
+}
+
+#[test]
+fn a_limit_crossed_before_the_breakdown_names_the_verdict() {
+    let judgement = judge(&broken_after_a_slip(), &limits());
+    assert_eq!((judgement.verdict, judgement.reason), (VerdictKind::Slips, None));
+    assert_eq!(judgement.first_failure.unwrap().time_s, (SETTLE + 59) as f64 * STEP_S);
+    // What the second half of a hold would have been is not known.
+    assert!(judgement.checks.iter().all(|check| check.name != CheckKind::Creep));
+    let last = judgement.events.last().unwrap();
+    assert_eq!(last.kind, EventKind::BrokeDown);
+    assert_eq!(last.text, "the simulation ends here: the joint speeds have blown up");
+}
+
+#[test]
+fn a_breakdown_without_a_crossing_has_no_verdict_whatever_was_kept_until_then() {
+    let trace = broken_after_a_slip();
+    // The same trace under a limit that it kept: it holds as far as it goes, which is no hold.
+    let judgement = judge(&trace, &Limits { slip_mm: 2.0, ..limits() });
+    assert_eq!(judgement.verdict, VerdictKind::NoVerdict);
+    assert_eq!(judgement.reason.unwrap(), "the joint speeds have blown up");
+    assert!(judgement.checks.is_empty());
+}
+
+#[test]
+fn a_crossing_that_the_self_checks_do_not_bear_out_is_none() {
+    let mut trace = broken_after_a_slip();
+    trace.samples[SETTLE + 40].self_check.contact_energy_j = 0.6;
+    let judgement = judge(&trace, &limits());
+    assert_eq!(judgement.verdict, VerdictKind::NoVerdict);
+    assert!(judgement.reason.unwrap().starts_with("the simulation cannot be believed: energy_created"));
+}
+
+#[test]
+fn a_number_that_is_not_finite_ends_what_can_be_believed() {
+    let mut slid = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
+    slid.samples[SETTLE + RAMP].arms[0].x_oc.translation.vector.x = f64::NAN;
+    let judgement = judge(&slid, &limits());
+    assert_eq!(judgement.verdict, VerdictKind::Slips);
+    assert!(judgement.checks.iter().all(|check| check.value.is_finite()));
+    slid.samples[0].time_s = f64::NAN;
+    assert_eq!(judge(&slid, &limits()).verdict, VerdictKind::NoVerdict);
+}
+
+#[test]
+fn a_breakdown_while_settling_has_no_verdict_but_a_loss_then_drops() {
+    let broken = |mut trace: Trace| {
+        trace.samples.truncate(SETTLE - 5);
+        judge(&Trace { broke_down: Some("it is gone".into()), ..trace }, &limits())
+    };
+    assert_eq!(broken(still()).reason.unwrap(), "it is gone");
+    let lost =
+        |s: &mut Sample| s.arms.iter_mut().flat_map(|arm| &mut arm.pads).for_each(|pad| pad.normal_force_n = 0.0);
+    assert_eq!(broken(changed(SETTLE - 20, lost)).verdict, VerdictKind::Drops);
 }
 
 #[test]

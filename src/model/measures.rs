@@ -3,7 +3,7 @@
 
 use super::verdict::CheckKind;
 
-/// The measured series of a hold (METHOD section 8), from the reference, the end of settling, to the trace's end.
+/// The measured series of a hold (METHOD section 8), from the reference, the end of settling, to the end of what can be believed of the trace.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Time since the start of the simulation, s; one entry a sample, as in every series below.

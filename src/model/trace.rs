@@ -44,6 +44,17 @@ pub struct Trace {
     pub samples: Vec<Sample>,
     /// When and why the simulation broke down, in words; the samples end before. None when it ran to its end.
     pub broke_down: Option<String>,
+    /// The first bodies of robot or board and person that overlapped; none when none did, or the plan has no person.
+    pub person_touch: Option<PersonTouch>,
+}
+
+/// Who touched the person, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PersonTouch {
+    /// A link's name, or `the board`.
+    pub body: String,
+    /// The part of the person, in words.
+    pub part: String,
 }
 
 /// What stays the same about an arm during a simulation.
@@ -80,6 +91,10 @@ pub struct Sample {
     pub arms: Vec<ArmSample>,
     /// What the engine makes of the laws of mechanics.
     pub self_check: StepCheck,
+    /// Least distance of robot and board from the person, who stands still, m; the depth of an overlap as a negative number. Tool,
+    /// working hand and forearm may be at the board. Measured every 10 ms, in every step where it is below 1 cm, and held in
+    /// between. None when the plan has no person.
+    pub person_distance_m: Option<f64>,
 }
 
 /// How far the engine is from the laws that it should keep, in one step.

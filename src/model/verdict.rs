@@ -25,7 +25,8 @@ pub enum VerdictKind {
     Deflects,
     /// A hand kept sliding under the steady load.
     Creeps,
-    /// Bodies of the plan touch, or come closer to the person than they may, before anything moves.
+    /// Bodies of the plan touch, or come closer to the person than they may, before anything moves; or robot or board
+    /// touch the person as the arms give way.
     Touches,
     /// There is no plan.
     Infeasible,
@@ -120,6 +121,9 @@ pub enum CheckKind {
     ContactLost,
     /// Slip beyond which the board counts as dropped, mm.
     Drop,
+    /// Deepest overlap of robot or board with the person, who stands still, mm; while they are apart, their least distance
+    /// as a negative number. Not made when the plan has no person.
+    PersonOverlap,
     /// The simulation itself: deepest penetration of pad and board, mm.
     Penetration,
     /// The simulation itself: largest rise of the energy that contacts and integration brought in, J.
@@ -142,6 +146,7 @@ impl CheckKind {
             Self::PadOpen => "pad_open",
             Self::ContactLost => "contact_lost",
             Self::Drop => "drop",
+            Self::PersonOverlap => "person_overlap",
             Self::Penetration => "penetration",
             Self::EnergyCreated => "energy_created",
             Self::ForceResidual => "force_residual",
@@ -152,7 +157,12 @@ impl CheckKind {
     /// The unit of its value, limit and margin; `1` for a ratio.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Slip | Self::Deflection | Self::Drop | Self::Penetration | Self::CouplingDrift => "mm",
+            Self::Slip
+            | Self::Deflection
+            | Self::Drop
+            | Self::PersonOverlap
+            | Self::Penetration
+            | Self::CouplingDrift => "mm",
             Self::SlipRotation => "deg",
             Self::Creep => "mm/s",
             Self::TorqueRatio => "1",
@@ -172,6 +182,7 @@ impl CheckKind {
             Self::TorqueRatio => VerdictKind::Saturates,
             Self::PadOpen => VerdictKind::Opens,
             Self::ContactLost | Self::Drop => VerdictKind::Drops,
+            Self::PersonOverlap => VerdictKind::Touches,
             Self::Penetration | Self::EnergyCreated | Self::ForceResidual | Self::CouplingDrift => {
                 VerdictKind::NoVerdict
             }

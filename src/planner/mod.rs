@@ -52,7 +52,7 @@ pub use top::{TopOutcome, differ, top};
 pub use verify::{Flaw, first_touch, verify};
 use watch::{Count, Watch};
 pub use watch::{Onlooker, Progress, nobody};
-pub use work_map::WorkMap;
+pub use work_map::{WorkMap, same_work};
 
 /// What the search came to.
 #[derive(Clone, Debug)]

@@ -225,6 +225,11 @@ fn distinct(found: Vec<Feasible>, count: usize) -> Vec<Feasible> {
     kept
 }
 
+/// True when two scenarios are of one kind of work: one [`WorkMap`] serves both.
+pub fn same_work(one: &Scenario, other: &Scenario) -> bool {
+    canonical(one) == canonical(other)
+}
+
 /// A scenario without what a map's scenarios may differ in: its operation at the board's centre, its tool's x axis above
 /// x_O, everything rounded.
 fn canonical(scenario: &Scenario) -> Scenario {

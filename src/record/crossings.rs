@@ -35,7 +35,11 @@ pub(super) fn pad_crossed_s(input: &RecordingInput, arm: &str, pad: &str) -> Opt
 
 /// When the board as a whole first crossed a limit, s.
 pub(super) fn board_crossed_s(input: &RecordingInput) -> Option<f64> {
-    let first = |&(event, check): &(&Event, CheckKind)| event.what.is_empty() || check == CheckKind::Drop;
+    let first = |&(event, check): &(&Event, CheckKind)| match check {
+        CheckKind::Drop => true,
+        CheckKind::PersonOverlap => event.what.starts_with("the board"),
+        _ => event.what.is_empty(),
+    };
     crossings(input).find(first).map(|(event, _)| event.time_s)
 }
 
@@ -71,7 +75,7 @@ pub(super) fn log_mark(messages: &mut Messages, input: &RecordingInput, arms: &[
     messages.log_columns(&path, &[event.time_s], mark.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-/// Where a hand, a pad or a joint was in a sample, in W, m; the tool point when it was the board.
+/// Where a hand, a pad, a joint or a link was in a sample, in W, m; the tool point when it was the board.
 fn place_w(input: &RecordingInput, sample: &Sample, what: &str, arms: &[usize]) -> Vector3<f64> {
     for ((arm, state), &robot_arm) in input.trace.arms.iter().zip(&sample.arms).zip(arms) {
         if what == format!("{} hand", arm.name) {
@@ -87,6 +91,15 @@ fn place_w(input: &RecordingInput, sample: &Sample, what: &str, arms: &[usize]) 
             let state = crate::robot::ArmState { arm: robot_arm, q_rad: &state.q_rad, finger_travel_m: [0.0; 2] };
             return robot.link_poses(&robot.positions(&[state]))[link].translation.vector;
         }
+    }
+    if let Some(link) = input.trace.person_touch.as_ref().and_then(|touch| input.robot.link_index(&touch.body))
+        && what.starts_with(&input.robot.links[link].name)
+    {
+        let states = arms.iter().zip(&sample.arms);
+        let states =
+            states.map(|(&arm, state)| crate::robot::ArmState { arm, q_rad: &state.q_rad, finger_travel_m: [0.0; 2] });
+        let positions = input.robot.positions(&states.collect::<Vec<_>>());
+        return input.robot.link_poses(&positions)[link].translation.vector;
     }
     (sample.x_wo * Point3::from(input.trace.p_ot_m)).coords
 }

@@ -112,6 +112,7 @@ fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
         | CheckKind::PadOpen
         | CheckKind::ContactLost
         | CheckKind::Drop
+        | CheckKind::PersonOverlap
         | CheckKind::Penetration
         | CheckKind::EnergyCreated
         | CheckKind::ForceResidual

@@ -22,7 +22,7 @@ use crate::model::{
     frames::Pose,
     plan::Plan,
     scenario::Scenario,
-    trace::{ArmSample, ArmTrace, PadSample, Phase, Sample, StepCheck, Trace},
+    trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
     wrench::Wrench,
 };
 
@@ -31,6 +31,9 @@ const TRACE: &str = "trace";
 
 /// The archetype that the columns name as theirs.
 const ARCHETYPE: &str = "benchdog.Trace";
+
+/// The column of the person's distance: a row of none where the plan has no person.
+const PERSON_DISTANCE: &str = "person_distance_m";
 
 /// The phases in the order of time: a phase is stored as its place here.
 const PHASES: [Phase; 4] = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release];
@@ -41,6 +44,9 @@ struct Constants {
     arms: Vec<ArmConstants>,
     p_ot_m: [f64; 3],
     broke_down: Option<String>,
+    /// The body and the part of the person.
+    #[serde(default)]
+    person_touch: Option<[String; 2]>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -82,6 +88,7 @@ fn log_trace(messages: &mut Messages, trace: &Trace) -> Result<(), RecordError> 
         of("x_wo", |sample| pose(&sample.x_wo)),
         of("p_ot_m", |sample| sample.p_ot_m.as_slice().to_vec()),
         of("self_check", |sample| self_check(&sample.self_check)),
+        of(PERSON_DISTANCE, |sample| sample.person_distance_m.into_iter().collect()),
     ];
     messages.log_columns(&entity(&[TRACE, "board"]), &times_s, board)?;
     for (arm, ArmTrace { name, pads, .. }) in trace.arms.iter().enumerate() {
@@ -118,6 +125,7 @@ fn constants(trace: &Trace) -> Constants {
         arms: trace.arms.iter().map(arm).collect(),
         p_ot_m: trace.p_ot_m.into(),
         broke_down: trace.broke_down.clone(),
+        person_touch: trace.person_touch.clone().map(|PersonTouch { body, part }| [body, part]),
     }
 }
 
@@ -181,11 +189,18 @@ pub(super) fn trace(chunks: &[Chunk]) -> Result<Trace, String> {
                 x_wo: pose_of(board.numbers("x_wo", index)?),
                 p_ot_m: Vector3::from(board.numbers::<3>("p_ot_m", index)?),
                 self_check: self_check_of(board.numbers("self_check", index)?),
+                person_distance_m: board.rows(PERSON_DISTANCE).get(index).and_then(|row| row.first()).copied(),
                 arms: arm_samples.iter_mut().filter_map(Iterator::next).collect(),
             })
         })
         .collect::<Result<Vec<_>, String>>()?;
-    Ok(Trace { arms, p_ot_m: Vector3::from(constants.p_ot_m), samples, broke_down: constants.broke_down })
+    Ok(Trace {
+        arms,
+        p_ot_m: Vector3::from(constants.p_ot_m),
+        samples,
+        broke_down: constants.broke_down,
+        person_touch: constants.person_touch.map(|[body, part]| PersonTouch { body, part }),
+    })
 }
 
 fn arm_trace(arm: ArmConstants) -> ArmTrace {

@@ -12,7 +12,7 @@ use crate::{
         measures::{EventKind, HandMeasures, JointMeasures},
         operation::Operation,
         plan::{ArmHold, PlacedObject},
-        trace::{ArmSample, ArmTrace, PadSample, Phase, Sample, StepCheck},
+        trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck},
         verdict::{Check, CheckKind, Failure, VerdictKind},
         wrench::Wrench,
     },
@@ -128,6 +128,7 @@ fn trace(robot: &Robot, plan: &Plan) -> Trace {
         p_ot_m: plan.operation.x_ot.translation.vector,
         samples: (0..=250).map(|step| sample(robot, plan, step)).collect(),
         broke_down: None,
+        person_touch: Some(PersonTouch { body: "the board".into(), part: "the person's Head".into() }),
     }
 }
 
@@ -169,6 +170,8 @@ fn sample(robot: &Robot, plan: &Plan, step: usize) -> Sample {
         x_wo,
         p_ot_m: plan.operation.x_ot.translation.vector,
         self_check: StepCheck::default(),
+        // Every other digit of a third: nothing that a rounding would leave alone.
+        person_distance_m: Some(0.1 / 3.0 - 0.04 * load_factor),
         arms: plan.arms.iter().enumerate().map(|(index, hold)| hand(index, hold)).collect(),
     }
 }
@@ -329,6 +332,17 @@ fn the_stored_run_is_read_back_bit_by_bit() {
     // Equality of numbers: stored as they are.
     assert_eq!(run.trace, example.trace);
     assert_eq!((run.plan, run.scenario, run.verdict), (example.plan, example.scenario, example.verdict));
+}
+
+#[test]
+fn a_run_without_a_person_is_read_back_without_one() {
+    let mut example = example();
+    example.trace.samples.iter_mut().for_each(|sample| sample.person_distance_m = None);
+    example.trace.person_touch = None;
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.rrd");
+    fs::write(&path, encode(&example.input()).unwrap()).unwrap();
+    assert_eq!(read_run(&path).unwrap().trace, example.trace);
 }
 
 #[test]

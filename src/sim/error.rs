@@ -1,5 +1,7 @@
 //! Why a plan cannot be simulated.
 
+use crate::human::HumanError;
+
 /// Why a plan cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimError {
@@ -32,6 +34,12 @@ pub enum SimError {
         /// What it should be.
         expected: &'static str,
     },
+    /// A person or a tool that is none.
+    #[error("failed to place the person: {0}")]
+    Person(HumanError),
+    /// A person who stands nowhere.
+    #[error("found a posture of the person that is not finite, expected m and rad")]
+    Posture,
     /// Nothing holds the board.
     #[error("found no arm that holds the board, expected at least one")]
     NoArm,

@@ -220,5 +220,6 @@ pub fn blank_sample(plan: &Plan) -> Sample {
         p_ot_m: plan.operation.x_ot.translation.vector,
         arms: arms.collect(),
         self_check: StepCheck::default(),
+        person_distance_m: None,
     }
 }

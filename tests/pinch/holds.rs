@@ -87,19 +87,17 @@ fn a_quarter_of_the_time_step_changes_little() {
 #[test]
 fn ten_times_the_certificates_load_always_fails() {
     let (robot, plans) = plans();
-    let mut no_verdict = 0;
     for plan in plans {
         let hold = Hold::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap();
         let found = StabilityWorkspace::new().load_factor(&hold).unwrap();
         let LoadFactorOutcome::Solved(certificate) = found else { panic!("{}: {found:?}", plan.name) };
         let conditions = Conditions::new(FRICTION, SETTINGS).scaled(10.0 * certificate.load_factor);
         let judgement = judged(&robot, &plan, &conditions);
-        println!("{}: {} {:?}", plan.name, judgement.verdict, judgement.reason);
-        assert_ne!(judgement.verdict, VerdictKind::Holds, "{}", plan.name);
-        // Arms that are torn about may end beyond what the engine stands; most fail for a reason that can be named.
-        no_verdict += usize::from(judgement.verdict == VerdictKind::NoVerdict);
+        println!("{}: {} {:?}", plan.name, judgement.verdict, judgement.first_failure);
+        // Arms that are torn about may end beyond what the engine stands, yet only after a limit that names the failure.
+        assert!(judgement.first_failure.is_some(), "{}: {} {:?}", plan.name, judgement.verdict, judgement.reason);
+        assert_ne!(judgement.verdict, VerdictKind::NoVerdict, "{}", plan.name);
     }
-    assert!(no_verdict <= 2, "{no_verdict}");
 }
 
 #[test]

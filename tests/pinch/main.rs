@@ -7,6 +7,7 @@ mod bench;
 mod holds;
 mod loads;
 mod patch;
+mod person;
 
 use std::{ops::AddAssign, thread};
 
