@@ -119,7 +119,7 @@ fn seeds(text: &mut String, reproduction: &Reproduction) {
         let means = |figure: fn(&Hold) -> Option<f64>| -> Vec<f64> {
             (1..=reproduction.random_seeds).filter_map(|seed| table::mean(of_seed(seed).filter_map(figure))).collect()
         };
-        let muscular = means(|hold| Some(hold.comfort()?.muscular_regularised));
+        let muscular = means(Hold::muscular);
         let peripersonal = means(Hold::peripersonal_scaled);
         for (name, means) in [("muscular", muscular), ("peripersonal", peripersonal)] {
             let quantile = |share| figure(table::quantile(means.clone(), share), 2);
@@ -256,12 +256,11 @@ pub fn picture_name(hold: &Hold) -> String {
 
 /// The text above a picture.
 pub fn picture_title(hold: &Hold) -> String {
-    let comfort = hold.comfort();
     format!(
         "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
         hold.operation,
         hold.planner,
-        figure(comfort.map(|comfort| comfort.muscular_regularised), 1),
+        figure(hold.muscular(), 1),
         figure(hold.peripersonal_scaled(), 1)
     )
 }
@@ -309,4 +308,14 @@ fn sensitivity(text: &mut String, reproduction: &Reproduction) {
             text.push('\n');
         }
     }
+    if reproduction.sensitivity.iter().flat_map(|variant| &variant.holds).any(is_rated_by_mean) {
+        text.push_str(
+            "\nThe mean is that over all of the person's answers to a hold on a uniform grid, for the random planner too. The others search for \
+             the best\nanswer as ever and rank the best few of the holds that they find by the mean, so a better mean may exist.\n",
+        );
+    }
+}
+
+fn is_rated_by_mean(hold: &Hold) -> bool {
+    hold.comfort().is_some_and(|comfort| comfort.average.is_some())
 }
