@@ -83,18 +83,20 @@ fn raw(text: &mut String, reproduction: &Reproduction) {
     text.push_str(
         "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of \
          `1 / ||alpha||^2`.\nPeripersonal comfort is the sum over 64 points of the body, the scale of the paper's captions, whose one \
-         configuration\na planner stands in brackets. Single plans are in `plans.csv`.\n\n\
-         | task | planner | plans | muscular | printed | peripersonal |\n|---|---|---|---|---|---|\n",
+         configuration\na planner stands in brackets. Single plans are in `plans.csv`. `candidates` is how many a search looked at, in \
+         the mean:\na larger search may find better.\n\n\
+         | task | planner | plans | candidates | muscular | printed | peripersonal |\n|---|---|---|---|---|---|---|\n",
     );
     for row in table::rows(reproduction.holds.iter()) {
         let paper = printed::caption(row.kind, row.planner);
         let of_paper = |which: fn(&Printed) -> f64| figure(paper.as_ref().map(which), 1);
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} ({}) | {} | {} ({}) |",
+            "| {} | {} | {} | {} | {} ({}) | {} | {} ({}) |",
             task(row.kind),
             row.planner,
             row.plans,
+            figure(row.candidates, 0),
             figure(row.muscular, 1),
             of_paper(|paper| paper.muscular),
             figure(row.muscular_printed_median, 1),

@@ -12,6 +12,8 @@ pub struct Row {
     pub planner: PlannerKind,
     /// How many plans the averages are over.
     pub plans: usize,
+    /// Mean of the candidates that the search for a plan looked at.
+    pub candidates: Option<f64>,
     /// Mean of the regularised muscular comfort, [`Hold::muscular`].
     pub muscular: Option<f64>,
     /// Median of the postures' muscular comfort as printed in the paper: it has no bound, so a mean of it says nothing.
@@ -52,6 +54,7 @@ fn row<'a>(kind: OperationKind, planner: PlannerKind, holds: impl Iterator<Item 
         kind,
         planner,
         plans: comforts().count(),
+        candidates: mean(holds.clone().filter_map(|hold| Some(hold.plan.as_ref()?.planner?.evaluations as f64))),
         muscular: mean(holds.clone().filter_map(Hold::muscular)),
         muscular_printed_median: quantile(comforts().map(|comfort| comfort.muscular).collect(), 0.5),
         peripersonal_scaled: mean(holds.clone().filter_map(Hold::peripersonal_scaled)),
