@@ -194,8 +194,8 @@ fn simulated_holds_are_as_predicted() {
         let hold = format!("{} {}", row["operation"], row["planner"]);
         assert_eq!((&plan["operation"], &plan["planner"]), (&row["operation"], &row["planner"]));
         let figure = |row: &BTreeMap<String, String>, column: &str| row[column].parse::<f64>().unwrap();
-        // The prediction is elastic and knows neither the pads' own give nor the swing after the ramp. Over the 100 holds both
-        // were found within 10 %; half as much again is where the planner's reserve of a tenth would no longer do.
+        // The prediction is elastic and knows neither the pads' own give nor the swing after the ramp. The planner's reserve is
+        // a tenth; half as much again is where it would no longer do.
         let deflection = figure(row, "deflection_mm") / figure(row, "predicted_deflection_mm");
         assert!((0.85..1.15).contains(&deflection), "{hold}: deflection {deflection} of the predicted");
         let load = figure(row, "load_factor_simulated") / figure(plan, "compliant_load_factor");
