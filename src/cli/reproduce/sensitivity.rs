@@ -3,11 +3,14 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::jobs::{self, Job, Work};
-use crate::model::{frames::rotation_from_xyzw, scenario::Scenario};
+use crate::model::{
+    frames::rotation_from_xyzw,
+    scenario::{PersonAnswer, Scenario},
+};
 
 /// An assumption that differs.
 pub struct VariantOf {
-    /// In words.
+    /// In words, without commas: a cell of `sensitivity.csv`.
     pub name: &'static str,
     /// Puts it into a scenario.
     pub change: fn(&mut Scenario),
@@ -33,17 +36,24 @@ const LONGER_M: f64 = 0.05;
 const TILT_DEG: f64 = 30.0;
 
 /// All of them.
-pub const VARIANTS: [VariantOf; 8] = [
+pub const VARIANTS: [VariantOf; 9] = [
+    VariantOf {
+        name: "the mean of the person's answers in place of the best",
+        change: |scenario| scenario.comfort.person = PersonAnswer::Average,
+    },
     VariantOf { name: "strength: 5th percentile", change: |scenario| scenario.human.percentile = 5.0 },
     VariantOf { name: "strength: 95th percentile", change: |scenario| scenario.human.percentile = 95.0 },
     VariantOf {
-        name: "peripersonal weight 16, not 64",
+        name: "peripersonal weight 16 in place of 64",
         change: |scenario| scenario.comfort.weight_peripersonal = 16.0,
     },
     VariantOf { name: "peripersonal weight 256", change: |scenario| scenario.comfort.weight_peripersonal = 256.0 },
     VariantOf { name: "tool 5 cm longer", change: lengthen_tool },
     VariantOf { name: "tool tilted by 30 degrees in the hand", change: tilt_tool },
-    VariantOf { name: "board 0.40 x 0.32 m, not 0.50 x 0.40", change: |scenario| resize(scenario, [0.40, 0.32]) },
+    VariantOf {
+        name: "board 0.40 x 0.32 m in place of 0.50 x 0.40",
+        change: |scenario| resize(scenario, [0.40, 0.32]),
+    },
     VariantOf { name: "board 0.60 x 0.48 m", change: |scenario| resize(scenario, [0.60, 0.48]) },
 ];
 
@@ -95,6 +105,22 @@ mod tests {
                 assert!(changed.operation == scenario.operation, "{}", variant.name);
             }
         }
+    }
+
+    #[test]
+    fn the_name_of_every_variant_is_one_cell_and_its_own() {
+        for (index, variant) in VARIANTS.iter().enumerate() {
+            assert!(!variant.name.contains([',', '"', '|']), "{}", variant.name);
+            assert!(VARIANTS[..index].iter().all(|other| other.name != variant.name), "{}", variant.name);
+        }
+    }
+
+    #[test]
+    fn the_mean_of_the_answers_is_asked_of_every_planner() {
+        let variant = VARIANTS.iter().find(|variant| variant.name.starts_with("the mean")).unwrap();
+        let jobs = variant.jobs(&paper::operations()[16].load().unwrap().scenario, 2);
+        assert_eq!(jobs.len(), 5, "three planners and two draws");
+        assert!(jobs.iter().all(|job| job.scenario.comfort.person == PersonAnswer::Average));
     }
 
     #[test]

@@ -74,7 +74,7 @@ fn near(kind: OperationKind, comfort: Figures, peripersonal: Figures, muscular: 
             "{}: the comfort planner is near the peripersonal planner's peripersonal comfort",
             task(kind)
         ),
-        figures: format!("{share:.2} of it; at least {NEAR_PERIPERSONAL} asked for"),
+        figures: format!("{share:.3} of it; at least {NEAR_PERIPERSONAL} asked for"),
         holds: share >= NEAR_PERIPERSONAL,
     };
     vec![near_muscular, near_peripersonal]

@@ -83,18 +83,20 @@ fn raw(text: &mut String, reproduction: &Reproduction) {
     text.push_str(
         "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of \
          `1 / ||alpha||^2`.\nPeripersonal comfort is the sum over 64 points of the body, the scale of the paper's captions, whose one \
-         configuration\na planner stands in brackets. Single plans are in `plans.csv`.\n\n\
-         | task | planner | plans | muscular | printed | peripersonal |\n|---|---|---|---|---|---|\n",
+         configuration\na planner stands in brackets. Single plans are in `plans.csv`. `candidates` is how many a search looked at, in \
+         the mean:\na larger search may find better.\n\n\
+         | task | planner | plans | candidates | muscular | printed | peripersonal |\n|---|---|---|---|---|---|---|\n",
     );
     for row in table::rows(reproduction.holds.iter()) {
         let paper = printed::caption(row.kind, row.planner);
         let of_paper = |which: fn(&Printed) -> f64| figure(paper.as_ref().map(which), 1);
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} ({}) | {} | {} ({}) |",
+            "| {} | {} | {} | {} | {} ({}) | {} | {} ({}) |",
             task(row.kind),
             row.planner,
             row.plans,
+            figure(row.candidates, 0),
             figure(row.muscular, 1),
             of_paper(|paper| paper.muscular),
             figure(row.muscular_printed_median, 1),
@@ -119,7 +121,7 @@ fn seeds(text: &mut String, reproduction: &Reproduction) {
         let means = |figure: fn(&Hold) -> Option<f64>| -> Vec<f64> {
             (1..=reproduction.random_seeds).filter_map(|seed| table::mean(of_seed(seed).filter_map(figure))).collect()
         };
-        let muscular = means(|hold| Some(hold.comfort()?.muscular_regularised));
+        let muscular = means(Hold::muscular);
         let peripersonal = means(Hold::peripersonal_scaled);
         for (name, means) in [("muscular", muscular), ("peripersonal", peripersonal)] {
             let quantile = |share| figure(table::quantile(means.clone(), share), 2);
@@ -256,12 +258,11 @@ pub fn picture_name(hold: &Hold) -> String {
 
 /// The text above a picture.
 pub fn picture_title(hold: &Hold) -> String {
-    let comfort = hold.comfort();
     format!(
         "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
         hold.operation,
         hold.planner,
-        figure(comfort.map(|comfort| comfort.muscular_regularised), 1),
+        figure(hold.muscular(), 1),
         figure(hold.peripersonal_scaled(), 1)
     )
 }
@@ -309,4 +310,14 @@ fn sensitivity(text: &mut String, reproduction: &Reproduction) {
             text.push('\n');
         }
     }
+    if reproduction.sensitivity.iter().flat_map(|variant| &variant.holds).any(is_rated_by_mean) {
+        text.push_str(
+            "\nThe mean is that over all of the person's answers to a hold on a uniform grid, for the random planner too. The others search for \
+             the best\nanswer as ever and rank the best few of the holds that they find by the mean, so a better mean may exist.\n",
+        );
+    }
+}
+
+fn is_rated_by_mean(hold: &Hold) -> bool {
+    hold.comfort().is_some_and(|comfort| comfort.average.is_some())
 }

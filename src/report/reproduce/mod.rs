@@ -15,11 +15,14 @@ pub mod timing;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{
-    operation::OperationKind,
-    plan::{Comfort, Plan},
-    scenario::PlannerKind,
-    verdict::{CheckKind, Verdict, VerdictKind},
+use crate::{
+    human::BODY_POINTS,
+    model::{
+        operation::OperationKind,
+        plan::{Comfort, Plan},
+        scenario::PlannerKind,
+        verdict::{CheckKind, Verdict, VerdictKind},
+    },
 };
 
 /// The seed whose hold is simulated and drawn, and the only one of planners whose average over seeds is not asked for.
@@ -59,9 +62,17 @@ impl Hold {
         self.plan.as_ref()?.comfort.as_ref()
     }
 
-    /// The peripersonal comfort as a sum over the points of the body, on the scale of the paper's captions.
+    /// The regularised muscular comfort that the plan is rated by: the mean of the person's answers where it has one.
+    pub fn muscular(&self) -> Option<f64> {
+        let comfort = self.comfort()?;
+        Some(comfort.average.map_or(comfort.muscular_regularised, |average| average.muscular_regularised))
+    }
+
+    /// As [`Self::muscular`], the peripersonal comfort as a sum over the points of the body, on the scale of the paper's
+    /// captions.
     pub fn peripersonal_scaled(&self) -> Option<f64> {
-        self.comfort()?.peripersonal_scaled
+        let comfort = self.comfort()?;
+        comfort.average.map_or(comfort.peripersonal_scaled, |average| Some(BODY_POINTS as f64 * average.peripersonal_m))
     }
 
     /// The worst value of a check in simulation.

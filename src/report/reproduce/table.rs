@@ -12,9 +12,11 @@ pub struct Row {
     pub planner: PlannerKind,
     /// How many plans the averages are over.
     pub plans: usize,
-    /// Mean of the regularised muscular comfort.
+    /// Mean of the candidates that the search for a plan looked at.
+    pub candidates: Option<f64>,
+    /// Mean of the regularised muscular comfort, [`Hold::muscular`].
     pub muscular: Option<f64>,
-    /// Median of the muscular comfort as printed in the paper: it has no bound, so a mean of it says nothing.
+    /// Median of the postures' muscular comfort as printed in the paper: it has no bound, so a mean of it says nothing.
     pub muscular_printed_median: Option<f64>,
     /// Mean of the peripersonal comfort, as a sum over the body's points.
     pub peripersonal_scaled: Option<f64>,
@@ -52,7 +54,8 @@ fn row<'a>(kind: OperationKind, planner: PlannerKind, holds: impl Iterator<Item 
         kind,
         planner,
         plans: comforts().count(),
-        muscular: mean(comforts().map(|comfort| comfort.muscular_regularised)),
+        candidates: mean(holds.clone().filter_map(|hold| Some(hold.plan.as_ref()?.planner?.evaluations as f64))),
+        muscular: mean(holds.clone().filter_map(Hold::muscular)),
         muscular_printed_median: quantile(comforts().map(|comfort| comfort.muscular).collect(), 0.5),
         peripersonal_scaled: mean(holds.clone().filter_map(Hold::peripersonal_scaled)),
         muscular_normalised: None,
@@ -90,7 +93,7 @@ pub fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::reproduce::testing::hold;
+    use crate::{model::plan::AverageComfort, report::reproduce::testing::hold};
 
     #[test]
     fn averages_are_normalised_by_the_random_planners() {
@@ -110,6 +113,18 @@ mod tests {
         assert_eq!((random.plans, random.muscular_normalised), (2, Some(1.0)));
         let muscular = rows.iter().find(|row| row.planner == PlannerKind::Muscular).unwrap();
         assert_eq!((muscular.plans, muscular.muscular, muscular.muscular_normalised), (0, None, None));
+    }
+
+    #[test]
+    fn where_the_person_answers_by_a_mean_the_table_averages_it() {
+        let mut holds =
+            [hold("drill-1", PlannerKind::Comfort, 1, 40.0, 0.5), hold("drill-2", PlannerKind::Comfort, 1, 20.0, 0.75)];
+        let comfort = holds[0].plan.as_mut().and_then(|plan| plan.comfort.as_mut()).unwrap();
+        comfort.average = Some(AverageComfort { answers: 3, muscular_regularised: 10.0, peripersonal_m: 0.25 });
+        let rows = rows(holds.iter());
+        let row = rows.iter().find(|row| row.planner == PlannerKind::Comfort).unwrap();
+        // (10 + 20) / 2; 64 points times (1/4 + 3/4) / 2.
+        assert_eq!((row.muscular, row.peripersonal_scaled), (Some(15.0), Some(32.0)));
     }
 
     #[test]

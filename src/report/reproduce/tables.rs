@@ -85,7 +85,7 @@ pub fn random(reproduction: &Reproduction) -> String {
         vec![
             hold.operation.clone(),
             hold.seed.to_string(),
-            cell(comfort.map(|comfort| comfort.muscular_regularised)),
+            cell(hold.muscular()),
             cell(comfort.map(|comfort| comfort.muscular)),
             cell(hold.peripersonal_scaled()),
         ]
