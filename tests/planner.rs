@@ -8,7 +8,7 @@ use benchdog::{
         plan::Plan,
         scenario::{Budget, PlannerKind, Scenario, StabilityKind},
     },
-    planner::{self, PlanOutcome, RobotMap},
+    planner::{self, PlanOutcome, RobotMap, WorkMap},
     robot::Robot,
     scenario,
 };
@@ -105,7 +105,7 @@ fn more_work_is_never_worse_and_a_map_at_hand_changes_nothing() {
         plan.comfort.unwrap().objective
     };
     // The search is the same up to where it is cut off.
-    let objectives = [Some(4_300), Some(4_500), Some(4_700), None].map(&mut objective);
+    let objectives = [Some(10), Some(60), Some(150), None].map(&mut objective);
     assert!(objectives.is_sorted(), "{objectives:?}");
     assert_eq!(plan(&scenario, &robot).comfort.unwrap().objective, objectives[3]);
 }
@@ -117,15 +117,50 @@ fn a_default_search_comes_near_the_best_that_is_known() {
     let (scenario, robot) = load("cut-rim");
     let map = RobotMap::new(&robot, scenario.object.size_m);
     let [_, _, thickness_m] = scenario.object.size_m;
-    for (angle_deg, best_known) in [(0.0_f64, 138.5), (180.0, 138.4), (270.0, 140.5)] {
+    for (angle_deg, best_known) in [(0.0_f64, 138.6), (180.0, 138.6), (270.0, 140.5)] {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         let mut scenario = scenario.clone();
         let direction_o = nalgebra::Vector3::new(-sin, cos, 0.0);
         scenario.operation = Operation::cut([0.12 * cos, 0.12 * sin], direction_o, 30.0, thickness_m);
         let PlanOutcome::Found(plan) = planner::plan_on(&scenario, &map).unwrap() else { panic!("no plan") };
         let share = plan.comfort.unwrap().objective / best_known;
-        // Single seeds were found between 0.93 and 1.
-        assert!(share > 0.9, "at {angle_deg} degrees: {share}");
+        // Single seeds were found between 0.98 and 1.
+        assert!(share > 0.97, "at {angle_deg} degrees: {share}");
+    }
+}
+
+/// A map of the kind of work serves whatever differs in place and direction alone, and a plan does not tell who made it.
+#[test]
+fn one_map_of_the_work_serves_all_directions_and_changes_nothing() {
+    let (scenario, robot) = load("cut-rim");
+    let map = RobotMap::new(&robot, scenario.object.size_m);
+    let [_, _, thickness_m] = scenario.object.size_m;
+    let cut = |angle_deg: f64| {
+        let (sin, cos) = angle_deg.to_radians().sin_cos();
+        let direction_o = nalgebra::Vector3::new(-sin, cos, 0.0);
+        let operation = Operation::cut([0.12 * cos, 0.12 * sin], direction_o, 30.0, thickness_m);
+        let mut scenario = Scenario { operation, ..scenario.clone() };
+        scenario.planner.budget = Budget::Default;
+        scenario
+    };
+    let (first, other) = (cut(0.0), cut(112.5));
+    assert!(planner::same_work(&first, &other));
+    let work = WorkMap::new(&first, &map).unwrap();
+    let json = |outcome| match outcome {
+        PlanOutcome::Found(plan) => serde_json::to_string(&plan).unwrap(),
+        PlanOutcome::Infeasible(why) => panic!("{why}"),
+    };
+    let with = planner::plan_with(&other, &map, &work, &mut planner::nobody).unwrap();
+    assert_eq!(json(with), json(planner::plan_on(&other, &map).unwrap()));
+    // Another force, another person, another seed: other work.
+    let mut heavier = other.clone();
+    heavier.operation.wrench_o.force_n *= 1.1;
+    let mut taller = other.clone();
+    taller.human.height_m += 0.05;
+    let mut seeded = other.clone();
+    seeded.planner.seed += 1;
+    for stranger in [&heavier, &taller, &seeded] {
+        assert!(!work.serves(stranger));
     }
 }
 

@@ -222,4 +222,28 @@ mod tests {
             assert_eq!(peripersonal_m(form, None, &points, &[]), f64::INFINITY);
         }
     }
+
+    #[test]
+    fn pulls_are_the_gradient() {
+        let robot = [Point3::origin(), Point3::new(0.4, 0.1, -0.3)];
+        let human: Vec<_> = (0..20).map(f64::from).map(|i| Point3::new(0.1 * i, 1.0 - 0.05 * i, 0.3)).collect();
+        const STEP: f64 = 1e-6;
+        for form in FORMS {
+            for saturation_m in [None, Some(1.0)] {
+                let pulls = peripersonal_pulls(form, saturation_m, &human, &robot);
+                let value = |human: &[Point3<f64>]| peripersonal_m(form, saturation_m, human, &robot);
+                for (point, pull) in pulls.iter().enumerate() {
+                    for axis in 0..3 {
+                        let [mut forth, mut back] = [human.clone(), human.clone()];
+                        forth[point][axis] += STEP;
+                        back[point][axis] -= STEP;
+                        let slope = (value(&forth) - value(&back)) / (2.0 * STEP);
+                        // Rounding of values of order one over the step.
+                        assert!((pull.away[axis] - slope).abs() < 1e-9, "{form:?} {point} {axis}: {pull:?} {slope}");
+                    }
+                }
+            }
+        }
+        assert_eq!(peripersonal_pulls(PeripersonalForm::Mean, None, &human, &[]), []);
+    }
 }

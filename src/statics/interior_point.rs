@@ -377,3 +377,102 @@ fn longest_step(program: &HoldProgram, points: &[HandPoint], step: &Step) -> f64
     }
     longest
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use nalgebra::Vector3;
+
+    use super::{
+        super::{
+            equilibrium::{self, EquilibriumOutcome},
+            program::{Program, ReusedSolver},
+            workspace::hand_energies,
+        },
+        *,
+    };
+    use crate::scenario::read_plan;
+
+    /// METHOD section 7.
+    const FRICTION: f64 = 0.6;
+
+    /// The ten holds of `tests/data/holds`.
+    fn holds() -> Vec<Hold> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/holds");
+        let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        paths.sort();
+        let (_, robot) = read_plan(&paths[0], None).unwrap();
+        let hold = |path: &std::path::PathBuf| {
+            let (plan, _) = read_plan(path, Some(&robot)).unwrap();
+            Hold::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap()
+        };
+        paths.iter().map(hold).collect()
+    }
+
+    /// By clarabel.
+    fn by_program(hold: &Hold, load_factor: f64) -> EquilibriumOutcome {
+        let program = Program::equilibrium(hold, &hand_energies(hold), load_factor);
+        let mut solver = ReusedSolver::default();
+        equilibrium::interpret(hold, &program.layout, load_factor, &solver.solve(&program).unwrap())
+    }
+
+    fn apart(one: &Equilibrium, other: &Equilibrium, hold: &Hold) -> (f64, f64) {
+        let tip = |found: &Equilibrium| found.board.at(&hold.p_ot).linear;
+        let torque = one.joint_torque_nm.iter().zip(&other.joint_torque_nm).map(|(one, other)| (one - other).amax());
+        ((tip(one) - tip(other)).norm(), torque.fold(0.0, f64::max))
+    }
+
+    #[test]
+    fn it_finds_what_the_cone_program_finds() {
+        let mut found = 0;
+        for hold in holds() {
+            for load_factor in [0.0, 0.5, 1.0, 1.1] {
+                let EquilibriumOutcome::Found(expected) = by_program(&hold, load_factor) else { continue };
+                let point = InteriorPoint::solve(&hold, &hand_energies(&hold), load_factor).unwrap();
+                let (tip_m, torque_nm) = apart(&point.equilibrium(&hold, load_factor), &expected, &hold);
+                // Clarabel stops at 1e-7 of a unit, where the flattest directions of the energy are known to 1e-4 of it.
+                assert!(tip_m < 1e-6 && torque_nm < 1e-3, "at {load_factor}: {tip_m:e} m, {torque_nm:e} N m");
+                found += 1;
+            }
+        }
+        assert!(found > 30, "{found}");
+    }
+
+    #[test]
+    fn it_says_nothing_of_a_load_that_no_equilibrium_holds() {
+        for hold in holds() {
+            assert!(InteriorPoint::solve(&hold, &hand_energies(&hold), 50.0).is_none());
+            assert_eq!(by_program(&hold, 50.0), EquilibriumOutcome::None);
+        }
+    }
+
+    #[test]
+    fn a_neighbours_equilibrium_is_exact_to_first_order() {
+        // The tool's force a little further along the board and a little turned.
+        let moved = |hold: &Hold, step: f64| {
+            let mut moved = hold.clone();
+            moved.load.force_n += Vector3::new(0.4, -0.3, 0.5) * step;
+            moved.load.moment_nm += Vector3::new(0.02, 0.05, -0.04) * step;
+            moved.hands[0].grasp_point_o.x += 1e-3 * step;
+            moved.hands[0].pads.iter_mut().for_each(|pad| pad.x_op.translation.vector.x += 1e-3 * step);
+            moved
+        };
+        for hold in holds() {
+            let energies = hand_energies(&hold);
+            let point = InteriorPoint::solve(&hold, &energies, 1.0).unwrap();
+            let error = |step: f64| {
+                let there = moved(&hold, step);
+                let energies = hand_energies(&there);
+                let exact = InteriorPoint::solve(&there, &energies, 1.0).unwrap().equilibrium(&there, 1.0);
+                let guess = point.of_neighbour(&there, &energies, 1.0).unwrap();
+                let moved_m = apart(&exact, &point.equilibrium(&hold, 1.0), &hold).0;
+                (apart(&guess, &exact, &hold).0, moved_m)
+            };
+            let (error_m, moved_m) = error(0.01);
+            // What is left goes with the square of the step, a hundredth of the motion here; a pad that reaches or leaves
+            // its limit between the two holds may take a few times that.
+            assert!(error_m < 0.05 * moved_m + 1e-9, "{error_m:e} m of {moved_m:e} m");
+        }
+    }
+}

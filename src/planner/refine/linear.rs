@@ -184,7 +184,7 @@ impl Linear {
 
 /// The margins of all constraints that cost next to nothing, at least 0 when kept; their gradients, in the same order, are
 /// those of [`Rates::plain_gradients`].
-fn plain_margins(
+pub(super) fn plain_margins(
     problem: &Problem<'_>,
     candidate: &Candidate,
     configured: &Configured,

@@ -246,3 +246,65 @@ fn share_along(p: &Point3<f64>, p0: &Point3<f64>, p1: &Point3<f64>) -> f64 {
     let length2 = axis.norm_squared();
     if length2 == 0.0 { 0.0 } else { ((p - p0).dot(&axis) / length2).clamp(0.0, 1.0) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::super::{
+            Count, Effort, RobotMap, Tally, Watch,
+            assess::{Configured, comfort},
+            propose,
+        },
+        super::linear::plain_margins,
+        *,
+    };
+    use crate::{model::scenario::Budget, scenario::paper};
+
+    /// The gradients against differences of the figures themselves, on starts of a search for a cut and a drill.
+    #[test]
+    fn rates_are_what_differences_say() {
+        for name in ["cut-03", "drill-2"] {
+            let operation = paper::operations().into_iter().find(|operation| operation.name == name).unwrap();
+            let mut loaded = operation.load().unwrap();
+            loaded.scenario.planner.budget = Budget::Fast;
+            let map = RobotMap::new(&loaded.robot, loaded.scenario.object.size_m);
+            let mut problem = Problem::new(&loaded.scenario, &map, Watch::unseen()).unwrap();
+            let mut tally = Tally::new(Count::of_at_most(None));
+            let starts = propose::best_candidates(&mut problem, &Effort::of(Budget::Fast), &mut tally);
+            assert!(starts.len() > 2);
+            starts.iter().for_each(|start| compare(&problem, start));
+        }
+    }
+
+    fn compare(problem: &Problem<'_>, here: &Feasible) {
+        /// Share of a move: errors go with it, rounding against it.
+        const STEP: f64 = 1e-4;
+        let moves = Moves::at(problem, &here.candidate, &here.configured.placed);
+        let rates = Rates::new(problem, here, &moves);
+        let (objective, plain) = (rates.objective_gradient(), rates.plain_gradients());
+        let figures = |share: f64, number: usize| {
+            let mut d = DVector::zeros(moves.count());
+            d[number] = share;
+            let candidate = moves.moved(&here.candidate, &d);
+            let configured = Configured::new(problem, &candidate);
+            let comfort = comfort(problem, &candidate, &configured);
+            (comfort.objective, plain_margins(problem, &candidate, &configured, &comfort.activations))
+        };
+        let near = problem.map.collision.near(&here.configured.scene(problem), 0.06);
+        let apart: Vec<_> = near.iter().map(|near| rates.near_gradient(near)).collect();
+        assert_eq!(apart.len(), near.len());
+        for number in 0..moves.count() {
+            let [(forth, plain_forth), (back, plain_back)] = [STEP, -STEP].map(|share| figures(share, number));
+            let slope = (forth - back) / (2.0 * STEP);
+            // A worth of some hundred whose third derivatives are of order one; where a body point changes the robot's
+            // point that is nearest to it within the step, a kink of some thousandths.
+            let close = |found: f64, slope: f64, size: f64| (found - slope).abs() < 2e-3 * (size + slope.abs());
+            assert!(close(objective[number], slope, 10.0), "objective, move {number}: {} {slope}", objective[number]);
+            assert_eq!(plain.len(), plain_forth.len());
+            for (row, gradient) in plain.iter().enumerate() {
+                let slope = (plain_forth[row] - plain_back[row]) / (2.0 * STEP);
+                assert!(close(gradient[number], slope, 0.1), "row {row}, move {number}: {} {slope}", gradient[number]);
+            }
+        }
+    }
+}
