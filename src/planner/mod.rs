@@ -2,8 +2,9 @@
 //!
 //! Two maps propose: what a robot can hold with boards of one size ([`RobotMap`], made once for all operations), and how
 //! comfortable the person's postures are, by what they ask of the board's pose. Exact kinematics, collisions and stability
-//! dispose of their best pairs, cheap tests first; sequential quadratic steps refine what is left, stability included.
-//! The random planner draws instead. With `comfort.person = "average"` the best of the holds found are ranked by the mean
+//! dispose of their best pairs, cheap tests first; sequential quadratic steps refine what is left, stability included. So a
+//! kind of work is practised in a few places on the board ([`WorkMap`], made once for all others), and a plan begins with
+//! what was good there, made to fit. The random planner draws instead. With `comfort.person = "average"` the best of the holds found are ranked by the mean
 //! comfort of all answers to them. Every plan is checked from scratch before it is returned.
 //!
 //! Effort is counted in candidates, never in time: the same scenario and seed give the same plan, bit by bit. This module

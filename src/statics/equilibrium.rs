@@ -14,6 +14,10 @@
 //! its limits slips: the board moves on it by `Ad_i d + C_i w_i`. (METHOD section 6 writes the same with the wrench on
 //! the hand.)
 //!
+//! # Solvers
+//! [`super::elastic`] where every pad is below its limits, [`super::interior_point`] where not, and clarabel where that one
+//! does not end well: this module reads the latter's answer.
+//!
 //! # Uniqueness
 //! The energy does not see the squeeze, nor how a hand's wrench is shared between its pads. Each pad is therefore given
 //! a compliance of its own, a thousandth or less of any real pad's, which singles out one distribution and one set of

@@ -8,7 +8,9 @@
 //! ([`StabilityWorkspace::robust_load_factor`]). Pads are soft fingers unless a [`PadKind`] or [`WrenchLimits`] says
 //! otherwise.
 //!
-//! Both are cone programs, and clarabel is used here alone. The module must never know how a hold was found, nor what a
+//! Both are cone programs, and clarabel is used here alone; equilibria that are asked for by the thousand have a quicker
+//! solver of their own (`interior_point`), held to clarabel by a test. What a small change of a hold does to them is
+//! [`NearbyResponse`]. The module must never know how a hold was found, nor what a
 //! simulation made of it. Its input, a [`Hold`], is plain geometry: the robot is met in `from_plan` only.
 //!
 //! # Accuracy
