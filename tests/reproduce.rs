@@ -5,7 +5,7 @@
 //! writes the results again; then the claims are put to the test on the new figures.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
     process::{Command, Output},
@@ -161,6 +161,32 @@ fn random_is_the_worst_in_both_comforts_together() {
             for column in ["muscular", "peripersonal_scaled"] {
                 let draws = random.figures(column, |row| row["seed"] == seed && row["operation"].starts_with(kind));
                 assert!(mean(&draws) < of(&table, task, "comfort", column), "{task} {column} seed {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_order_of_the_planners_stays_under_every_assumption() {
+    let table = Table::read(
+        "sensitivity.csv",
+        "assumption,task,planner,plans,muscular,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+    );
+    let assumptions: BTreeSet<_> = table.rows.iter().map(|row| row["assumption"].clone()).collect();
+    assert_eq!(assumptions.len(), 10, "as reproduced, and nine that differ: {assumptions:?}");
+    for assumption in &assumptions {
+        for (task, _) in PAPERS_MUSCULAR_SHARE {
+            let of = |planner, column| {
+                let found = table.figures(column, |row| {
+                    row["assumption"] == *assumption && row["task"] == task && row["planner"] == planner
+                });
+                assert_eq!(found.len(), 1, "{assumption} {task} {planner}");
+                found[0]
+            };
+            for (column, other) in [("muscular_normalised", "peripersonal"), ("peripersonal_normalised", "muscular")] {
+                let comfort = of("comfort", column);
+                assert!(comfort > 1.0, "{assumption}, {task}: {comfort} of random's {column}");
+                assert!(comfort > of(other, column), "{assumption}, {task}: the {other} planner has more {column}");
             }
         }
     }

@@ -310,14 +310,69 @@ fn sensitivity(text: &mut String, reproduction: &Reproduction) {
             text.push('\n');
         }
     }
-    if reproduction.sensitivity.iter().flat_map(|variant| &variant.holds).any(is_rated_by_mean) {
-        text.push_str(
-            "\nThe mean is that over all of the person's answers to a hold on a uniform grid, for the random planner too. The others search for \
-             the best\nanswer as ever and rank the best few of the holds that they find by the mean, so a better mean may exist.\n",
-        );
-    }
+    mean_answers(text, reproduction);
 }
 
-fn is_rated_by_mean(hold: &Hold) -> bool {
-    hold.comfort().is_some_and(|comfort| comfort.average.is_some())
+/// What the mean of the person's answers is, and what it makes of the paper's ratios.
+fn mean_answers(text: &mut String, reproduction: &Reproduction) {
+    let is_rated_by_mean = |hold: &Hold| hold.comfort().is_some_and(|comfort| comfort.average.is_some());
+    let by_mean = |variant: &&Variant| variant.holds.iter().any(is_rated_by_mean);
+    let Some(mean) = reproduction.sensitivity.iter().find(by_mean) else { return };
+    text.push_str(
+        "\nThe mean is that over all of the person's answers to a hold on a uniform grid, for the random planner too. The others search for \
+         the best\nanswer as ever and rank the best few of the holds that they find by the mean, so a better mean may exist.\n",
+    );
+    let muscular = |holds: &[Hold], kind, planner| {
+        table::rows(holds.iter()).iter().find(|row| row.kind == kind && row.planner == planner)?.muscular
+    };
+    let ratios = KINDS.into_iter().filter_map(|kind| {
+        let best = muscular(&reproduction.sensitivity[0].holds, kind, PlannerKind::Comfort)?;
+        let ratio = best / muscular(&mean.holds, kind, PlannerKind::Random)?;
+        let paper = printed::table(kind, PlannerKind::Comfort).map(|paper| paper.muscular);
+        Some(format!("{ratio:.2} in {} ({})", task(kind), figure(paper, 2)))
+    });
+    let ratios: Vec<_> = ratios.collect();
+    let _ = writeln!(
+        text,
+        "\nWhere random's person alone answers by the mean, and the comfort planner's at their best, the comfort planner has these multiples \
+         of\nrandom's muscular comfort, the paper's in brackets: {}.",
+        ratios.join(", ")
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{model::plan::AverageComfort, report::reproduce::testing::hold};
+
+    #[test]
+    fn the_best_answer_of_comfort_is_put_beside_the_mean_of_random() {
+        let holds =
+            vec![hold("cut-01", PlannerKind::Comfort, 1, 60.0, 1.0), hold("cut-01", PlannerKind::Random, 1, 20.0, 0.5)];
+        let mut by_mean = holds.clone();
+        for hold in &mut by_mean {
+            let comfort = hold.plan.as_mut().and_then(|plan| plan.comfort.as_mut()).unwrap();
+            comfort.average = Some(AverageComfort { answers: 2, muscular_regularised: 8.0, peripersonal_m: 0.5 });
+        }
+        let variant = |name: &str, holds| Variant { name: name.to_owned(), holds };
+        let mut reproduction = Reproduction {
+            holds: holds.clone(),
+            random_seeds: 1,
+            best_case: Vec::new(),
+            sensitivity: vec![variant("as reproduced", holds)],
+            sensitivity_seeds: 1,
+            left_out: None,
+        };
+        let of = |reproduction: &Reproduction| {
+            let mut text = String::new();
+            sensitivity(&mut text, reproduction);
+            text
+        };
+        assert!(!of(&reproduction).contains("mean"));
+        reproduction.sensitivity.push(variant("mean", by_mean));
+        let text = of(&reproduction);
+        // Both planners' means are the same; 60 / 8 of the best and the mean.
+        assert!(text.contains("| mean | cutting | 1.00, 1.00 | -, - | -, - | 8.0, 32.0 |"), "{text}");
+        assert!(text.contains("brackets: 7.50 in cutting (11.19)."), "{text}");
+    }
 }
