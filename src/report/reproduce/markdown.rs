@@ -84,7 +84,7 @@ fn raw(text: &mut String, reproduction: &Reproduction) {
         "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of \
          `1 / ||alpha||^2`.\nPeripersonal comfort is the sum over 64 points of the body, the scale of the paper's captions, whose one \
          configuration\na planner stands in brackets. Single plans are in `plans.csv`. `candidates` is how many a search looked at, in \
-         the mean:\na larger search may find better.\n\n\
+         the mean:\nrandom draws until a hold will do; a larger search of the others may find better.\n\n\
          | task | planner | plans | candidates | muscular | printed | peripersonal |\n|---|---|---|---|---|---|---|\n",
     );
     for row in table::rows(reproduction.holds.iter()) {
