@@ -18,7 +18,7 @@ use serde_json::Value;
 /// ```
 ///
 /// A change that is meant to change the simulation renews it: the failing test tells the new one.
-const SHORT_HOLD: &str = "882f38669817ac63a8e87bca804655a14648e321895bd429f8dbe7e0d3935ff0";
+const SHORT_HOLD: &str = "d41bbe0c888ac6747dd2f6ffa7f3b64c0ec6044c8697c663aa41db015fa0a7c4";
 
 const SCENARIOS: [&str; 2] = ["scenarios/quickstart.toml", "scenarios/cut-rim.toml"];
 

@@ -19,6 +19,7 @@ use super::{
     candidate::{Candidate, hold_kind},
     effort::Effort,
     person_map::{GLANCE_POINTS, PersonMap, Posture, SKETCH_POINTS},
+    work_map::canonical,
 };
 use crate::{
     human::{ArmAngles, peripersonal_m},
@@ -51,7 +52,8 @@ pub fn best_candidates(problem: &mut Problem<'_>, effort: &Effort, tally: &mut T
     let person = match problem.person {
         Some(person) => person,
         None => {
-            made = PersonMap::of(problem.scenario, &problem.human);
+            // The same as a map of the work would have, to the bit.
+            made = PersonMap::of(&canonical(problem.scenario), &problem.human);
             &made
         }
     };

@@ -232,7 +232,7 @@ pub fn same_work(one: &Scenario, other: &Scenario) -> bool {
 
 /// A scenario without what a map's scenarios may differ in: its operation at the board's centre, its tool's x axis above
 /// x_O, everything rounded.
-fn canonical(scenario: &Scenario) -> Scenario {
+pub(super) fn canonical(scenario: &Scenario) -> Scenario {
     let Operation { x_ot, .. } = scenario.operation;
     let axes = [Vector3::x(), Vector3::y()].map(|axis| x_ot.rotation * axis);
     let pointer = if axes[0].xy().norm() > LEVEL { axes[0] } else { axes[1] };
