@@ -143,14 +143,17 @@ impl Sweep<'_> {
         let count = Count::of_at_most(scenario.planner.evaluations);
         let mut problem = Problem::new(scenario, self.map, Watch::new(count.clone(), onlooker))?;
         let mut tally = Tally::new(count);
-        let effort = Effort::of(scenario.planner.budget);
+        let mut effort = Effort::of(scenario.planner.budget);
         let mut starts = Vec::new();
         if anew {
             starts = propose::best_candidates(&mut problem, &effort, &mut tally);
         }
         if let Some(index) = self.index_of_best(scenario) {
             tally.draw();
+            let known = starts.len();
             starts.extend(assess::feasible(&mut problem, self.pool[index].candidate.clone()));
+            // It goes along, and takes no other's place in a heat.
+            effort.heats.iter_mut().for_each(|heat| heat.climbs += starts.len() - known);
         }
         self.pool.extend(refine::refine(&mut problem, starts, &effort, &mut tally));
         if self.pool.is_empty() {
