@@ -147,7 +147,10 @@ fn a_planner_of_one_comfort_is_poor_in_the_other() {
         // them the muscular planner takes is chance: 55 % were found, and the report says that the claim fails.
         let saturated = of(&table, task, "comfort", "muscular") > 99.9;
         let bound = if saturated { 0.7 } else { 0.5 };
-        assert!(of_peripersonal < bound, "{task}: the muscular planner gains {of_peripersonal} of peripersonal comfort");
+        assert!(
+            of_peripersonal < bound,
+            "{task}: the muscular planner gains {of_peripersonal} of peripersonal comfort"
+        );
     }
 }
 

@@ -19,8 +19,11 @@ type Cell<T> = Arc<OnceLock<T>>;
 /// not depend on which scenario made its maps.
 #[derive(Default)]
 pub struct Maps {
-    known: Mutex<Vec<(String, [u64; 3], Cell<Arc<Known>>)>>,
+    known: Mutex<Vec<Entry>>,
 }
+
+/// A robot's description, the bits of a board's sides, and their map once it is there.
+type Entry = (String, [u64; 3], Cell<Arc<Known>>);
 
 /// The map of a robot, and those of kinds of work.
 struct Known {

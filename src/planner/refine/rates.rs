@@ -121,10 +121,9 @@ impl<'a, 'p> Rates<'a, 'p> {
         let mut of_joints: Vec<_> = self.arms.iter().map(|arm| DVector::zeros(arm.axes_w.len())).collect();
         for (link, p_w, along) in points {
             let Some((arm, last)) = self.problem.map.carriers[link] else { continue };
-            let axes = &self.arms[arm];
-            for joint in 0..=last {
-                of_joints[arm][joint] += axes.axes_w[joint].dot(&(p_w - axes.origins_w[joint]).cross(&along));
-            }
+            let ArmAxes { origins_w, axes_w } = &self.arms[arm];
+            let joints = of_joints[arm].iter_mut().zip(origins_w.iter().zip(axes_w)).take(last + 1);
+            joints.for_each(|(sum, (origin_w, axis_w))| *sum += axis_w.dot(&(p_w - origin_w).cross(&along)));
         }
         for (rates, of_joints) in self.moves.rates.iter().zip(&of_joints) {
             gradient.gemv_tr(1.0, rates, of_joints, 1.0);
