@@ -4,8 +4,9 @@
 //! data too: MuJoCo does not act on `<custom>` fields, whoever simulates the file lays the wrench on the board's site
 //! `tool`. It must never contain what only the engine here needs.
 //!
-//! Checked by hand in MuJoCo 3 with pads of a core and a face (`scenarios/plans/cut-rim.json`, masses exact): the tool
-//! point gave way by 5.39 mm there and by 5.35 mm here.
+//! Checked by hand in MuJoCo 3: in `scenarios/plans/cut-rim.json` the tool point gives way by 5.39 mm there and by 5.31 mm
+//! here. MuJoCo's contacts are far softer, so the faces lie farther behind the cores, and pads that tilt rock by as much: the
+//! quickstart's drill, which tilts them, gives way by 6.2 mm there and by 3.9 mm here and by the statics.
 //!
 //! What the file says beyond MJCF:
 //! - the key frame `planned` holds the planned state; its controls are the servos' rest angles `q + tau_ff / K`, the
