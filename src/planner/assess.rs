@@ -178,7 +178,7 @@ pub fn feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasi
 }
 
 /// Tests everything but stability, which costs the most.
-pub fn free(problem: &mut Problem<'_>, candidate: &Candidate, configured: &Configured) -> Result<(), Rejection> {
+fn free(problem: &mut Problem<'_>, candidate: &Candidate, configured: &Configured) -> Result<(), Rejection> {
     if !problem.watch.allows() {
         return Err(Rejection::NotLookedAt);
     }
@@ -256,9 +256,20 @@ pub fn posture_comfort(
     wrench_t: &Wrench,
     direction: StrengthDirection,
 ) -> Option<Muscular> {
-    let wrench_b = Wrench::new(x_bt.rotation * wrench_t.force_n, x_bt.rotation * wrench_t.moment_nm);
-    let muscular = human.muscular(q_h_rad, &Pose::identity(), &wrench_b, direction);
+    let muscular = posture_muscular(human, q_h_rad, x_bt, wrench_t, direction);
     muscular.activations.iter().all(|&activation| activation <= 1.0).then_some(muscular)
+}
+
+/// The muscular comfort of a posture, strong enough or not.
+pub fn posture_muscular(
+    human: &Human,
+    q_h_rad: &ArmAngles,
+    x_bt: &Pose,
+    wrench_t: &Wrench,
+    direction: StrengthDirection,
+) -> Muscular {
+    let wrench_b = Wrench::new(x_bt.rotation * wrench_t.force_n, x_bt.rotation * wrench_t.moment_nm);
+    human.muscular(q_h_rad, &Pose::identity(), &wrench_b, direction)
 }
 
 /// True when every corner of the gripper's pads lies on the face of the board.

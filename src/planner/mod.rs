@@ -4,8 +4,9 @@
 //! comfortable the person's postures are, by what they ask of the board's pose. Exact kinematics, collisions and stability
 //! dispose of their best pairs, cheap tests first; sequential quadratic steps refine what is left, stability included. So a
 //! kind of work is practised in a few places on the board ([`WorkMap`], made once for all others), and a plan begins with
-//! what was good there, made to fit. The random planner draws instead. With `comfort.person = "average"` the best of the holds found are ranked by the mean
-//! comfort of all answers to them. Every plan is checked from scratch before it is returned.
+//! what was good there, made to fit. The random planner draws instead. With `comfort.person = "average"` the best of the
+//! holds found are ranked by the mean comfort of all answers to them. Every plan is checked from scratch before it is
+//! returned.
 //!
 //! Effort is counted in candidates, never in time: the same scenario and seed give the same plan, bit by bit. This module
 //! never sees a simulation's result; nothing here knows the clock.
@@ -152,7 +153,7 @@ pub fn plan_with<'a>(
     }
     let count = Count::of_at_most(scenario.planner.evaluations);
     let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
-    problem.person = Some(&work.person);
+    problem.person = work.person.as_ref();
     let mut tally = Tally::new(count);
     for found in search(&mut problem, Some(work), &Effort::of(scenario.planner.budget), &mut tally) {
         if let Some(plan) = checked(&mut problem, &found, &mut tally)? {

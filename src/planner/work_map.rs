@@ -51,7 +51,8 @@ const LEVEL: f64 = 1e-3;
 pub struct WorkMap {
     /// The scenario without what it may differ in.
     origin: Scenario,
-    pub(super) person: PersonMap,
+    /// None for the random planner, which looks at no map of the person.
+    pub(super) person: Option<PersonMap>,
     good: Vec<GoodHold>,
 }
 
@@ -72,10 +73,12 @@ impl WorkMap {
     /// When the scenario's person or tool is none.
     pub fn new(scenario: &Scenario, map: &RobotMap) -> Result<Self, HumanError> {
         let origin = canonical(scenario);
-        let person = PersonMap::of(&origin, &Human::new(&origin.human, &origin.tool)?);
-        let mut work = Self { person, good: Vec::new(), origin };
-        let effort = Effort::of_practice(scenario.planner.budget);
-        let Some(effort) = effort.filter(|_| scenario.planner.kind != PlannerKind::Random) else { return Ok(work) };
+        let human = Human::new(&origin.human, &origin.tool)?;
+        if scenario.planner.kind == PlannerKind::Random {
+            return Ok(Self { person: None, good: Vec::new(), origin });
+        }
+        let mut work = Self { person: Some(PersonMap::of(&origin, &human)), good: Vec::new(), origin };
+        let Some(effort) = Effort::of_practice(scenario.planner.budget) else { return Ok(work) };
         let operations = practised(&work.origin);
         for pass in 0..PASSES {
             for (number, practised) in operations.iter().enumerate() {
@@ -96,7 +99,7 @@ impl WorkMap {
         effort: &Effort,
     ) -> Result<(), HumanError> {
         let mut problem = Problem::new(practised, map, Watch::unseen())?;
-        problem.person = Some(&self.person);
+        problem.person = self.person.as_ref();
         let mut tally = Tally::new(Count::of_at_most(None));
         let mut starts = self.starts(&mut problem, effort.known_starts, &mut tally);
         if first {

@@ -17,7 +17,6 @@ use crate::{
     collision::{Carrier, Near, PersonPart},
     comfort,
     human::{ArmAngles, BODY_POINTS, CAPSULES, Muscular, peripersonal_pulls},
-    model::{frames::Pose, wrench::Wrench},
 };
 
 /// The person's joints.
@@ -234,9 +233,9 @@ impl<'a, 'p> Rates<'a, 'p> {
 
 /// The muscular comfort of a posture, which does not depend on where the person stands.
 fn muscular(problem: &Problem<'_>, q_h_rad: &ArmAngles) -> Muscular {
-    let r_bt = problem.human.tool_pose_b(q_h_rad).rotation;
-    let wrench_b = Wrench::new(r_bt * problem.wrench_t.force_n, r_bt * problem.wrench_t.moment_nm);
-    problem.human.muscular(q_h_rad, &Pose::identity(), &wrench_b, problem.scenario.comfort.direction)
+    let human = &problem.human;
+    let direction = problem.scenario.comfort.direction;
+    assess::posture_muscular(human, q_h_rad, &human.tool_pose_b(q_h_rad), &problem.wrench_t, direction)
 }
 
 /// How far along a segment a point is, from 0 to 1.
