@@ -117,19 +117,20 @@ fn a_default_search_comes_near_the_best_that_is_known() {
     let (scenario, robot) = load("cut-rim");
     let map = RobotMap::new(&robot, scenario.object.size_m);
     let [_, _, thickness_m] = scenario.object.size_m;
-    for (angle_deg, best_known) in [(0.0_f64, 138.6), (180.0, 138.6), (270.0, 140.5)] {
+    for (angle_deg, best_known) in [(0.0_f64, 138.8), (180.0, 138.8), (157.5, 142.2), (270.0, 140.8)] {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         let mut scenario = scenario.clone();
         let direction_o = nalgebra::Vector3::new(-sin, cos, 0.0);
         scenario.operation = Operation::cut([0.12 * cos, 0.12 * sin], direction_o, 30.0, thickness_m);
         let PlanOutcome::Found(plan) = planner::plan_on(&scenario, &map).unwrap() else { panic!("no plan") };
         let share = plan.comfort.unwrap().objective / best_known;
-        // Single seeds were found between 0.98 and 1.
-        assert!(share > 0.97, "at {angle_deg} degrees: {share}");
+        // Single seeds were found between 0.984 and 1; at 157.5 degrees holds that are easier to find are worth 0.985.
+        assert!(share > 0.98, "at {angle_deg} degrees: {share}");
     }
 }
 
-/// A map of the kind of work serves whatever differs in place and direction alone, and a plan does not tell who made it.
+/// A map of the kind of work serves whatever differs in place and direction alone, and a plan does not tell who made it, nor
+/// with how many threads.
 #[test]
 fn one_map_of_the_work_serves_all_directions_and_changes_nothing() {
     let (scenario, robot) = load("cut-rim");
@@ -145,7 +146,8 @@ fn one_map_of_the_work_serves_all_directions_and_changes_nothing() {
     };
     let (first, other) = (cut(0.0), cut(112.5));
     assert!(planner::same_work(&first, &other));
-    let work = WorkMap::new(&first, &map).unwrap();
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let work = alone.install(|| WorkMap::new(&first, &map)).unwrap();
     let json = |outcome| match outcome {
         PlanOutcome::Found(plan) => serde_json::to_string(&plan).unwrap(),
         PlanOutcome::Infeasible(why) => panic!("{why}"),

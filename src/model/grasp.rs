@@ -21,6 +21,17 @@ impl Edge {
     /// All four edges, counter-clockwise from +x_O.
     pub const ALL: [Self; 4] = [Self::PlusX, Self::PlusY, Self::MinusX, Self::MinusY];
 
+    /// The edge so many quarter turns further, counter-clockwise as seen from +z_O.
+    pub fn turned(self, quarters: usize) -> Self {
+        let place = match self {
+            Self::PlusX => 0,
+            Self::PlusY => 1,
+            Self::MinusX => 2,
+            Self::MinusY => 3,
+        };
+        Self::ALL[(place + quarters) % Self::ALL.len()]
+    }
+
     /// The unit vector in O that points out of the board across this edge.
     pub fn outward_o(self) -> Vector3<f64> {
         match self {

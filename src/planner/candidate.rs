@@ -82,6 +82,15 @@ impl Candidate {
         hold_kind(&self.holds)
     }
 
+    /// The kind of a hold with the board turned by quarters until the first hand is at +x_O.
+    pub fn kind_unturned(&self) -> HoldKind {
+        let mut kind = self.kind();
+        while kind.first().is_some_and(|(edge, _)| *edge != Edge::PlusX) {
+            kind.iter_mut().for_each(|(edge, _)| *edge = edge.turned(1));
+        }
+        kind
+    }
+
     /// All but how the robot holds the board.
     pub fn stance(&self) -> Stance {
         let Self { q_h_rad, heading_rad, roll_rad, p_wo_xy_m, .. } = *self;

@@ -19,8 +19,8 @@ pub struct Effort {
     pub heats: Vec<Heat>,
     /// Starts that are taken from what was learned of the kind of work.
     pub known_starts: usize,
-    /// Proposals are climbed from even when such starts are there.
-    pub looks_further: bool,
+    /// The heats where such starts are all there is; none when proposals are climbed from too.
+    pub known_heats: Option<Vec<Heat>>,
     /// Holds that the search for a whole circle climbs from, and the steps of each climb.
     pub circle_climbs: usize,
     pub circle_steps: usize,
@@ -52,7 +52,7 @@ impl Effort {
                 starts_of_a_kind: 2,
                 heats: heats(&[[8, 6], [3, 10], [1, 20]]),
                 known_starts: 0,
-                looks_further: true,
+                known_heats: None,
                 circle_climbs: 1,
                 circle_steps: 25,
             },
@@ -63,8 +63,8 @@ impl Effort {
                 starts: 24,
                 starts_of_a_kind: 3,
                 heats: heats(&[[24, 6], [12, 8], [2, 25]]),
-                known_starts: 12,
-                looks_further: false,
+                known_starts: 10,
+                known_heats: Some(heats(&[[10, 4], [4, 8], [1, 25]])),
                 circle_climbs: 3,
                 circle_steps: 30,
             },
@@ -76,32 +76,72 @@ impl Effort {
                 starts_of_a_kind: 400,
                 heats: heats(&[[440, 40], [60, 100]]),
                 known_starts: 40,
-                looks_further: true,
+                known_heats: None,
                 circle_climbs: 60,
                 circle_steps: 100,
             },
         }
     }
+}
 
-    /// The numbers of a search that practises a kind of work, once for many plans; none when nothing is practised.
-    pub fn of_practice(budget: Budget) -> Option<Self> {
-        let plan = Self::of(budget);
+/// The numbers of the searches that practise a kind of work, once for many plans.
+#[derive(Clone, Debug)]
+pub struct Practice {
+    /// The first search for each practised operation.
+    pub first: Effort,
+    /// The later ones, which know what was found before.
+    pub later: Effort,
+    /// How often all operations are searched for: what one teaches helps its neighbours the next time.
+    pub passes: u64,
+    /// Places in which good boards are held anew before each later pass.
+    pub places: usize,
+}
+
+impl Practice {
+    /// The numbers of a budget; none when nothing is practised.
+    pub fn of(budget: Budget) -> Option<Self> {
+        let plan = Effort::of(budget);
         match budget {
             Budget::Fast => None,
             Budget::Default => Some(Self {
-                disposed: 4_000,
-                starts: 48,
-                starts_of_a_kind: 2,
-                heats: heats(&[[56, 8], [24, 30]]),
-                known_starts: 8,
-                ..plan
+                first: Effort {
+                    disposed: 4_000,
+                    starts: 16,
+                    starts_of_a_kind: 2,
+                    heats: heats(&[[16, 8], [6, 20]]),
+                    known_starts: 0,
+                    ..plan.clone()
+                },
+                later: Effort {
+                    disposed: 4_000,
+                    starts: 48,
+                    starts_of_a_kind: 2,
+                    heats: heats(&[[56, 8], [24, 30]]),
+                    known_starts: 8,
+                    ..plan
+                },
+                passes: 3,
+                places: 1_000,
             }),
             Budget::Exhaustive => Some(Self {
-                disposed: 20_000,
-                starts: 200,
-                starts_of_a_kind: 10,
-                heats: heats(&[[240, 15], [60, 60]]),
-                ..plan
+                first: Effort {
+                    disposed: 20_000,
+                    starts: 200,
+                    starts_of_a_kind: 10,
+                    heats: heats(&[[200, 15], [60, 60]]),
+                    known_starts: 0,
+                    ..plan.clone()
+                },
+                later: Effort {
+                    disposed: 20_000,
+                    starts: 200,
+                    starts_of_a_kind: 10,
+                    heats: heats(&[[240, 15], [60, 60]]),
+                    known_starts: 40,
+                    ..plan
+                },
+                passes: 4,
+                places: 10_000,
             }),
         }
     }

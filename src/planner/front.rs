@@ -7,8 +7,8 @@
 //! further in.
 
 use super::{
-    Count, Effort, Feasible, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, assemble, assess, propose, refine,
-    verify,
+    Count, Effort, Feasible, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, WorkMap, assemble, assess, propose,
+    refine, verify,
 };
 use crate::{
     comfort,
@@ -74,13 +74,14 @@ pub enum FrontOutcome {
 /// # Errors
 /// As [`super::plan`].
 pub fn front(scenario: &Scenario, map: &RobotMap, onlooker: &mut Onlooker<'_>) -> Result<FrontOutcome, HumanError> {
-    let mut sweep = Sweep { map, pool: Vec::new(), infeasible: None };
+    let own = weighted(scenario, [scenario.comfort.weight_muscular, scenario.comfort.weight_peripersonal]);
+    let work = WorkMap::new(&own, map)?;
+    let mut sweep = Sweep { map, work: &work, pool: Vec::new(), infeasible: None };
     let alone = [[1.0, 0.0], [0.0, 1.0]].map(|weights| weighted(scenario, weights));
     for scenario in &alone {
         sweep.search(scenario, true, onlooker)?;
     }
     let optima = sweep.optima();
-    let own = weighted(scenario, [scenario.comfort.weight_muscular, scenario.comfort.weight_peripersonal]);
     let swept: Vec<_> = SHARES.into_iter().map(|share| weighted(scenario, normalised(share, optima))).collect();
     let all = || std::iter::once(&own).chain(&swept);
     for scenario in all().filter(|scenario| !is_alone(scenario)) {
@@ -132,6 +133,8 @@ fn share(scenario: &Scenario, optima: [f64; 2]) -> f64 {
 /// The searches of a front and what they found.
 struct Sweep<'m> {
     map: &'m RobotMap,
+    /// Of the scenario's own weights: what is good for them is a start for all.
+    work: &'m WorkMap,
     pool: Vec<Feasible>,
     /// Why the first search that found nothing did not.
     infeasible: Option<Infeasible>,
@@ -146,16 +149,19 @@ impl Sweep<'_> {
         let mut effort = Effort::of(scenario.planner.budget);
         let mut starts = Vec::new();
         if anew {
-            starts = propose::best_candidates(&mut problem, &effort, &mut tally);
+            starts = propose::best_candidates(&mut problem, &self.map.bank, &effort, &mut tally);
+        }
+        let proposed = starts.len();
+        if anew {
+            starts.extend(self.work.starts(&mut problem, effort.known_starts, &mut tally));
         }
         if let Some(index) = self.index_of_best(scenario) {
             tally.draw();
-            let known = starts.len();
             starts.extend(assess::feasible(&mut problem, self.pool[index].candidate.clone()));
-            // It goes along, and takes no other's place in a heat.
-            effort.heats.iter_mut().for_each(|heat| heat.climbs += starts.len() - known);
         }
-        self.pool.extend(refine::refine(&mut problem, starts, &effort, &mut tally));
+        // What is known goes along, and takes no proposal's place in a heat.
+        effort.heats.iter_mut().for_each(|heat| heat.climbs += starts.len() - proposed);
+        self.pool.extend(refine::refine(&mut problem, starts, &effort.heats, &mut tally));
         if self.pool.is_empty() {
             self.infeasible.get_or_insert(tally.into_infeasible());
         }

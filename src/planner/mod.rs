@@ -17,6 +17,7 @@ mod bank;
 mod candidate;
 pub mod circle;
 mod effort;
+mod focus;
 mod front;
 mod person_map;
 mod propose;
@@ -155,7 +156,7 @@ pub fn plan_with<'a>(
     let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
     problem.person = work.person.as_ref();
     let mut tally = Tally::new(count);
-    for found in search(&mut problem, Some(work), &Effort::of(scenario.planner.budget), &mut tally) {
+    for found in search(&mut problem, work, &Effort::of(scenario.planner.budget), &mut tally) {
         if let Some(plan) = checked(&mut problem, &found, &mut tally)? {
             return Ok(PlanOutcome::Found(Box::new(plan)));
         }
@@ -178,16 +179,19 @@ pub fn plan_until<'a>(
 }
 
 /// The holds that the scenario's planner finds, the best first.
-fn search(problem: &mut Problem<'_>, work: Option<&WorkMap>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
+fn search(problem: &mut Problem<'_>, work: &WorkMap, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
     let PlannerSettings { kind, seed, .. } = problem.scenario.planner;
     let found = if kind == PlannerKind::Random {
         random::draw(problem, &mut Pcg64::new(u128::from(seed), 0), tally).into_iter().collect()
     } else {
-        let mut starts = work.map_or_else(Vec::new, |work| work.starts(problem, effort.known_starts, tally));
-        if starts.is_empty() || effort.looks_further {
-            starts.extend(propose::best_candidates(problem, effort, tally));
+        let mut starts = work.starts(problem, effort.known_starts, tally);
+        match &effort.known_heats {
+            Some(heats) if !starts.is_empty() => refine::refine(problem, starts, heats, tally),
+            _ => {
+                starts.extend(propose::best_candidates(problem, &problem.map.bank, effort, tally));
+                refine::refine(problem, starts, &effort.heats, tally)
+            }
         }
-        refine::refine(problem, starts, effort, tally)
     };
     answer::rank(problem, found)
 }

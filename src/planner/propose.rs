@@ -45,8 +45,13 @@ struct Proposal<'a> {
     worth: f64,
 }
 
-/// The best pairs of the two maps that keep every constraint, the best first.
-pub fn best_candidates(problem: &mut Problem<'_>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
+/// The best pairs of a bank's holds and the person's postures that keep every constraint, the best first.
+pub fn best_candidates(
+    problem: &mut Problem<'_>,
+    bank: &[BankedHold],
+    effort: &Effort,
+    tally: &mut Tally,
+) -> Vec<Feasible> {
     let map = problem.map;
     let made;
     let person = match problem.person {
@@ -57,11 +62,11 @@ pub fn best_candidates(problem: &mut Problem<'_>, effort: &Effort, tally: &mut T
             &made
         }
     };
-    if map.bank.is_empty() {
+    if bank.is_empty() {
         tally.remove_all(map.drawn, Rejection::RobotReach);
     }
-    let mut proposals = Vec::with_capacity(map.bank.len() * effort.postures_a_cell);
-    for known in &map.bank {
+    let mut proposals = Vec::with_capacity(bank.len() * effort.postures_a_cell);
+    for known in bank {
         if tally.is_exhausted() {
             break;
         }

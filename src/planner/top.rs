@@ -1,6 +1,6 @@
 //! Several good holds that differ, for somebody who wants a choice.
 
-use super::{Count, Effort, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, assemble, search, verify};
+use super::{Count, Effort, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, WorkMap, assemble, search, verify};
 use crate::{
     human::HumanError,
     model::{
@@ -54,15 +54,17 @@ pub fn top<'a>(
     wanted: usize,
     onlooker: &'a mut Onlooker<'a>,
 ) -> Result<TopOutcome, HumanError> {
+    let work = WorkMap::new(scenario, map)?;
     let count = Count::of_at_most(scenario.planner.evaluations);
     let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
+    problem.person = work.person.as_ref();
     let mut tally = Tally::new(count);
     let effort = Effort::of(scenario.planner.budget);
     let starts = effort.starts.max(STARTS_A_PLAN.saturating_mul(wanted));
-    let mut effort = Effort { starts, ..effort };
-    effort.heats.iter_mut().for_each(|heat| heat.climbs = heat.climbs.max(2 * wanted));
+    let mut effort = Effort { starts, known_heats: None, ..effort };
+    effort.heats.iter_mut().for_each(|heat| heat.climbs = heat.climbs.max(2 * wanted) + effort.known_starts);
     let mut plans: Vec<Plan> = Vec::with_capacity(wanted);
-    for found in search(&mut problem, None, &effort, &mut tally) {
+    for found in search(&mut problem, &work, &effort, &mut tally) {
         if plans.len() == wanted {
             break;
         }

@@ -2,7 +2,9 @@
 //!
 //! The holes of a board, or the points of a line that is cut, ask for nearly the same: the same person with the same tool
 //! and force, somewhere else on the board or in another direction. So the search practises on a few such operations, with
-//! more effort than a plan may take, and keeps the best holds that differ. A plan then begins where they ended: each is
+//! more effort than a plan may take: first from the robot's bank of holds, then from holds of boards that lean like those
+//! of the best so far, wherever they may be ([`focus`]), and from what the others found. The best holds that differ are
+//! kept. A plan then begins where they ended: each is
 //! turned by quarters about the board's normal (a rectangle looks the same after half a turn, and nearly so after a quarter
 //! one), the person or the board moves so that the tool is where this operation wants it, and what keeps every constraint
 //! is refined like any other start.
@@ -10,12 +12,15 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use rayon::prelude::*;
 
 use super::{
     Count, Effort, Problem, RobotMap, Tally, Watch,
     assess::{self, Configured, Feasible, Rejection},
-    bank::KnownHold,
-    candidate::{Candidate, Hold},
+    bank::{BankedHold, KnownHold},
+    candidate::{Candidate, Hold, HoldKind},
+    effort::Practice,
+    focus,
     person_map::PersonMap,
     propose, refine, wrench_t,
 };
@@ -32,10 +37,10 @@ use crate::{
 
 /// Directions within half a turn that are practised, where a tool's roll is not free.
 const DIRECTIONS: usize = 8;
-/// How often all of them are gone through: what one teaches helps its neighbours the next time.
-const PASSES: usize = 2;
 /// Holds that are kept of each practised operation.
-const KEPT: usize = 5;
+const KEPT: usize = 6;
+/// Of these, at most so many are of a kind.
+const KEPT_OF_A_KIND: usize = 2;
 /// Fitted holds that are tried for each start that is wanted.
 const TRIES_A_START: usize = 3;
 /// Poses and wrenches are rounded to this, so that operations that differ by rounding share a map: m, N, N m or 1.
@@ -57,11 +62,12 @@ pub struct WorkMap {
 }
 
 /// A hold and a posture that were good for a practised operation.
+#[derive(Clone, Debug)]
 struct GoodHold {
-    /// The operation's number.
-    practised: usize,
     candidate: Candidate,
     x_wo: Pose,
+    /// What it is worth there.
+    worth: f64,
     /// The tool's tip on the board.
     tip_o_m: Point3<f64>,
 }
@@ -78,42 +84,47 @@ impl WorkMap {
             return Ok(Self { person: None, good: Vec::new(), origin });
         }
         let mut work = Self { person: Some(PersonMap::of(&origin, &human)), good: Vec::new(), origin };
-        let Some(effort) = Effort::of_practice(scenario.planner.budget) else { return Ok(work) };
+        let Some(practice) = Practice::of(scenario.planner.budget) else { return Ok(work) };
         let operations = practised(&work.origin);
-        for pass in 0..PASSES {
-            for (number, practised) in operations.iter().enumerate() {
-                work.practise(practised, number, pass == 0, map, &effort)?;
-            }
+        for pass in 0..practice.passes {
+            let focus;
+            let (bank, effort) = if pass == 0 {
+                (&map.bank, &practice.first)
+            } else {
+                let boards: Vec<_> = work.good.iter().map(|good| good.x_wo).collect();
+                focus = focus::holds(map, &boards, practice.places, [work.origin.planner.seed, pass]);
+                (&focus, &practice.later)
+            };
+            // Each looks at what the pass before found for all of them, so their order does not matter.
+            let found: Result<Vec<_>, HumanError> =
+                operations.par_iter().map(|operation| work.practise(operation, map, bank, effort)).collect();
+            work.good = found?.concat();
         }
         Ok(work)
     }
 
-    /// Searches for holds for one practised operation, from what was learned so far and, at first, from proposals too; what
-    /// is found takes the place of what was known for it.
+    /// Searches for holds for one practised operation, from a bank's holds and from what was learned so far.
     fn practise(
-        &mut self,
-        practised: &Scenario,
-        number: usize,
-        first: bool,
+        &self,
+        operation: &Scenario,
         map: &RobotMap,
+        bank: &[BankedHold],
         effort: &Effort,
-    ) -> Result<(), HumanError> {
-        let mut problem = Problem::new(practised, map, Watch::unseen())?;
+    ) -> Result<Vec<GoodHold>, HumanError> {
+        let mut problem = Problem::new(operation, map, Watch::unseen())?;
         problem.person = self.person.as_ref();
         let mut tally = Tally::new(Count::of_at_most(None));
         let mut starts = self.starts(&mut problem, effort.known_starts, &mut tally);
-        if first {
-            starts.extend(propose::best_candidates(&mut problem, effort, &mut tally));
-        }
-        let found = distinct(refine::refine(&mut problem, starts, effort, &mut tally), KEPT);
-        self.good.retain(|good| good.practised != number);
-        self.good.extend(found.into_iter().map(|found| GoodHold {
-            practised: number,
-            x_wo: found.configured.placed.x_wo,
-            tip_o_m: practised.operation.x_ot.translation.vector.into(),
-            candidate: found.candidate,
-        }));
-        Ok(())
+        starts.extend(propose::best_candidates(&mut problem, bank, effort, &mut tally));
+        let found = distinct(refine::refine(&mut problem, starts, &effort.heats, &mut tally));
+        let tip_o_m = operation.operation.x_ot.translation.vector.into();
+        let good = |Feasible { candidate, configured, worth, .. }| GoodHold {
+            candidate,
+            x_wo: configured.placed.x_wo,
+            worth,
+            tip_o_m,
+        };
+        Ok(found.into_iter().map(good).collect())
     }
 
     /// True when this is a map of the scenario's kind of work.
@@ -121,8 +132,9 @@ impl WorkMap {
         self.origin == canonical(scenario)
     }
 
-    /// The good holds made to fit the problem's operation, those worth most that keep every constraint first, so many at
-    /// most.
+    /// The good holds made to fit the problem's operation, the most promising that keep every constraint first, so many at
+    /// most. What promises much is worth much as it was made to fit, and was where it was found: the former shows that it
+    /// fits, the latter what steps can make of it.
     pub(super) fn starts(&self, problem: &mut Problem<'_>, count: usize, tally: &mut Tally) -> Vec<Feasible> {
         let mut fitting = Vec::with_capacity(8 * self.good.len());
         for good in &self.good {
@@ -134,7 +146,8 @@ impl WorkMap {
                         continue;
                     };
                     let configured = Configured::new(problem, &candidate);
-                    fitting.push((assess::comfort(problem, &candidate, &configured).objective, candidate));
+                    let worth = assess::comfort(problem, &candidate, &configured).objective;
+                    fitting.push((worth + good.worth, candidate));
                 }
             }
         }
@@ -189,8 +202,7 @@ fn turned(map: &RobotMap, hold: &KnownHold, quarters: usize) -> Option<KnownHold
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2 * quarters as f64);
     let x_wo = Isometry3::from_parts(hold.x_wo.translation, hold.x_wo.rotation * turn);
     let holds = hold.holds.iter().map(|Hold { grasp, q_rad }| {
-        let place = Edge::ALL.iter().position(|edge| *edge == grasp.edge).unwrap_or(0);
-        let edge = Edge::ALL[(place + Edge::ALL.len() - quarters) % Edge::ALL.len()];
+        let edge = grasp.edge.turned(Edge::ALL.len() - quarters);
         let half_m = |edge: Edge| edge.reach_and_half_length_m(map.size_m).1;
         let along_m = grasp.along_m * half_m(edge) / half_m(grasp.edge);
         Hold { grasp: EdgeGrasp { edge, along_m, ..*grasp }, q_rad: q_rad.clone() }
@@ -211,21 +223,24 @@ fn follow(map: &RobotMap, holds: &mut [Hold], x_wo: &Pose) -> bool {
     })
 }
 
-/// So many of the holds, the best first, of which no two hold the same edges the same way with nearly the same comfort.
-fn distinct(found: Vec<Feasible>, count: usize) -> Vec<Feasible> {
+/// The best holds that differ: but for a turn of the board, at most [`KEPT_OF_A_KIND`] hold the same edges the same way,
+/// and those differ in what they are worth.
+fn distinct(found: Vec<Feasible>) -> Vec<Feasible> {
     /// Holds of a kind whose worth differs by less than this share are taken for one that was climbed to twice.
     const SAME: f64 = 1e-3;
-    let mut kept: Vec<Feasible> = Vec::with_capacity(count);
+    let mut kept: Vec<(Feasible, HoldKind)> = Vec::with_capacity(KEPT);
     for hold in found {
-        let same = |other: &Feasible| {
-            (other.worth - hold.worth).abs() < SAME * hold.worth.abs()
-                && other.candidate.kind() == hold.candidate.kind()
-        };
-        if kept.len() < count && !kept.iter().any(same) {
-            kept.push(hold);
+        if kept.len() == KEPT {
+            break;
+        }
+        let kind = hold.candidate.kind_unturned();
+        let mut alike = kept.iter().filter(|(_, other)| *other == kind);
+        let known = |(other, _): &(Feasible, _)| (other.worth - hold.worth).abs() < SAME * hold.worth.abs();
+        if alike.clone().count() < KEPT_OF_A_KIND && !alike.any(known) {
+            kept.push((hold, kind));
         }
     }
-    kept
+    kept.into_iter().map(|(hold, _)| hold).collect()
 }
 
 /// True when two scenarios are of one kind of work: one [`WorkMap`] serves both.

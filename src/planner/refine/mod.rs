@@ -20,7 +20,7 @@ use super::{
     Problem,
     assess::{self, Feasible, Tally},
     candidate::Candidate,
-    effort::Effort,
+    effort::Heat,
 };
 use linear::Linear;
 use program::{Row, best_move};
@@ -40,9 +40,9 @@ const RESTORING_MOVES: usize = 4;
 const CORRECTIONS: usize = 2;
 
 /// What steps lead to from the starts, the best first.
-pub fn refine(problem: &mut Problem<'_>, starts: Vec<Feasible>, effort: &Effort, tally: &mut Tally) -> Vec<Feasible> {
+pub fn refine(problem: &mut Problem<'_>, starts: Vec<Feasible>, heats: &[Heat], tally: &mut Tally) -> Vec<Feasible> {
     let mut climbs: Vec<_> = starts.into_iter().map(|start| Climb::new(problem, start)).collect();
-    for heat in &effort.heats {
+    for heat in heats {
         for climb in climbs.iter_mut().take(heat.climbs) {
             climb.run(problem, heat.steps, tally);
         }

@@ -268,7 +268,7 @@ mod tests {
             let map = RobotMap::new(&loaded.robot, loaded.scenario.object.size_m);
             let mut problem = Problem::new(&loaded.scenario, &map, Watch::unseen()).unwrap();
             let mut tally = Tally::new(Count::of_at_most(None));
-            let starts = propose::best_candidates(&mut problem, &Effort::of(Budget::Fast), &mut tally);
+            let starts = propose::best_candidates(&mut problem, &map.bank, &Effort::of(Budget::Fast), &mut tally);
             assert!(starts.len() > 2);
             starts.iter().for_each(|start| compare(&problem, start));
         }
