@@ -367,6 +367,30 @@ fn a_saturation_at_no_distance() {
     );
 }
 
+#[test]
+fn a_normalised_objective_that_is_none() {
+    for (keys, message) in [
+        (
+            "peripersonal_share = 1.5",
+            "bad.toml:13: comfort.peripersonal_share: found 1.5, expected a number from 0 to 1 (a share)",
+        ),
+        (
+            "optima = { muscular_regularised = 60.0, peripersonal_m = 1.2 }",
+            "bad.toml:13: comfort.optima: found a value, expected none: it belongs to comfort.peripersonal_share",
+        ),
+        (
+            "weight_muscular = 2.0\nperipersonal_share = 0.5",
+            "bad.toml:13: comfort.weight_muscular: found a weight beside comfort.peripersonal_share, expected one or the other",
+        ),
+        (
+            "peripersonal_share = 0.5\noptima = { muscular_regularised = 0.0, peripersonal_m = 1.2 }",
+            "bad.toml:14: comfort.optima.muscular_regularised: found 0, expected a positive number (a comfort)",
+        ),
+    ] {
+        assert_scenario_refused("[grip]", &format!("[comfort]\n{keys}\n\n[grip]"), message);
+    }
+}
+
 /// A scenario with this `[load]` or `[uncertainty]` is refused with exactly this message; line 16 is the section's.
 #[track_caller]
 fn assert_section_refused(section: &str, message: &str) {

@@ -178,6 +178,37 @@ fn more_weight_on_a_comfort_gives_more_of_it() {
     assert!(peripersonal.peripersonal_m > muscular.peripersonal_m);
 }
 
+/// A normalised objective is over what the planners of either comfort alone reach; the plan carries that, so that it can be
+/// checked by itself.
+#[test]
+fn a_normalised_objective_is_over_what_either_comfort_alone_reaches() {
+    let (mut scenario, robot) = load("cut-rim");
+    scenario.planner.budget = Budget::Fast;
+    let map = RobotMap::new(&robot, scenario.object.size_m);
+    let plan = |scenario: &Scenario| match planner::plan_on(scenario, &map).unwrap() {
+        PlanOutcome::Found(plan) => *plan,
+        PlanOutcome::Infeasible(why) => panic!("{why}"),
+    };
+    let alone = [PlannerKind::Muscular, PlannerKind::Peripersonal].map(|kind| plan(&with_kind(&scenario, kind)));
+    let [muscular, peripersonal] = alone.map(|plan| plan.comfort.unwrap());
+    scenario.comfort.peripersonal_share = Some(0.4);
+    let normalised = plan(&scenario);
+    let used = normalised.scenario.clone().unwrap();
+    let optima = used.comfort.optima.unwrap();
+    // The same searches; a weight other than 1 only scales what they maximise.
+    assert!((optima.muscular_regularised / muscular.muscular_regularised - 1.0).abs() < 1e-6);
+    assert!((optima.peripersonal_m / peripersonal.peripersonal_m - 1.0).abs() < 1e-6);
+    let comfort = normalised.comfort.unwrap();
+    let shares =
+        [comfort.muscular_regularised / optima.muscular_regularised, comfort.peripersonal_m / optima.peripersonal_m];
+    assert!((comfort.objective - (60.0 * shares[0] + 40.0 * shares[1])).abs() < 1e-9);
+    assert_eq!(planner::verify(&normalised, &used, &robot).unwrap(), []);
+    // Given what it is over, the plan is the same.
+    let mut again = plan(&used);
+    again.planner = normalised.planner;
+    assert_eq!(serde_json::to_string(&again).unwrap(), serde_json::to_string(&normalised).unwrap());
+}
+
 #[test]
 fn a_load_beyond_anyones_strength_is_infeasible_and_says_so() {
     let (mut scenario, robot) = load("quickstart");

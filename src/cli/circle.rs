@@ -7,7 +7,7 @@ use super::{
     interrupt,
     maps::Maps,
     output,
-    plan::{to_be_planned, until_interrupted},
+    plan::{infeasible, to_be_planned, until_interrupted},
 };
 use crate::{
     human::HumanError,
@@ -16,7 +16,7 @@ use crate::{
         scenario::{PersonAnswer, Scenario},
     },
     planner::{
-        RobotMap,
+        self, Infeasible, RobotMap,
         circle::{self, Continuous, MotionStep, PlansByPoint},
     },
     report,
@@ -29,11 +29,14 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     args.search.apply(&mut loaded.scenario.planner);
     // Of three ways to hold the best answers are compared; the mean of all would take minutes for each.
     loaded.scenario.comfort.person = PersonAnswer::Most;
-    let points = circle::points(&loaded.scenario).unwrap_or_default();
     report::file::check_folder(&args.out)?;
     interrupt::listen("what was found of the circle is written")?;
     let size_m = loaded.scenario.object.size_m;
-    let (ways, motions) = Maps::default().with(&loaded.robot, size_m, |map, _| three_ways(&points, map))?;
+    let found = Maps::default().with(&loaded.robot, size_m, |map, _| three_ways(&loaded.scenario, map))?;
+    let (ways, motions) = match found {
+        Ok(found) => found,
+        Err(why) => return Ok(infeasible(&loaded, &why)),
+    };
     for (name, plans) in &ways {
         for (index, plan) in plans.iter().enumerate() {
             let path = args.out.join(format!("{name}-{}.json", index + 1));
@@ -66,8 +69,16 @@ fn joints(plan: &Plan) -> Vec<String> {
 
 type Ways = Vec<(&'static str, PlansByPoint)>;
 
-fn three_ways(points: &[Scenario], map: &RobotMap) -> Result<(Ways, Vec<Vec<MotionStep>>), HumanError> {
-    let Continuous { hold, sequence, motions } = circle::continuous(points, map, &mut until_interrupted)?;
-    let separate = circle::separate(points, map, &mut until_interrupted)?;
-    Ok((vec![("hold", hold), ("sequence", sequence), ("separate", separate)], motions))
+fn three_ways(
+    scenario: &Scenario,
+    map: &RobotMap,
+) -> Result<Result<(Ways, Vec<Vec<MotionStep>>), Infeasible>, HumanError> {
+    // The optima of one cut are good enough for all, and make them comparable.
+    let points = match planner::with_optima(scenario, map)? {
+        Ok(scenario) => circle::points(&scenario).unwrap_or_default(),
+        Err(why) => return Ok(Err(why)),
+    };
+    let Continuous { hold, sequence, motions } = circle::continuous(&points, map, &mut until_interrupted)?;
+    let separate = circle::separate(&points, map, &mut until_interrupted)?;
+    Ok(Ok((vec![("hold", hold), ("sequence", sequence), ("separate", separate)], motions)))
 }

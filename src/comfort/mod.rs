@@ -78,9 +78,10 @@ pub fn of_posture(
     }
 }
 
-/// The weighted sum of both comforts, `w_M muscular + w_P peripersonal`.
+/// The weighted sum of both comforts, `w_M muscular + w_P peripersonal`, by the weights of either form of the objective.
 fn objective(settings: &ComfortSettings, muscular_regularised: f64, peripersonal_m: f64) -> f64 {
-    settings.weight_muscular * muscular_regularised + settings.weight_peripersonal * peripersonal_m
+    let [weight_muscular, weight_peripersonal] = settings.weights();
+    weight_muscular * muscular_regularised + weight_peripersonal * peripersonal_m
 }
 
 /// A comfort with the objective of other weights: of the mean, where it has one.

@@ -133,8 +133,8 @@ pub struct Comfort {
     /// paper's captions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peripersonal_scaled: Option<f64>,
-    /// `weight_muscular muscular_regularised + weight_peripersonal peripersonal_m`, of this posture; with
-    /// `comfort.person = "average"`, of `average`.
+    /// `weight_muscular muscular_regularised + weight_peripersonal peripersonal_m`, or the normalised objective where
+    /// `comfort.peripersonal_share` asks for it; of this posture or, with `comfort.person = "average"`, of `average`.
     pub objective: f64,
     /// Torque over strength of each joint of the working arm.
     pub activations: [f64; 7],

@@ -221,6 +221,41 @@ pub struct ComfortSettings {
     pub weight_muscular: f64,
     /// Weight of the peripersonal comfort, 1/m.
     pub weight_peripersonal: f64,
+    /// In place of the two weights: the share `s` of the peripersonal comfort, from 0 to 1, in the normalised objective
+    /// `100 ((1 - s) muscular_regularised / optima.muscular_regularised + s peripersonal_m / optima.peripersonal_m)`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peripersonal_share: Option<f64>,
+    /// What the comforts are over in the normalised objective. Unless given, the planner `comfort` finds it: what the
+    /// planners of either comfort alone reach. For the other planners, which do not look at it, 100 and 1 m stand in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub optima: Option<Optima>,
+}
+
+/// The best of each comfort that can be had when the other does not count.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Optima {
+    /// `1 / (||alpha||^2 + 0.01)`.
+    pub muscular_regularised: f64,
+    /// The peripersonal metric, m.
+    pub peripersonal_m: f64,
+}
+
+impl Optima {
+    /// Stands in where optima are not known: the bound of the muscular comfort, and 1 m.
+    const UNKNOWN: Self = Self { muscular_regularised: 100.0, peripersonal_m: 1.0 };
+}
+
+impl ComfortSettings {
+    /// The weights of the regularised muscular comfort and of the peripersonal one (1/m) in the objective, which is their
+    /// weighted sum in either form.
+    pub fn weights(&self) -> [f64; 2] {
+        let Some(share) = self.peripersonal_share else { return [self.weight_muscular, self.weight_peripersonal] };
+        let Optima { muscular_regularised, peripersonal_m } = self.optima.unwrap_or(Optima::UNKNOWN);
+        // A comfort whose best is nothing cannot be weighed by it.
+        let over = |share: f64, best: f64| if best > 0.0 { 100.0 * share / best } else { 0.0 };
+        [over(1.0 - share, muscular_regularised), over(share, peripersonal_m)]
+    }
 }
 
 impl Default for ComfortSettings {
@@ -233,6 +268,8 @@ impl Default for ComfortSettings {
             direction: StrengthDirection::Paper,
             weight_muscular: 1.0,
             weight_peripersonal: 64.0,
+            peripersonal_share: None,
+            optima: None,
         }
     }
 }
@@ -255,8 +292,17 @@ impl PlannerKind {
     /// All planners, in the order of the paper's table.
     pub const ALL: [Self; 4] = [Self::Comfort, Self::Peripersonal, Self::Muscular, Self::Random];
 
-    /// The comfort that this planner maximises: `settings` with the weight of what it does not look at set to zero.
+    /// The comfort that this planner maximises: `settings` as a weighted sum, with the weight of what it does not look at
+    /// set to zero.
     pub fn objective(self, settings: ComfortSettings) -> ComfortSettings {
+        let [weight_muscular, weight_peripersonal] = settings.weights();
+        let settings = ComfortSettings {
+            weight_muscular,
+            weight_peripersonal,
+            peripersonal_share: None,
+            optima: None,
+            ..settings
+        };
         match self {
             Self::Comfort | Self::Random => settings,
             Self::Muscular => ComfortSettings { weight_peripersonal: 0.0, ..settings },
@@ -410,5 +456,38 @@ pub struct Expectation {
 impl Default for Expectation {
     fn default() -> Self {
         Self { verdict: VerdictKind::Holds }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_normalised_objective_is_a_hundred_at_both_optima_and_splits_by_its_share() {
+        let optima = Some(Optima { muscular_regularised: 62.0, peripersonal_m: 1.25 });
+        let with = |share| ComfortSettings { peripersonal_share: Some(share), optima, ..ComfortSettings::default() };
+        for share in [0.0, 0.25, 1.0] {
+            let [muscular, peripersonal] = with(share).weights();
+            let rounding = 1e-12;
+            assert!((muscular * 62.0 - 100.0 * (1.0 - share)).abs() < rounding);
+            assert!((peripersonal * 1.25 - 100.0 * share).abs() < rounding);
+        }
+        // Where optima are not known, the bound of the muscular comfort and 1 m.
+        let unknown = ComfortSettings { optima: None, ..with(0.25) };
+        assert_eq!(unknown.weights(), [0.75, 25.0]);
+        assert_eq!(ComfortSettings::default().weights(), [1.0, 64.0]);
+    }
+
+    #[test]
+    fn a_planner_of_one_comfort_has_the_weight_of_its_own_alone() {
+        let settings = ComfortSettings { peripersonal_share: Some(0.25), ..ComfortSettings::default() };
+        for (kind, weights) in [
+            (PlannerKind::Comfort, [0.75, 25.0]),
+            (PlannerKind::Muscular, [0.75, 0.0]),
+            (PlannerKind::Peripersonal, [0.0, 25.0]),
+        ] {
+            assert_eq!(kind.objective(settings).weights(), weights, "{kind}");
+        }
     }
 }

@@ -8,14 +8,14 @@
 
 use super::{
     Count, Effort, Feasible, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, WorkMap, assemble, assess, propose,
-    refine, verify,
+    refine, verify, with_optima,
 };
 use crate::{
     comfort,
     human::HumanError,
     model::{
         plan::{Comfort, Plan},
-        scenario::{ComfortSettings, PersonAnswer, PlannerKind, PlannerSettings, Scenario},
+        scenario::{ComfortSettings, Optima, PersonAnswer, PlannerKind, PlannerSettings, Scenario},
     },
 };
 
@@ -74,7 +74,12 @@ pub enum FrontOutcome {
 /// # Errors
 /// As [`super::plan`].
 pub fn front(scenario: &Scenario, map: &RobotMap, onlooker: &mut Onlooker<'_>) -> Result<FrontOutcome, HumanError> {
-    let own = weighted(scenario, [scenario.comfort.weight_muscular, scenario.comfort.weight_peripersonal]);
+    let resolved = match with_optima(scenario, map)? {
+        Ok(scenario) => scenario,
+        Err(why) => return Ok(FrontOutcome::Infeasible(why)),
+    };
+    let scenario = &resolved;
+    let own = weighted(scenario, scenario.comfort.weights());
     let work = WorkMap::new(&own, map)?;
     let mut sweep = Sweep { map, work: &work, pool: Vec::new(), infeasible: None };
     let alone = [[1.0, 0.0], [0.0, 1.0]].map(|weights| weighted(scenario, weights));
@@ -105,7 +110,14 @@ pub fn front(scenario: &Scenario, map: &RobotMap, onlooker: &mut Onlooker<'_>) -
 fn weighted(scenario: &Scenario, [weight_muscular, weight_peripersonal]: [f64; 2]) -> Scenario {
     let person = PersonAnswer::Most;
     Scenario {
-        comfort: ComfortSettings { person, weight_muscular, weight_peripersonal, ..scenario.comfort },
+        comfort: ComfortSettings {
+            person,
+            weight_muscular,
+            weight_peripersonal,
+            peripersonal_share: None,
+            optima: None,
+            ..scenario.comfort
+        },
         planner: PlannerSettings { kind: PlannerKind::Comfort, ..scenario.planner.clone() },
         ..scenario.clone()
     }
@@ -115,12 +127,10 @@ fn is_alone(scenario: &Scenario) -> bool {
     scenario.comfort.weight_muscular == 0.0 || scenario.comfort.weight_peripersonal == 0.0
 }
 
-/// Weights of the comforts, each over its own optimum; the larger of the two parts counts up to 100, like the muscular
-/// comfort itself.
-fn normalised(share: f64, optima: [f64; 2]) -> [f64; 2] {
-    // A comfort whose best is nothing cannot be weighed by it.
-    let over = |part: f64, best: f64| if best > 0.0 { 100.0 * part / best } else { 0.0 };
-    [over(1.0 - share, optima[0]), over(share, optima[1])]
+/// The weights of the normalised objective.
+fn normalised(share: f64, [muscular_regularised, peripersonal_m]: [f64; 2]) -> [f64; 2] {
+    let optima = Some(Optima { muscular_regularised, peripersonal_m });
+    ComfortSettings { peripersonal_share: Some(share), optima, ..ComfortSettings::default() }.weights()
 }
 
 /// The share of the peripersonal comfort in a scenario's weights, by what each counts at its optimum.

@@ -4,7 +4,8 @@
 //! comfortable the person's postures are, by what they ask of the board's pose. Exact kinematics, collisions and stability
 //! dispose of their best pairs, cheap tests first; sequential quadratic steps refine what is left, stability included. So a
 //! kind of work is practised in a few places on the board ([`WorkMap`], made once for all others), and a plan begins with
-//! what was good there, made to fit. The random planner draws instead. With `comfort.person = "average"` the best of the
+//! what was good there, made to fit. The random planner draws instead. A normalised objective has the planners of either
+//! comfort alone say first what the comforts are over. With `comfort.person = "average"` the best of the
 //! holds found are ranked by the mean comfort of all answers to them. Every plan is checked from scratch before it is
 //! returned.
 //!
@@ -19,6 +20,7 @@ pub mod circle;
 mod effort;
 mod focus;
 mod front;
+mod optima;
 mod person_map;
 mod propose;
 mod random;
@@ -49,6 +51,7 @@ use assess::{Configured, Feasible, Rejection, Tally};
 use candidate::{Candidate, Placed};
 use effort::Effort;
 pub use front::{Front, FrontOutcome, FrontPoint, front};
+pub use optima::with_optima;
 use person_map::PersonMap;
 pub use robot_map::RobotMap;
 pub use top::{TopOutcome, differ, top};
@@ -152,6 +155,17 @@ pub fn plan_with<'a>(
     if !work.serves(scenario) {
         return plan_until(scenario, map, onlooker);
     }
+    let normalised;
+    let scenario = match &work.alone {
+        Some(alone) => match optima::found(scenario, map, alone)? {
+            Ok(found) => {
+                normalised = found;
+                &normalised
+            }
+            Err(why) => return Ok(PlanOutcome::Infeasible(why)),
+        },
+        None => scenario,
+    };
     let count = Count::of_at_most(scenario.planner.evaluations);
     let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;
     problem.person = work.person.as_ref();

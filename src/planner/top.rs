@@ -1,6 +1,9 @@
 //! Several good holds that differ, for somebody who wants a choice.
 
-use super::{Count, Effort, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, WorkMap, assemble, search, verify};
+use super::{
+    Count, Effort, Infeasible, Onlooker, Problem, RobotMap, Tally, Watch, WorkMap, assemble, search, verify,
+    with_optima,
+};
 use crate::{
     human::HumanError,
     model::{
@@ -54,6 +57,11 @@ pub fn top<'a>(
     wanted: usize,
     onlooker: &'a mut Onlooker<'a>,
 ) -> Result<TopOutcome, HumanError> {
+    let normalised = match with_optima(scenario, map)? {
+        Ok(scenario) => scenario,
+        Err(why) => return Ok(TopOutcome::Infeasible(why)),
+    };
+    let scenario = &normalised;
     let work = WorkMap::new(scenario, map)?;
     let count = Count::of_at_most(scenario.planner.evaluations);
     let mut problem = Problem::new(scenario, map, Watch::new(count.clone(), onlooker))?;

@@ -20,7 +20,7 @@ use super::{
     bank::{BankedHold, KnownHold},
     candidate::{Candidate, Hold, HoldKind},
     effort::Practice,
-    focus,
+    focus, optima,
     person_map::PersonMap,
     propose, refine, wrench_t,
 };
@@ -30,7 +30,7 @@ use crate::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
         operation::Operation,
-        scenario::{PlannerKind, PlannerSettings, Scenario},
+        scenario::{Optima, PlannerKind, PlannerSettings, Scenario},
         wrench::Wrench,
     },
 };
@@ -56,6 +56,8 @@ const LEVEL: f64 = 1e-3;
 pub struct WorkMap {
     /// The scenario without what it may differ in.
     origin: Scenario,
+    /// The maps of the planners of either comfort alone, where a normalised objective asks for what they reach.
+    pub(super) alone: Option<Box<[WorkMap; 2]>>,
     /// None for the random planner, which looks at no map of the person.
     pub(super) person: Option<PersonMap>,
     good: Vec<GoodHold>,
@@ -79,13 +81,18 @@ impl WorkMap {
     /// When the scenario's person or tool is none.
     pub fn new(scenario: &Scenario, map: &RobotMap) -> Result<Self, HumanError> {
         let origin = canonical(scenario);
+        let alone = if optima::are_missing(&origin) { Some(Box::new(optima::maps(&origin, map)?)) } else { None };
+        let aim = match alone.as_deref().and_then(best_practised) {
+            Some(optima) => optima::with(&origin, optima),
+            None => origin.clone(),
+        };
         let human = Human::new(&origin.human, &origin.tool)?;
         if scenario.planner.kind == PlannerKind::Random {
-            return Ok(Self { person: None, good: Vec::new(), origin });
+            return Ok(Self { person: None, good: Vec::new(), origin, alone });
         }
-        let mut work = Self { person: Some(PersonMap::of(&origin, &human)), good: Vec::new(), origin };
+        let mut work = Self { person: Some(PersonMap::of(&aim, &human)), good: Vec::new(), origin, alone };
         let Some(practice) = Practice::of(scenario.planner.budget) else { return Ok(work) };
-        let operations = practised(&work.origin);
+        let operations = practised(&aim);
         for pass in 0..practice.passes {
             let focus;
             let (bank, effort) = if pass == 0 {
@@ -161,6 +168,13 @@ impl WorkMap {
         }
         kept
     }
+}
+
+/// The most that practice found of either comfort alone.
+fn best_practised(maps: &[WorkMap; 2]) -> Option<Optima> {
+    let best = |work: &WorkMap| work.good.iter().map(|good| good.worth).max_by(f64::total_cmp);
+    let [muscular, peripersonal] = maps;
+    Some(Optima { muscular_regularised: best(muscular)?, peripersonal_m: best(peripersonal)? })
 }
 
 impl GoodHold {

@@ -170,7 +170,21 @@ fn comfort(check: &Checker<'_>, comfort: &ComfortSettings) -> Result<(), InputEr
         check.positive("comfort.saturation_m", saturation_m, "m")?;
     }
     check.not_negative("comfort.weight_muscular", comfort.weight_muscular, "a weight")?;
-    check.not_negative("comfort.weight_peripersonal", comfort.weight_peripersonal, "a weight in 1/m")
+    check.not_negative("comfort.weight_peripersonal", comfort.weight_peripersonal, "a weight in 1/m")?;
+    let Some(share) = comfort.peripersonal_share else {
+        return check.absent("comfort.optima", comfort.optima.is_some(), "comfort.peripersonal_share");
+    };
+    check.within("comfort.peripersonal_share", share, 0.0, 1.0, "a share")?;
+    let as_it_is = ComfortSettings::default();
+    for (key, weight, unchanged) in [
+        ("comfort.weight_muscular", comfort.weight_muscular, as_it_is.weight_muscular),
+        ("comfort.weight_peripersonal", comfort.weight_peripersonal, as_it_is.weight_peripersonal),
+    ] {
+        check.that(weight == unchanged, key, "a weight beside comfort.peripersonal_share", "one or the other")?;
+    }
+    let Some(optima) = comfort.optima else { return Ok(()) };
+    check.positive("comfort.optima.muscular_regularised", optima.muscular_regularised, "a comfort")?;
+    check.positive("comfort.optima.peripersonal_m", optima.peripersonal_m, "m")
 }
 
 fn simulation(check: &Checker<'_>, settings: &SimulationSettings) -> Result<(), InputError> {

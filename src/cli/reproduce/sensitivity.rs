@@ -36,7 +36,7 @@ const LONGER_M: f64 = 0.05;
 const TILT_DEG: f64 = 30.0;
 
 /// All of them.
-pub const VARIANTS: [VariantOf; 9] = [
+pub const VARIANTS: [VariantOf; 10] = [
     VariantOf {
         name: "the mean of the person's answers in place of the best",
         change: |scenario| scenario.comfort.person = PersonAnswer::Average,
@@ -48,6 +48,10 @@ pub const VARIANTS: [VariantOf; 9] = [
         change: |scenario| scenario.comfort.weight_peripersonal = 16.0,
     },
     VariantOf { name: "peripersonal weight 256", change: |scenario| scenario.comfort.weight_peripersonal = 256.0 },
+    VariantOf {
+        name: "each comfort over its own optimum in equal shares",
+        change: |scenario| scenario.comfort.peripersonal_share = Some(0.5),
+    },
     VariantOf { name: "tool 5 cm longer", change: lengthen_tool },
     VariantOf { name: "tool tilted by 30 degrees in the hand", change: tilt_tool },
     VariantOf {
