@@ -68,11 +68,9 @@ fn joints(plan: &Plan) -> Vec<String> {
 }
 
 type Ways = Vec<(&'static str, PlansByPoint)>;
+type Motions = Vec<Vec<MotionStep>>;
 
-fn three_ways(
-    scenario: &Scenario,
-    map: &RobotMap,
-) -> Result<Result<(Ways, Vec<Vec<MotionStep>>), Infeasible>, HumanError> {
+fn three_ways(scenario: &Scenario, map: &RobotMap) -> Result<Result<(Ways, Motions), Infeasible>, HumanError> {
     // The optima of one cut are good enough for all, and make them comparable.
     let points = match planner::with_optima(scenario, map)? {
         Ok(scenario) => circle::points(&scenario).unwrap_or_default(),

@@ -21,7 +21,9 @@ pub struct Effort {
     pub known_starts: usize,
     /// The heats where such starts are all there is; none when proposals are climbed from too.
     pub known_heats: Option<Vec<Heat>>,
-    /// Holds that the search for a whole circle climbs from, and the steps of each climb.
+    /// Places in which the search for a whole circle holds good boards anew.
+    pub circle_places: usize,
+    /// Holds that it climbs from, and the steps of each climb.
     pub circle_climbs: usize,
     pub circle_steps: usize,
 }
@@ -53,6 +55,7 @@ impl Effort {
                 heats: heats(&[[8, 6], [3, 10], [1, 20]]),
                 known_starts: 0,
                 known_heats: None,
+                circle_places: 200,
                 circle_climbs: 1,
                 circle_steps: 25,
             },
@@ -65,6 +68,7 @@ impl Effort {
                 heats: heats(&[[24, 6], [12, 8], [2, 25]]),
                 known_starts: 10,
                 known_heats: Some(heats(&[[10, 4], [4, 8], [1, 25]])),
+                circle_places: 2_000,
                 circle_climbs: 3,
                 circle_steps: 30,
             },
@@ -77,6 +81,7 @@ impl Effort {
                 heats: heats(&[[440, 40], [60, 100]]),
                 known_starts: 40,
                 known_heats: None,
+                circle_places: 10_000,
                 circle_climbs: 60,
                 circle_steps: 100,
             },

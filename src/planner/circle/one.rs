@@ -1,16 +1,18 @@
 //! One hold for the whole circle: as many points as can be, and then the worst of them as comfortable as can be.
 //!
-//! Every hold of the robot's bank is valued at all points by the person's map; the most promising are rated exactly; the
-//! best few of them climb by random steps of board, grasps and elbows that shrink while none is better. That is a local
-//! search from a few starts: it does not prove that no hold serves more points or serves them better.
+//! Every hold of the robot's bank is valued at all points by the person's map, the best of them by what they stand, too;
+//! boards that lean like theirs are held anew in other places. The most promising of both are rated exactly; the best few
+//! of them climb by random steps of board, grasps and elbows that shrink while none is better. That is a local search from
+//! a few starts: it does not prove that no hold serves more points or serves them better.
 
 use nalgebra::Vector3;
 
 use super::{
     super::{
         Onlooker, assess,
-        bank::KnownHold,
+        bank::{BankedHold, KnownHold},
         candidate::Hold,
+        focus,
         propose::{ANGLE_RAD, DEPTH_M, uniform},
     },
     serve::{Circle, Score, Served, nudged},
@@ -19,6 +21,8 @@ use crate::comfort::Answer;
 
 /// Holds of the bank that are rated exactly for each start of a plan's search.
 const RATED_A_START: usize = 4;
+/// Boards of the best guesses that are held anew in other places.
+const BOARDS: usize = 80;
 /// Random steps of a climb for each last step of a plan's search.
 const TRIES_A_STEP: usize = 8;
 /// The largest step: shift of the board, m, and its turn, rad.
@@ -40,14 +44,17 @@ pub fn holds(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served
     climbed
 }
 
-/// The holds of the bank that serve the circle best, rated exactly, the best first.
+/// Holds that serve the circle best, rated exactly, the best first: of the bank, and of boards that lean like the best of
+/// the bank wherever they may be.
 fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served> {
-    let map = circle.map;
-    let rough = |hold: &'_ KnownHold| Score::of(circle.estimates(hold).into_iter());
-    let mut holds: Vec<_> = map.bank.iter().map(|banked| (rough(&banked.hold), &banked.hold)).collect();
-    holds.sort_by(|a, b| a.0.order(&b.0));
+    let (map, places) = (circle.map, circle.effort.circle_places);
+    let mut guessed = best_guesses(circle, map.bank.iter(), places / 2, onlooker);
+    let boards: Vec<_> = guessed.iter().take(BOARDS).map(|(_, hold)| hold.x_wo).collect();
+    let focus = focus::holds(map, &boards, places, [circle.seed(), 0]);
+    guessed.extend(best_guesses(circle, focus.iter(), places, onlooker));
+    guessed.sort_by(|a, b| a.0.order(&b.0));
     let mut served = Vec::new();
-    for (_, hold) in holds.into_iter().take(RATED_A_START * circle.effort.starts) {
+    for (_, hold) in guessed.into_iter().take(RATED_A_START * circle.effort.starts) {
         if circle.is_stopped(onlooker) {
             break;
         }
@@ -57,6 +64,28 @@ fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served
     served.retain(|served| served.score.served > 0);
     served.sort_by(|a, b| a.score.order(&b.score));
     served
+}
+
+/// Of some holds those that look best by the person's map, so many, ordered by that and by what they stand: that costs a
+/// hundred times as much.
+fn best_guesses<'b>(
+    circle: &mut Circle<'_>,
+    holds: impl Iterator<Item = &'b BankedHold>,
+    count: usize,
+    onlooker: &mut Onlooker<'_>,
+) -> Vec<(Score, &'b KnownHold)> {
+    let rough = |banked: &'b BankedHold| (Score::of(circle.estimates(&banked.hold).into_iter()), &banked.hold);
+    let mut guessed: Vec<_> = holds.map(rough).collect();
+    guessed.sort_by(|a, b| a.0.order(&b.0));
+    guessed.truncate(count);
+    for (score, hold) in &mut guessed {
+        if circle.is_stopped(onlooker) {
+            break;
+        }
+        *score = Score::of(circle.stable_estimates(hold).into_iter());
+    }
+    guessed.sort_by(|a, b| a.0.order(&b.0));
+    guessed
 }
 
 fn climb(circle: &mut Circle<'_>, mut here: Served, onlooker: &mut Onlooker<'_>) -> Served {

@@ -63,6 +63,18 @@ impl<'a> Circle<'a> {
         (0..self.problems.len()).map(best).collect()
     }
 
+    /// As [`Circle::estimates`], minus infinity also where the hold does not stand the point's cut.
+    pub fn stable_estimates(&mut self, hold: &KnownHold) -> Vec<f64> {
+        let mut estimates = self.estimates(hold);
+        let candidate = candidate(hold, None);
+        for (problem, estimate) in self.problems.iter_mut().zip(&mut estimates) {
+            if estimate.is_finite() && assess::utilisation(problem, &candidate, &hold.x_wo) > 1.0 {
+                *estimate = f64::NEG_INFINITY;
+            }
+        }
+        estimates
+    }
+
     /// Postures that nearly answer a hold at a point, the best first.
     fn guesses(&self, hold: &KnownHold, point: usize, robot_points_w: &[Point3<f64>]) -> Vec<Guess> {
         let problem = &self.problems[point];
@@ -147,6 +159,11 @@ impl<'a> Circle<'a> {
         let placed = Placed { x_wo: hold.x_wo, x_wb: answer.x_wb };
         let Some(plan) = assemble_placed(problem, &candidate, &placed, &comfort, evaluations) else { return Ok(None) };
         Ok(verify(&plan, problem.scenario, &self.map.robot)?.is_empty().then_some(plan))
+    }
+
+    /// The search's seed.
+    pub fn seed(&self) -> u64 {
+        self.problems.first().map_or(0, |problem| problem.scenario.planner.seed)
     }
 
     /// How many points there are.
