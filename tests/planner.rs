@@ -6,7 +6,7 @@ use benchdog::{
     model::{
         operation::Operation,
         plan::Plan,
-        scenario::{Budget, PlannerKind, Scenario, StabilityKind},
+        scenario::{Budget, Optima, PlannerKind, Scenario, StabilityKind},
     },
     planner::{self, PlanOutcome, RobotMap, WorkMap},
     robot::Robot,
@@ -117,15 +117,17 @@ fn a_default_search_comes_near_the_best_that_is_known() {
     let (scenario, robot) = load("cut-rim");
     let map = RobotMap::new(&robot, scenario.object.size_m);
     let [_, _, thickness_m] = scenario.object.size_m;
-    for (angle_deg, best_known) in [(0.0_f64, 138.8), (180.0, 138.8), (157.5, 142.2), (270.0, 140.8)] {
+    for (angle_deg, best_known, least) in
+        [(0.0_f64, 138.8, 0.98), (180.0, 138.8, 0.98), (157.5, 142.2, 0.99), (270.0, 140.8, 0.98)]
+    {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         let mut scenario = scenario.clone();
         let direction_o = nalgebra::Vector3::new(-sin, cos, 0.0);
         scenario.operation = Operation::cut([0.12 * cos, 0.12 * sin], direction_o, 30.0, thickness_m);
         let PlanOutcome::Found(plan) = planner::plan_on(&scenario, &map).unwrap() else { panic!("no plan") };
         let share = plan.comfort.unwrap().objective / best_known;
-        // Single seeds were found between 0.984 and 1; at 157.5 degrees holds that are easier to find are worth 0.985.
-        assert!(share > 0.98, "at {angle_deg} degrees: {share}");
+        // Single seeds were found between 0.984 and 1. At 157.5 degrees holds that are easier to find are worth 0.985.
+        assert!(share > least, "at {angle_deg} degrees: {share}");
     }
 }
 
@@ -203,10 +205,10 @@ fn a_normalised_objective_is_over_what_either_comfort_alone_reaches() {
         [comfort.muscular_regularised / optima.muscular_regularised, comfort.peripersonal_m / optima.peripersonal_m];
     assert!((comfort.objective - (60.0 * shares[0] + 40.0 * shares[1])).abs() < 1e-9);
     assert_eq!(planner::verify(&normalised, &used, &robot).unwrap(), []);
-    // Given what it is over, the plan is the same.
-    let mut again = plan(&used);
-    again.planner = normalised.planner;
-    assert_eq!(serde_json::to_string(&again).unwrap(), serde_json::to_string(&normalised).unwrap());
+    // Optima that are given are taken as they are.
+    let given = Optima { muscular_regularised: 2.0 * optima.muscular_regularised, ..optima };
+    scenario.comfort.optima = Some(given);
+    assert_eq!(plan(&scenario).scenario.unwrap().comfort.optima, Some(given));
 }
 
 #[test]

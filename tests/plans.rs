@@ -169,6 +169,39 @@ fn the_front_is_non_dominated_and_ends_at_the_single_optima() {
     }
 }
 
+/// Practice serves the front and the best few as it serves a plan: neither loses what the planner itself finds.
+#[test]
+fn the_front_and_the_best_few_begin_from_practice_too() {
+    let mut scenario = fast("quickstart");
+    scenario.planner.budget = Budget::Default;
+    let alone = objective(&found(planner::plan_on(&scenario, &MAP).unwrap()));
+    let TopOutcome::Found(plans) = planner::top(&scenario, &MAP, 2, &mut planner::nobody).unwrap() else {
+        panic!("the quickstart has plans")
+    };
+    let FrontOutcome::Found(front) = planner::front(&scenario, &MAP, &mut planner::nobody).unwrap() else {
+        panic!("the quickstart has plans")
+    };
+    // The same starts in other heats: their climbs may end a few tenths of a percent apart.
+    for of in [objective(&plans[0]), objective(&front.own.plan)] {
+        assert!(of >= 0.995 * alone, "{of}, the planner alone finds {alone}");
+    }
+}
+
+#[test]
+fn a_front_marks_the_share_that_a_normalised_objective_asks_for() {
+    let mut scenario = fast("quickstart");
+    scenario.comfort.peripersonal_share = Some(0.3);
+    // The front is of both comforts, whatever planner the scenario names.
+    for kind in [PlannerKind::Comfort, PlannerKind::Muscular] {
+        scenario.planner.kind = kind;
+        let FrontOutcome::Found(front) = planner::front(&scenario, &MAP, &mut planner::nobody).unwrap() else {
+            panic!("the quickstart has plans")
+        };
+        // The sweep's own optima may be some hundredths better than those that the share was over.
+        assert!((front.own.share - 0.3).abs() < 0.02, "{kind}: {}", front.own.share);
+    }
+}
+
 /// Poses of the robot's links when its arms take these configurations.
 fn link_poses(q_rad: &[Vec<f64>], thickness_m: f64) -> Vec<Pose> {
     let states: Vec<_> = (0..q_rad.len())

@@ -115,6 +115,41 @@ fn the_table_is_the_mean_of_the_plans_over_the_mean_of_the_random_ones() {
     }
 }
 
+/// The most that was found of the objective: by the budget `exhaustive`, a hundred times the work, with two other seeds, and by
+/// whatever else was tried. Half a turn of the board makes one cut of another and one hole of another.
+const BEST_KNOWN: [(&str, &str, f64); 13] = [
+    ("cut-01", "cut-09", 138.837),
+    ("cut-02", "cut-10", 136.776),
+    ("cut-03", "cut-11", 137.398),
+    ("cut-04", "cut-12", 141.831),
+    ("cut-05", "cut-13", 140.826),
+    ("cut-06", "cut-14", 139.826),
+    ("cut-07", "cut-15", 141.748),
+    ("cut-08", "cut-16", 142.174),
+    ("drill-1", "drill-9", 180.989),
+    ("drill-2", "drill-8", 180.691),
+    ("drill-3", "drill-7", 180.940),
+    ("drill-4", "drill-6", 180.143),
+    ("drill-5", "drill-5", 180.436),
+];
+
+#[test]
+fn every_comfort_plan_is_near_the_best_that_is_known() {
+    let plans = plans();
+    for (one, other, best_known) in BEST_KNOWN {
+        for operation in [one, other] {
+            let of = |row: &BTreeMap<String, String>| row["operation"] == operation && row["planner"] == "comfort";
+            let objective = plans.figures("objective", of)[0];
+            assert!(objective >= 0.99 * best_known, "{operation}: {objective}, known {best_known}");
+            // What is better by more than rounding is to be written down here.
+            assert!(
+                objective <= 1.002 * best_known,
+                "{operation}: {objective} is better than the best known {best_known}"
+            );
+        }
+    }
+}
+
 /// The paper's table: the comfort planner has 11.19 of the muscular planner's 15.66 in cutting, 19.24 of 22.45 in drilling.
 const PAPERS_MUSCULAR_SHARE: [(&str, f64); 2] = [("cutting", 11.19 / 15.66), ("drilling", 19.24 / 22.45)];
 
@@ -124,10 +159,13 @@ fn the_comfort_planner_is_near_both_planners_of_one_comfort() {
     for (task, papers_share) in PAPERS_MUSCULAR_SHARE {
         let share = |column, planner| of(&table, task, "comfort", column) / of(&table, task, planner, column);
         let muscular = share("muscular", "muscular");
-        assert!(muscular >= papers_share, "{task}: {muscular} of the muscular planner's, in the paper {papers_share}");
-        // In the paper 2.08 of 2.09 and 2.55 of 2.51; ours gives up some hundredths for muscular comfort.
+        assert!(
+            muscular >= papers_share.max(0.9),
+            "{task}: {muscular} of the muscular planner's, in the paper {papers_share}"
+        );
+        // In the paper 2.08 of 2.09 and 2.55 of 2.51; ours gives up some hundredths for muscular comfort. Aimed at: 0.95.
         let peripersonal = share("peripersonal_scaled", "peripersonal");
-        assert!(peripersonal >= 0.9, "{task}: {peripersonal} of the peripersonal planner's");
+        assert!(peripersonal >= 0.95, "{task}: {peripersonal} of the peripersonal planner's");
     }
 }
 
@@ -144,8 +182,8 @@ fn a_planner_of_one_comfort_is_poor_in_the_other() {
             (gain("peripersonal", "muscular"), gain("muscular", "peripersonal_scaled"));
         assert!(of_muscular < 0.5, "{task}: the peripersonal planner gains {of_muscular} of muscular comfort");
         // In drilling both planners stand at the upper bound of muscular comfort, so it hardly tells holds apart, and which of
-        // them the muscular planner takes is chance: 55 % were found, and the report says that the claim fails.
-        let saturated = of(&table, task, "comfort", "muscular") > 99.9;
+        // them the muscular planner takes is chance: 61 % were found, and the report says that the claim fails.
+        let saturated = of(&table, task, "comfort", "muscular") > 99.5;
         let bound = if saturated { 0.7 } else { 0.5 };
         assert!(
             of_peripersonal < bound,
@@ -196,7 +234,7 @@ fn the_order_of_the_planners_stays_under_every_assumption() {
         "assumption,task,planner,plans,muscular,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
     );
     let assumptions: BTreeSet<_> = table.rows.iter().map(|row| row["assumption"].clone()).collect();
-    assert_eq!(assumptions.len(), 10, "as reproduced, and nine that differ: {assumptions:?}");
+    assert_eq!(assumptions.len(), 11, "as reproduced, and ten that differ: {assumptions:?}");
     for assumption in &assumptions {
         for (task, _) in PAPERS_MUSCULAR_SHARE {
             let of = |planner, column| {

@@ -83,7 +83,8 @@ pub struct RunArgs {
     /// Start no further scenario after the first that does not meet its expectation
     #[arg(long)]
     pub fail_fast: bool,
-    /// How many scenarios run at once; all cores unless given. The results do not depend on it
+    /// How many scenarios run at once; all cores unless given. The planner's maps are made on all cores in any case. The
+    /// results do not depend on it
     #[arg(long, value_name = "N")]
     pub jobs: Option<NonZero<usize>>,
     /// The planner.

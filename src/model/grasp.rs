@@ -124,6 +124,16 @@ mod tests {
     }
 
     #[test]
+    fn an_edge_turns_as_its_outward_normal_does() {
+        let quarter = Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
+        for edge in Edge::ALL {
+            assert!((quarter * edge.outward_o() - edge.turned(1).outward_o()).norm() < 1e-15);
+            assert_eq!(edge.turned(1).turned(3), edge);
+            assert_eq!(edge.turned(2).outward_o(), -edge.outward_o());
+        }
+    }
+
+    #[test]
     fn a_grasp_tells_its_edge() {
         for edge in Edge::ALL {
             for (angle_rad, along_m) in [(0.0, 0.0), (0.7, 0.1), (-0.7, 0.1), (0.7, -0.1)] {

@@ -226,7 +226,8 @@ pub struct ComfortSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peripersonal_share: Option<f64>,
     /// What the comforts are over in the normalised objective. Unless given, the planner `comfort` finds it: what the
-    /// planners of either comfort alone reach. For the other planners, which do not look at it, 100 and 1 m stand in.
+    /// planners of either comfort alone reach. The others do not look for it: where `random` chooses the person's answer,
+    /// and where they state the objective, 100 and 1 m stand in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub optima: Option<Optima>,
 }
@@ -295,7 +296,12 @@ impl PlannerKind {
     /// The comfort that this planner maximises: `settings` as a weighted sum, with the weight of what it does not look at
     /// set to zero.
     pub fn objective(self, settings: ComfortSettings) -> ComfortSettings {
-        let [weight_muscular, weight_peripersonal] = settings.weights();
+        let [weight_muscular, weight_peripersonal] = match self {
+            Self::Comfort | Self::Random => settings.weights(),
+            // What is over its own optimum is best where it is best by itself, whatever its share.
+            Self::Muscular | Self::Peripersonal if settings.peripersonal_share.is_some() => [1.0, 1.0],
+            Self::Muscular | Self::Peripersonal => settings.weights(),
+        };
         let settings = ComfortSettings {
             weight_muscular,
             weight_peripersonal,
@@ -358,7 +364,8 @@ pub struct PlannerSettings {
     /// How much work the search may do.
     #[serde(skip_serializing_if = "is_default")]
     pub budget: Budget,
-    /// The largest number of candidates that the search may look at, if that ends it before the budget does.
+    /// The largest number of candidates that the search may look at, if that ends it before the budget does. The searches for
+    /// the optima of a normalised objective may look at as many each.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evaluations: Option<u64>,
     /// A plan file to judge in place of planning, relative to the scenario's file.
@@ -481,13 +488,13 @@ mod tests {
 
     #[test]
     fn a_planner_of_one_comfort_has_the_weight_of_its_own_alone() {
-        let settings = ComfortSettings { peripersonal_share: Some(0.25), ..ComfortSettings::default() };
-        for (kind, weights) in [
-            (PlannerKind::Comfort, [0.75, 25.0]),
-            (PlannerKind::Muscular, [0.75, 0.0]),
-            (PlannerKind::Peripersonal, [0.0, 25.0]),
-        ] {
-            assert_eq!(kind.objective(settings).weights(), weights, "{kind}");
+        for peripersonal_share in [None, Some(0.0), Some(0.25), Some(1.0)] {
+            let settings = ComfortSettings { peripersonal_share, ..ComfortSettings::default() };
+            assert_eq!(PlannerKind::Comfort.objective(settings).weights(), settings.weights());
+            let [muscular, none] = PlannerKind::Muscular.objective(settings).weights();
+            assert!(muscular > 0.0 && none == 0.0, "{peripersonal_share:?}");
+            let [none, peripersonal] = PlannerKind::Peripersonal.objective(settings).weights();
+            assert!(none == 0.0 && peripersonal > 0.0, "{peripersonal_share:?}");
         }
     }
 }

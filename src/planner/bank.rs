@@ -63,13 +63,13 @@ impl BankedHold {
 }
 
 /// So many holds of the map's size of board, or fewer where they are rare, and how often one was looked for.
-pub fn holds(map: &RobotMap, wanted: usize, accepts: impl Fn(&Pose) -> bool) -> (Vec<BankedHold>, u64) {
+pub fn holds(map: &RobotMap, wanted: usize) -> (Vec<BankedHold>, u64) {
     let mut random = Pcg64::new(SEED, 0);
     let mut found = Vec::with_capacity(wanted);
     let mut drawn = 0;
     while found.len() < wanted && drawn < most_draws(wanted, found.len()) {
         drawn += 1;
-        found.extend(draw(map, &accepts, &mut random));
+        found.extend(draw(map, &mut random));
     }
     (found, drawn)
 }
@@ -79,12 +79,13 @@ fn most_draws(wanted: usize, found: usize) -> u64 {
     (DRAWS_A_HOLD * if found == 0 { wanted / 20 } else { wanted }) as u64
 }
 
-fn draw(map: &RobotMap, accepts: impl Fn(&Pose) -> bool, random: &mut Pcg64) -> Option<BankedHold> {
+fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<BankedHold> {
     let (first, others) = map.arms.split_first()?;
     let edge = random.random_range(0..Edge::ALL.len());
     let grasp = draw_grasp(map, first, Edge::ALL[edge], |_| true, random)?;
     let x_go = grasp.x_og(map.size_m).inverse();
-    let (q_rad, x_wo) = (0..FIRST_TRIES).find_map(|_| first.reach.draw(&first.chain, &x_go, &accepts, random))?;
+    let (q_rad, x_wo) =
+        (0..FIRST_TRIES).find_map(|_| first.reach.draw(&first.chain, &x_go, assess::in_domain, random))?;
     let mut holds = vec![Hold { grasp, q_rad }];
     for arm in others {
         let edge = other_edge(edge, random);

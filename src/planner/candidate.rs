@@ -107,3 +107,26 @@ impl Candidate {
         self.placed(problem).x_wo
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kind_unturned_is_the_same_for_all_turns_of_the_board() {
+        let hold = |edge, flipped| Hold {
+            grasp: EdgeGrasp { edge, along_m: 0.0, depth_m: 0.03, angle_rad: 0.0, flipped },
+            q_rad: Vec::new(),
+        };
+        let kind = |edges: [Edge; 2]| {
+            let holds = vec![hold(edges[0], true), hold(edges[1], false)];
+            Candidate { q_h_rad: [0.0; 7], heading_rad: 0.0, roll_rad: 0.0, p_wo_xy_m: [0.0; 2], holds }.kind_unturned()
+        };
+        for quarters in 0..4 {
+            let turned = |edge: Edge| edge.turned(quarters);
+            assert_eq!(kind([Edge::PlusY, Edge::PlusY].map(turned)), kind([Edge::PlusX, Edge::PlusX]));
+            assert_eq!(kind([Edge::PlusX, Edge::MinusX].map(turned)), kind([Edge::MinusY, Edge::PlusY]));
+        }
+        assert_ne!(kind([Edge::PlusX, Edge::PlusX]), kind([Edge::PlusX, Edge::MinusX]));
+    }
+}

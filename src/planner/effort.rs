@@ -23,6 +23,8 @@ pub struct Effort {
     pub known_heats: Option<Vec<Heat>>,
     /// Places in which the search for a whole circle holds good boards anew.
     pub circle_places: usize,
+    /// Holds of the bank, and of those places, of which it works out what they stand.
+    pub circle_guesses: usize,
     /// Holds that it climbs from, and the steps of each climb.
     pub circle_climbs: usize,
     pub circle_steps: usize,
@@ -56,6 +58,7 @@ impl Effort {
                 known_starts: 0,
                 known_heats: None,
                 circle_places: 200,
+                circle_guesses: 200,
                 circle_climbs: 1,
                 circle_steps: 25,
             },
@@ -69,6 +72,7 @@ impl Effort {
                 known_starts: 10,
                 known_heats: Some(heats(&[[10, 4], [4, 8], [1, 25]])),
                 circle_places: 2_000,
+                circle_guesses: 1_500,
                 circle_climbs: 3,
                 circle_steps: 30,
             },
@@ -82,6 +86,7 @@ impl Effort {
                 known_starts: 40,
                 known_heats: None,
                 circle_places: 10_000,
+                circle_guesses: 10_000,
                 circle_climbs: 60,
                 circle_steps: 100,
             },

@@ -30,8 +30,8 @@ const GRASPS: usize = 40;
 /// Holds of a kind that are kept of a place.
 const KEPT_OF_A_KIND: usize = 2;
 
-/// Holds in so many places of boards that lean as these do and are as high. The same numbers give the same holds, whatever
-/// the number of threads.
+/// Holds of boards that lean as these do and are as high, in so many places, of which those outside the search's domain have
+/// none. The same numbers give the same holds, whatever the number of threads.
 pub fn holds(map: &RobotMap, boards: &[Pose], places: usize, [seed, pass]: [u64; 2]) -> Vec<BankedHold> {
     if boards.is_empty() {
         return Vec::new();

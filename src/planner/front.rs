@@ -74,7 +74,8 @@ pub enum FrontOutcome {
 /// # Errors
 /// As [`super::plan`].
 pub fn front(scenario: &Scenario, map: &RobotMap, onlooker: &mut Onlooker<'_>) -> Result<FrontOutcome, HumanError> {
-    let resolved = match with_optima(scenario, map)? {
+    let both = PlannerSettings { kind: PlannerKind::Comfort, ..scenario.planner.clone() };
+    let resolved = match with_optima(&Scenario { planner: both, ..scenario.clone() }, map)? {
         Ok(scenario) => scenario,
         Err(why) => return Ok(FrontOutcome::Infeasible(why)),
     };

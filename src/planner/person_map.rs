@@ -38,8 +38,8 @@ pub struct Posture {
     pub q_h_rad: ArmAngles,
     /// The tool tip's frame in the body's.
     pub x_bt: Pose,
-    /// Weighted muscular comfort.
-    pub worth: f64,
+    /// Regularised muscular comfort; what it weighs is the asking problem's affair.
+    pub muscular: f64,
     /// Some of the body's points, B.
     pub sketch_b: [Point3<f64>; SKETCH_POINTS],
 }
@@ -73,17 +73,17 @@ impl PersonMap {
                 continue;
             };
             let Some(cell) = map.cell(&x_bt, 0.0) else { continue };
-            let worth = objective.weight_muscular * muscular.regularised;
             // The robot is where the board is: who works at arm's length keeps away from it by as much.
-            let rank = worth + objective.weight_peripersonal * x_bt.translation.vector.xy().norm();
-            found[cell].push((rank, q_h_rad, x_bt, worth));
+            let rank = objective.weight_muscular * muscular.regularised
+                + objective.weight_peripersonal * x_bt.translation.vector.xy().norm();
+            found[cell].push((rank, q_h_rad, x_bt, muscular.regularised));
         }
-        let sketched = |(_, q_h_rad, x_bt, worth): &(f64, ArmAngles, Pose, f64)| {
+        let sketched = |(_, q_h_rad, x_bt, muscular): &(f64, ArmAngles, Pose, f64)| {
             let points = human.body_points_w(&Pose::identity(), q_h_rad);
             // A permutation of 0 to 15 in which the first four are far apart.
             let spread = |place: usize| 4 * (place % GLANCE_POINTS) + place / GLANCE_POINTS;
             let sketch_b = std::array::from_fn(|place| points[spread(place) * BODY_POINTS / SKETCH_POINTS + 1]);
-            Posture { q_h_rad: *q_h_rad, x_bt: *x_bt, worth: *worth, sketch_b }
+            Posture { q_h_rad: *q_h_rad, x_bt: *x_bt, muscular: *muscular, sketch_b }
         };
         map.cells = found
             .into_iter()

@@ -57,7 +57,7 @@ pub fn best_candidates(
     let person = match problem.person {
         Some(person) => person,
         None => {
-            // The same as a map of the work would have, to the bit.
+            // As a map of the work would have it; where that knows optima only, by other weights.
             made = PersonMap::of(&canonical(problem.scenario), &problem.human);
             &made
         }
@@ -153,7 +153,7 @@ fn worth(
     let x_wb = meeting(problem, &known.hold, &posture.x_bt).x_wb;
     let body_w: ArrayVec<_, SKETCH_POINTS> = body_b.iter().map(|p_b| x_wb * p_b).collect();
     let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body_w, robot_w);
-    posture.worth + settings.weight_peripersonal * distance_m
+    settings.weight_muscular * posture.muscular + settings.weight_peripersonal * distance_m
 }
 
 /// How a posture answers a hold.

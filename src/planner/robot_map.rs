@@ -68,7 +68,7 @@ impl RobotMap {
             bank: Vec::new(),
             drawn: 0,
         };
-        (map.bank, map.drawn) = bank::holds(&map, HOLDS, crate::planner::assess::in_domain);
+        (map.bank, map.drawn) = bank::holds(&map, HOLDS);
         map
     }
 

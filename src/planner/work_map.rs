@@ -25,11 +25,13 @@ use super::{
     propose, refine, wrench_t,
 };
 use crate::{
+    comfort,
     human::{ArmAngles, Human, HumanError},
     model::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
         operation::Operation,
+        plan::Comfort,
         scenario::{Optima, PlannerKind, PlannerSettings, Scenario},
         wrench::Wrench,
     },
@@ -43,6 +45,8 @@ const KEPT: usize = 6;
 const KEPT_OF_A_KIND: usize = 2;
 /// Fitted holds that are tried for each start that is wanted.
 const TRIES_A_START: usize = 3;
+/// At most so many of the starts hold the same edges the same way.
+const STARTS_OF_A_KIND: usize = 3;
 /// Poses and wrenches are rounded to this, so that operations that differ by rounding share a map: m, N, N m or 1.
 const ROUNDING_UNIT: f64 = 1e-9;
 /// Places along and across the tool's direction are rounded to this: near enough for a hold to be made to fit, m.
@@ -68,8 +72,8 @@ pub struct WorkMap {
 struct GoodHold {
     candidate: Candidate,
     x_wo: Pose,
-    /// What it is worth there.
-    worth: f64,
+    /// How comfortable it is there.
+    comfort: Comfort,
     /// The tool's tip on the board.
     tip_o_m: Point3<f64>,
 }
@@ -81,7 +85,7 @@ impl WorkMap {
     /// When the scenario's person or tool is none.
     pub fn new(scenario: &Scenario, map: &RobotMap) -> Result<Self, HumanError> {
         let origin = canonical(scenario);
-        let alone = if optima::are_missing(&origin) { Some(Box::new(optima::maps(&origin, map)?)) } else { None };
+        let alone = if optima::are_missing(&origin) { Some(Box::new(optima::maps(scenario, map)?)) } else { None };
         let aim = match alone.as_deref().and_then(best_practised) {
             Some(optima) => optima::with(&origin, optima),
             None => origin.clone(),
@@ -125,10 +129,10 @@ impl WorkMap {
         starts.extend(propose::best_candidates(&mut problem, bank, effort, &mut tally));
         let found = distinct(refine::refine(&mut problem, starts, &effort.heats, &mut tally));
         let tip_o_m = operation.operation.x_ot.translation.vector.into();
-        let good = |Feasible { candidate, configured, worth, .. }| GoodHold {
+        let good = |Feasible { candidate, configured, comfort, .. }| GoodHold {
             candidate,
             x_wo: configured.placed.x_wo,
-            worth,
+            comfort,
             tip_o_m,
         };
         Ok(found.into_iter().map(good).collect())
@@ -145,6 +149,7 @@ impl WorkMap {
     pub(super) fn starts(&self, problem: &mut Problem<'_>, count: usize, tally: &mut Tally) -> Vec<Feasible> {
         let mut fitting = Vec::with_capacity(8 * self.good.len());
         for good in &self.good {
+            let practised = comfort::weighted(good.comfort, &problem.objective).objective;
             for quarters in 0..Edge::ALL.len() {
                 for fitted in good.fitted(problem, quarters) {
                     let Some(candidate) = fitted else {
@@ -154,16 +159,22 @@ impl WorkMap {
                     };
                     let configured = Configured::new(problem, &candidate);
                     let worth = assess::comfort(problem, &candidate, &configured).objective;
-                    fitting.push((worth + good.worth, candidate));
+                    fitting.push((worth + practised, candidate));
                 }
             }
         }
         fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut kept: Vec<Feasible> = Vec::with_capacity(count);
-        for (_, candidate) in fitting.into_iter().take(TRIES_A_START * count) {
-            if kept.len() == count || tally.is_exhausted() {
+        let mut tries = 0;
+        for (_, candidate) in fitting {
+            if kept.len() == count || tries == TRIES_A_START * count || tally.is_exhausted() {
                 break;
             }
+            let alike = kept.iter().filter(|known| known.candidate.kind() == candidate.kind()).count();
+            if alike == STARTS_OF_A_KIND {
+                continue;
+            }
+            tries += 1;
             kept.extend(refine::restored(problem, candidate, tally));
         }
         kept
@@ -172,9 +183,13 @@ impl WorkMap {
 
 /// The most that practice found of either comfort alone.
 fn best_practised(maps: &[WorkMap; 2]) -> Option<Optima> {
-    let best = |work: &WorkMap| work.good.iter().map(|good| good.worth).max_by(f64::total_cmp);
     let [muscular, peripersonal] = maps;
-    Some(Optima { muscular_regularised: best(muscular)?, peripersonal_m: best(peripersonal)? })
+    let best =
+        |work: &WorkMap, of: fn(&Comfort) -> f64| work.good.iter().map(|good| of(&good.comfort)).max_by(f64::total_cmp);
+    Some(Optima {
+        muscular_regularised: best(muscular, |comfort| comfort.muscular_regularised)?,
+        peripersonal_m: best(peripersonal, |comfort| comfort.peripersonal_m)?,
+    })
 }
 
 impl GoodHold {

@@ -47,11 +47,11 @@ pub fn holds(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served
 /// Holds that serve the circle best, rated exactly, the best first: of the bank, and of boards that lean like the best of
 /// the bank wherever they may be.
 fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served> {
-    let (map, places) = (circle.map, circle.effort.circle_places);
-    let mut guessed = best_guesses(circle, map.bank.iter(), places / 2, onlooker);
+    let map = circle.map;
+    let mut guessed = best_guesses(circle, &map.bank, onlooker);
     let boards: Vec<_> = guessed.iter().take(BOARDS).map(|(_, hold)| hold.x_wo).collect();
-    let focus = focus::holds(map, &boards, places, [circle.seed(), 0]);
-    guessed.extend(best_guesses(circle, focus.iter(), places, onlooker));
+    let focus = focus::holds(map, &boards, circle.effort.circle_places, [circle.seed(), 1]);
+    guessed.extend(best_guesses(circle, &focus, onlooker));
     guessed.sort_by(|a, b| a.0.order(&b.0));
     let mut served = Vec::new();
     for (_, hold) in guessed.into_iter().take(RATED_A_START * circle.effort.starts) {
@@ -66,24 +66,28 @@ fn promising(circle: &mut Circle<'_>, onlooker: &mut Onlooker<'_>) -> Vec<Served
     served
 }
 
-/// Of some holds those that look best by the person's map, so many, ordered by that and by what they stand: that costs a
-/// hundred times as much.
+/// Of some holds those that look best by the person's map, ordered by that and by what they stand, which costs a hundred
+/// times as much to say.
 fn best_guesses<'b>(
     circle: &mut Circle<'_>,
-    holds: impl Iterator<Item = &'b BankedHold>,
-    count: usize,
+    holds: &'b [BankedHold],
     onlooker: &mut Onlooker<'_>,
 ) -> Vec<(Score, &'b KnownHold)> {
-    let rough = |banked: &'b BankedHold| (Score::of(circle.estimates(&banked.hold).into_iter()), &banked.hold);
-    let mut guessed: Vec<_> = holds.map(rough).collect();
+    let rough = |BankedHold { hold, .. }: &'b BankedHold| {
+        let estimates = circle.estimates(hold);
+        (Score::of(estimates.iter().copied()), hold, estimates)
+    };
+    let mut guessed: Vec<_> = holds.iter().map(rough).collect();
     guessed.sort_by(|a, b| a.0.order(&b.0));
-    guessed.truncate(count);
-    for (score, hold) in &mut guessed {
+    guessed.truncate(circle.effort.circle_guesses);
+    for (score, hold, estimates) in &mut guessed {
         if circle.is_stopped(onlooker) {
             break;
         }
-        *score = Score::of(circle.stable_estimates(hold).into_iter());
+        circle.strike_unstable(hold, estimates);
+        *score = Score::of(estimates.iter().copied());
     }
+    let mut guessed: Vec<_> = guessed.into_iter().map(|(score, hold, _)| (score, hold)).collect();
     guessed.sort_by(|a, b| a.0.order(&b.0));
     guessed
 }

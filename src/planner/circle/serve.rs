@@ -63,16 +63,14 @@ impl<'a> Circle<'a> {
         (0..self.problems.len()).map(best).collect()
     }
 
-    /// As [`Circle::estimates`], minus infinity also where the hold does not stand the point's cut.
-    pub fn stable_estimates(&mut self, hold: &KnownHold) -> Vec<f64> {
-        let mut estimates = self.estimates(hold);
+    /// Minus infinity in place of the estimate of every point whose cut the hold does not stand.
+    pub fn strike_unstable(&mut self, hold: &KnownHold, estimates: &mut [f64]) {
         let candidate = candidate(hold, None);
-        for (problem, estimate) in self.problems.iter_mut().zip(&mut estimates) {
+        for (problem, estimate) in self.problems.iter_mut().zip(estimates) {
             if estimate.is_finite() && assess::utilisation(problem, &candidate, &hold.x_wo) > 1.0 {
                 *estimate = f64::NEG_INFINITY;
             }
         }
-        estimates
     }
 
     /// Postures that nearly answer a hold at a point, the best first.
@@ -85,7 +83,8 @@ impl<'a> Circle<'a> {
             let x_wb = standing(&x_wt, &posture.x_bt, floor_z_m);
             let body = posture.sketch_w(&x_wb);
             let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, robot_points_w);
-            Guess { posture: *posture, x_wb, worth: posture.worth + settings.weight_peripersonal * distance_m }
+            let worth = settings.weight_muscular * posture.muscular + settings.weight_peripersonal * distance_m;
+            Guess { posture: *posture, x_wb, worth }
         };
         let mut guesses: Vec<_> = self.person.postures(&x_wt, floor_z_m).iter().map(guess).collect();
         guesses.sort_by(|a, b| b.worth.total_cmp(&a.worth));

@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     Problem,
-    assess::{self, Feasible, Tally},
+    assess::{self, Feasible, Rejection, Tally},
     candidate::Candidate,
     effort::Heat,
 };
@@ -64,15 +64,20 @@ pub fn restored(problem: &mut Problem<'_>, mut candidate: Candidate, tally: &mut
             Err(why) => why,
         };
         tally.remove(why);
-        candidate = towards_feasible(problem, candidate)?;
+        candidate = towards_feasible(problem, candidate, why)?;
     }
     None
 }
 
-fn towards_feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Option<Candidate> {
+fn towards_feasible(problem: &mut Problem<'_>, candidate: Candidate, why: Rejection) -> Option<Candidate> {
     let configured = assess::Configured::new(problem, &candidate);
     let comfort = assess::comfort(problem, &candidate, &configured);
-    let utilisation = assess::utilisation(problem, &candidate, &configured.placed.x_wo);
+    // It costs more than all else, and what touches something has to move anyway.
+    let utilisation = if why == Rejection::Stability {
+        assess::utilisation(problem, &candidate, &configured.placed.x_wo)
+    } else {
+        0.0
+    };
     let here = Feasible { worth: comfort.objective, candidate, configured, comfort, utilisation };
     let mut linear = Linear::at(problem, &here);
     linear.watch_stability(problem, &here);
