@@ -10,8 +10,9 @@ use benchdog::{
     },
     planner::{self, PlanOutcome, RobotMap, WorkMap},
     robot::Robot,
-    scenario,
+    scenario::{self, paper},
 };
+use rayon::prelude::*;
 
 fn load(name: &str) -> (Scenario, Robot) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/{name}.toml"));
@@ -82,6 +83,34 @@ fn every_planner_keeps_every_constraint_and_is_best_at_its_own_comfort() {
         assert!(comfort.objective > other.objective, "{comfort:?} {other:?}");
     }
     assert!(comfort.objective > peripersonal.objective);
+}
+
+/// With compliant arms `results/plans.csv` shows it; here by the paper's stability, in the fast budget.
+#[test]
+fn every_operation_has_a_plan_of_every_planner_by_the_papers_stability_too() {
+    let operations: Vec<_> = paper::operations().iter().map(|operation| operation.load().unwrap()).collect();
+    let map = RobotMap::new(&operations[0].robot, operations[0].scenario.object.size_m);
+    let infeasible: Vec<_> = PlannerKind::ALL
+        .into_par_iter()
+        .flat_map_iter(|kind| {
+            let mut maps: Vec<WorkMap> = Vec::new();
+            let mut infeasible = Vec::new();
+            for loaded in &operations {
+                let mut scenario = with_kind(&loaded.scenario, kind);
+                scenario.planner.stability = StabilityKind::Paper;
+                if !maps.iter().any(|work| work.serves(&scenario)) {
+                    maps.push(WorkMap::new(&scenario, &map).unwrap());
+                }
+                let work = maps.iter().find(|work| work.serves(&scenario)).unwrap();
+                match planner::plan_with(&scenario, &map, work, &mut planner::nobody).unwrap() {
+                    PlanOutcome::Found(plan) => assert!(plan.stability.unwrap().load_factor >= 1.0),
+                    PlanOutcome::Infeasible(why) => infeasible.push(format!("{kind} {}: {why}", scenario.name)),
+                }
+            }
+            infeasible
+        })
+        .collect();
+    assert_eq!(infeasible, [""; 0]);
 }
 
 #[test]
