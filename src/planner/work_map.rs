@@ -95,23 +95,30 @@ impl WorkMap {
             return Ok(Self { person: None, good: Vec::new(), origin, alone });
         }
         let mut work = Self { person: Some(PersonMap::of(&aim, &human)), good: Vec::new(), origin, alone };
-        let Some(practice) = Practice::of(scenario.planner.budget) else { return Ok(work) };
-        let operations = practised(&aim);
+        if let Some(practice) = Practice::of(scenario.planner.budget) {
+            work.learn(&practised(&aim), map, &practice)?;
+        }
+        Ok(work)
+    }
+
+    /// Goes through the practised operations pass by pass: at first with the robot's bank of holds, then with holds of boards
+    /// that lean like the best so far.
+    fn learn(&mut self, operations: &[Scenario], map: &RobotMap, practice: &Practice) -> Result<(), HumanError> {
         for pass in 0..practice.passes {
             let focus;
             let (bank, effort) = if pass == 0 {
                 (&map.bank, &practice.first)
             } else {
-                let boards: Vec<_> = work.good.iter().map(|good| good.x_wo).collect();
-                focus = focus::holds(map, &boards, practice.places, [work.origin.planner.seed, pass]);
+                let boards: Vec<_> = self.good.iter().map(|good| good.x_wo).collect();
+                focus = focus::holds(map, &boards, practice.places, [self.origin.planner.seed, pass]);
                 (&focus, &practice.later)
             };
             // Each looks at what the pass before found for all of them, so their order does not matter.
             let found: Result<Vec<_>, HumanError> =
-                operations.par_iter().map(|operation| work.practise(operation, map, bank, effort)).collect();
-            work.good = found?.concat();
+                operations.par_iter().map(|operation| self.practise(operation, map, bank, effort)).collect();
+            self.good = found?.concat();
         }
-        Ok(work)
+        Ok(())
     }
 
     /// Searches for holds for one practised operation, from a bank's holds and from what was learned so far.
