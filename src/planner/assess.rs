@@ -165,13 +165,29 @@ impl Configured {
     }
 }
 
-/// All that a candidate is and is worth, when it keeps every constraint; the cheapest tests come first.
+/// A candidate that breaks a constraint, with what its tests worked out until then.
+pub struct Rejected {
+    pub why: Rejection,
+    pub candidate: Candidate,
+    pub configured: Configured,
+    /// As in [`Feasible`]; zero when the tests ended before.
+    pub utilisation: f64,
+}
+
+/// All that a candidate is and is worth, when it keeps every constraint.
 pub fn feasible(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasible, Rejection> {
+    tested(problem, candidate).map_err(|rejected| rejected.why)
+}
+
+/// As [`feasible`], for whom the figures of a rejected candidate are of use; the cheapest tests come first.
+pub fn tested(problem: &mut Problem<'_>, candidate: Candidate) -> Result<Feasible, Box<Rejected>> {
     let configured = Configured::new(problem, &candidate);
-    free(problem, &candidate, &configured)?;
+    if let Err(why) = free(problem, &candidate, &configured) {
+        return Err(Box::new(Rejected { why, candidate, configured, utilisation: 0.0 }));
+    }
     let utilisation = utilisation(problem, &candidate, &configured.placed.x_wo);
     if utilisation > 1.0 {
-        return Err(Rejection::Stability);
+        return Err(Box::new(Rejected { why: Rejection::Stability, candidate, configured, utilisation }));
     }
     let comfort = comfort(problem, &candidate, &configured);
     Ok(rated(problem, candidate, configured, comfort, utilisation))

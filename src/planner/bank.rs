@@ -81,28 +81,39 @@ fn most_draws(wanted: usize, found: usize) -> u64 {
 
 fn draw(map: &RobotMap, random: &mut Pcg64) -> Option<BankedHold> {
     let (first, others) = map.arms.split_first()?;
-    let edge = random.random_range(0..Edge::ALL.len());
-    let grasp = draw_grasp(map, first, Edge::ALL[edge], |_| true, random)?;
+    let edge = draw_edge(random);
+    let grasp = draw_grasp(map, first, edge, |_| true, random)?;
     let x_go = grasp.x_og(map.size_m).inverse();
     let (q_rad, x_wo) =
         (0..FIRST_TRIES).find_map(|_| first.reach.draw(&first.chain, &x_go, assess::in_domain, random))?;
     let mut holds = vec![Hold { grasp, q_rad }];
     for arm in others {
         let edge = other_edge(edge, random);
-        let reached = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
-        let grasp = draw_grasp(map, arm, Edge::ALL[edge], reached, random)?;
-        let x_wg = x_wo * grasp.x_og(map.size_m);
-        let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
-        holds.push(Hold { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? });
+        holds.push(draw_hold(map, arm, edge, &x_wo, random)?);
     }
     let poses = map.link_poses(&holds);
     let touches = map.collision.first_violation(&map.scene(&poses, x_wo)).is_some();
     (!touches).then(|| BankedHold::new(map, KnownHold { x_wo, holds }, &poses))
 }
 
-/// The edge of a further hand, by its number: opposite to the first's or the same (METHOD section 2).
-pub fn other_edge(edge: usize, random: &mut Pcg64) -> usize {
-    if random.random_bool(OPPOSITE) { (edge + 2) % Edge::ALL.len() } else { edge }
+/// Any edge.
+pub fn draw_edge(random: &mut Pcg64) -> Edge {
+    Edge::ALL[random.random_range(0..Edge::ALL.len())]
+}
+
+/// The edge of a further hand: opposite to the first's or the same (METHOD section 2).
+pub fn other_edge(edge: Edge, random: &mut Pcg64) -> Edge {
+    if random.random_bool(OPPOSITE) { edge.turned(2) } else { edge }
+}
+
+/// A grasp of one hand on an edge of a board that is there already, and a configuration that brings the hand to it; none when
+/// the arm does not reach the grasps that are drawn.
+pub fn draw_hold(map: &RobotMap, arm: &ArmSearch, edge: Edge, x_wo: &Pose, random: &mut Pcg64) -> Option<Hold> {
+    let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
+    let grasp = draw_grasp(map, arm, edge, near, random)?;
+    let x_wg = x_wo * grasp.x_og(map.size_m);
+    let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
+    Some(Hold { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
 }
 
 /// A grasp on an edge with the pads on the board, at a pose of the hand that is accepted.

@@ -113,46 +113,30 @@ impl Practice {
         let plan = Effort::of(budget);
         match budget {
             Budget::Fast => None,
-            Budget::Default => Some(Self {
-                first: Effort {
-                    disposed: 4_000,
-                    starts: 16,
-                    starts_of_a_kind: 2,
-                    heats: heats(&[[16, 8], [6, 20]]),
-                    known_starts: 0,
-                    ..plan.clone()
-                },
-                later: Effort {
+            Budget::Default => {
+                let later = Effort {
                     disposed: 4_000,
                     starts: 48,
                     starts_of_a_kind: 2,
                     heats: heats(&[[56, 8], [24, 30]]),
                     known_starts: 8,
                     ..plan
-                },
-                passes: 3,
-                places: 1_000,
-            }),
-            Budget::Exhaustive => Some(Self {
-                first: Effort {
-                    disposed: 20_000,
-                    starts: 200,
-                    starts_of_a_kind: 10,
-                    heats: heats(&[[200, 15], [60, 60]]),
-                    known_starts: 0,
-                    ..plan.clone()
-                },
-                later: Effort {
+                };
+                let first = Effort { starts: 16, heats: heats(&[[16, 8], [6, 20]]), known_starts: 0, ..later.clone() };
+                Some(Self { first, later, passes: 3, places: 1_000 })
+            }
+            Budget::Exhaustive => {
+                let later = Effort {
                     disposed: 20_000,
                     starts: 200,
                     starts_of_a_kind: 10,
                     heats: heats(&[[240, 15], [60, 60]]),
                     known_starts: 40,
                     ..plan
-                },
-                passes: 4,
-                places: 10_000,
-            }),
+                };
+                let first = Effort { heats: heats(&[[200, 15], [60, 60]]), known_starts: 0, ..later.clone() };
+                Some(Self { first, later, passes: 4, places: 10_000 })
+            }
         }
     }
 }

@@ -8,7 +8,6 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use rand::RngExt;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
@@ -86,16 +85,11 @@ fn held(map: &RobotMap, x_wo: &Pose, random: &mut Pcg64) -> Vec<BankedHold> {
 
 /// Grasps of one hand with configurations of its arm, those of the drawn ones that it reaches.
 fn reached(map: &RobotMap, arm: &ArmSearch, x_wo: &Pose, random: &mut Pcg64) -> Vec<Hold> {
-    let mut holds = Vec::new();
-    for _ in 0..GRASPS {
-        let edge = Edge::ALL[random.random_range(0..Edge::ALL.len())];
-        let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
-        let Some(grasp) = bank::draw_grasp(map, arm, edge, near, random) else { continue };
-        let x_wg = x_wo * grasp.x_og(map.size_m);
-        let found = arm.reach.seeds(&arm.chain, &x_wg).find_map(|seed| arm.inverse.near(&x_wg, &seed).found());
-        holds.extend(found.map(|q_rad| Hold { grasp, q_rad }));
-    }
-    holds
+    let draw = |_| {
+        let edge = bank::draw_edge(random);
+        bank::draw_hold(map, arm, edge, x_wo, random)
+    };
+    (0..GRASPS).filter_map(draw).collect()
 }
 
 /// Every choice of one hold a hand in which all edges are the first's or opposite to it (METHOD section 2), by the holds'

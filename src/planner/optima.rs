@@ -1,10 +1,9 @@
 //! The optima that a normalised objective is over: what the planners of either comfort alone reach.
 
-use super::{PlanOutcome, RobotMap, WorkMap, nobody, plan_with};
+use super::{Infeasible, PlanOutcome, RobotMap, WorkMap, nobody, plan_with};
 use crate::{
     human::HumanError,
     model::scenario::{ComfortSettings, Optima, PersonAnswer, PlannerKind, PlannerSettings, Scenario},
-    planner::Infeasible,
 };
 
 /// The planners whose results are the optima: muscular, peripersonal.

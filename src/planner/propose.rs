@@ -57,7 +57,7 @@ pub fn best_candidates(
     let person = match problem.person {
         Some(person) => person,
         None => {
-            // As a map of the work would have it; where that knows optima only, by other weights.
+            // The person's map of a work map, but for the weights of optima that only practice knows.
             made = PersonMap::of(&canonical(problem.scenario), &problem.human);
             &made
         }
@@ -164,19 +164,21 @@ struct Meeting {
 }
 
 fn meeting(problem: &Problem<'_>, hold: &KnownHold, x_bt: &Pose) -> Meeting {
-    let operation = &problem.scenario.operation;
-    let mut x_wt = hold.x_wo * operation.x_ot;
-    let mut roll_rad = 0.0;
     // Where the tool may roll, all rolls share a cell; which one a posture needs is worked out.
-    if operation.kind.roll_is_free() {
-        roll_rad = roll_between(&x_wt, x_bt);
-        x_wt = hold.x_wo * operation.rolled(roll_rad).x_ot;
-    }
+    let roll_rad = fitting_roll(problem, &hold.x_wo, x_bt);
+    let x_wt = hold.x_wo * problem.scenario.operation.rolled(roll_rad).x_ot;
     Meeting { roll_rad, x_wt, x_wb: standing(&x_wt, x_bt, problem.map.robot.floor_z_m) }
 }
 
+/// The roll with which the tool on a board sees the vertical as from its pose in a body, as far as a roll can bring that about;
+/// zero where the operation leaves none free.
+pub fn fitting_roll(problem: &Problem<'_>, x_wo: &Pose, x_bt: &Pose) -> f64 {
+    let operation = &problem.scenario.operation;
+    if operation.kind.roll_is_free() { roll_between(&(x_wo * operation.x_ot), x_bt) } else { 0.0 }
+}
+
 /// The roll about the tool's axis that brings the vertical, seen from the tool, from one pose to another.
-pub fn roll_between(x_wt: &Pose, x_bt: &Pose) -> f64 {
+fn roll_between(x_wt: &Pose, x_bt: &Pose) -> f64 {
     let azimuth = |pose: &Pose| {
         let up_t = pose.rotation.inverse() * Vector3::z();
         up_t.y.atan2(up_t.x)

@@ -5,19 +5,15 @@
 //! The arms take the first configuration that is found, and the person then answers as best they can.
 
 use nalgebra::Vector3;
-use rand::RngExt;
 use rand_pcg::Pcg64;
 
 use super::{
     Problem,
     assess::{self, Configured, Feasible, Rejection, Tally},
-    bank::{draw_grasp, other_edge},
+    bank::{draw_edge, draw_grasp, other_edge},
     candidate::{Candidate, Hold},
 };
-use crate::{
-    comfort,
-    model::{frames::Pose, grasp::Edge},
-};
+use crate::{comfort, model::frames::Pose};
 
 /// Holds that are drawn before the search is given up.
 const DRAWS: u64 = 2_000_000;
@@ -43,14 +39,14 @@ pub fn draw(problem: &mut Problem<'_>, random: &mut Pcg64, tally: &mut Tally) ->
 fn draw_once(problem: &mut Problem<'_>, random: &mut Pcg64) -> Result<Feasible, Rejection> {
     let map = problem.map;
     let x_wo = assess::draw_board(random);
-    let mut edge = random.random_range(0..Edge::ALL.len());
+    let mut edge = draw_edge(random);
     let mut grasps = Vec::with_capacity(map.arms.len());
     for (number, arm) in map.arms.iter().enumerate() {
         if number > 0 {
             edge = other_edge(edge, random);
         }
         // One grasp an arm: where it is not within reach the whole hold is drawn again, lest the draw be biased.
-        let grasp = draw_grasp(map, arm, Edge::ALL[edge], |_| true, random).ok_or(Rejection::RobotReach)?;
+        let grasp = draw_grasp(map, arm, edge, |_| true, random).ok_or(Rejection::RobotReach)?;
         if !arm.reach.reaches(&arm.chain, &(x_wo * grasp.x_og(map.size_m))) {
             return Err(Rejection::RobotReach);
         }

@@ -4,10 +4,10 @@
 //! and force, somewhere else on the board or in another direction. So the search practises on a few such operations, with
 //! more effort than a plan may take: first from the robot's bank of holds, then from holds of boards that lean like those
 //! of the best so far, wherever they may be ([`focus`]), and from what the others found. The best holds that differ are
-//! kept. A plan then begins where they ended: each is
-//! turned by quarters about the board's normal (a rectangle looks the same after half a turn, and nearly so after a quarter
-//! one), the person or the board moves so that the tool is where this operation wants it, and what keeps every constraint
-//! is refined like any other start.
+//! kept. A plan then begins where they ended: each is turned by quarters about the board's normal (a rectangle looks the
+//! same after half a turn, and nearly so after a quarter one), the person or the board moves so that the tool is where this
+//! operation wants it, what breaks a constraint by a little is restored by least moves, and what then keeps all of them is
+//! refined like any other start.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -215,13 +215,9 @@ impl GoodHold {
     }
 
     fn board_moved(&self, problem: &Problem<'_>, hold: &KnownHold) -> Option<Candidate> {
-        let mut candidate = Candidate { holds: hold.holds.clone(), ..self.candidate.clone() };
-        // The roll that leaves the vertical, seen from the tool, as it was.
-        candidate.roll_rad = 0.0;
-        if problem.scenario.operation.kind.roll_is_free() {
-            let x_wt = hold.x_wo * problem.scenario.operation.x_ot;
-            candidate.roll_rad = propose::roll_between(&x_wt, &problem.human.tool_pose_b(&candidate.q_h_rad));
-        }
+        let x_bt = problem.human.tool_pose_b(&self.candidate.q_h_rad);
+        let roll_rad = propose::fitting_roll(problem, &hold.x_wo, &x_bt);
+        let mut candidate = Candidate { roll_rad, holds: hold.holds.clone(), ..self.candidate.clone() };
         // The person stands where they stood: the tip stays, and the board moves under it.
         let tip_o_m = Point3::from(problem.scenario.operation.x_ot.translation.vector);
         let missed = self.x_wo * self.tip_o_m - candidate.x_wo(problem) * tip_o_m;

@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     Problem,
-    assess::{self, Feasible, Rejection, Tally},
+    assess::{self, Feasible, Rejected, Tally},
     candidate::Candidate,
     effort::Heat,
 };
@@ -59,25 +59,21 @@ pub fn restored(problem: &mut Problem<'_>, mut candidate: Candidate, tally: &mut
             return None;
         }
         tally.draw();
-        let why = match assess::feasible(problem, candidate.clone()) {
+        let rejected = match assess::tested(problem, candidate) {
             Ok(found) => return Some(found),
-            Err(why) => why,
+            Err(rejected) => *rejected,
         };
-        tally.remove(why);
-        candidate = towards_feasible(problem, candidate, why)?;
+        tally.remove(rejected.why);
+        candidate = towards_feasible(problem, rejected)?;
     }
     None
 }
 
-fn towards_feasible(problem: &mut Problem<'_>, candidate: Candidate, why: Rejection) -> Option<Candidate> {
-    let configured = assess::Configured::new(problem, &candidate);
+/// Stability is looked at only when it is what is broken: it costs more than all else, and what touches something has to move
+/// anyway.
+fn towards_feasible(problem: &mut Problem<'_>, rejected: Rejected) -> Option<Candidate> {
+    let Rejected { candidate, configured, utilisation, .. } = rejected;
     let comfort = assess::comfort(problem, &candidate, &configured);
-    // It costs more than all else, and what touches something has to move anyway.
-    let utilisation = if why == Rejection::Stability {
-        assess::utilisation(problem, &candidate, &configured.placed.x_wo)
-    } else {
-        0.0
-    };
     let here = Feasible { worth: comfort.objective, candidate, configured, comfort, utilisation };
     let mut linear = Linear::at(problem, &here);
     linear.watch_stability(problem, &here);
