@@ -5,19 +5,14 @@ use super::{
     curve::circle_radius_m,
     exit::{CliError, Exit},
     interrupt,
-    maps::Maps,
     output,
     plan::{infeasible, to_be_planned, until_interrupted},
 };
 use crate::{
-    human::HumanError,
-    model::{
-        plan::Plan,
-        scenario::{PersonAnswer, Scenario},
-    },
+    model::{plan::Plan, scenario::PersonAnswer},
     planner::{
-        self, Infeasible, RobotMap,
-        circle::{self, Continuous, MotionStep, PlansByPoint},
+        Outcome, Planner,
+        path::{CirclePlans, Continuous, MotionStep},
     },
     report,
 };
@@ -31,12 +26,13 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     loaded.scenario.comfort.person = PersonAnswer::Most;
     report::file::check_folder(&args.out)?;
     interrupt::listen("what was found of the circle is written")?;
-    let size_m = loaded.scenario.object.size_m;
-    let found = Maps::default().with(&loaded.robot, size_m, |map, _| three_ways(&loaded.scenario, map))?;
-    let (ways, motions) = match found {
-        Ok(found) => found,
-        Err(why) => return Ok(infeasible(&loaded, &why)),
+    let planner = Planner::new(&loaded.robot);
+    let found = match planner.search(&loaded.scenario).observer(&mut until_interrupted).circle()? {
+        Outcome::Found(found) => found,
+        Outcome::Infeasible(why) => return Ok(infeasible(&loaded, &why)),
     };
+    let CirclePlans { continuous: Continuous { hold, sequence, motions }, separate } = found;
+    let ways = [("hold", hold), ("sequence", sequence), ("separate", separate)];
     for (name, plans) in &ways {
         for (index, plan) in plans.iter().enumerate() {
             let path = args.out.join(format!("{name}-{}.json", index + 1));
@@ -65,18 +61,4 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
 /// The names of all joints of a plan's arms, arm after arm.
 fn joints(plan: &Plan) -> Vec<String> {
     plan.arms.iter().flat_map(|arm| arm.joints.clone()).collect()
-}
-
-type Ways = Vec<(&'static str, PlansByPoint)>;
-type Motions = Vec<Vec<MotionStep>>;
-
-fn three_ways(scenario: &Scenario, map: &RobotMap) -> Result<Result<(Ways, Motions), Infeasible>, HumanError> {
-    // The optima of one cut are good enough for all, and make them comparable.
-    let points = match planner::with_optima(scenario, map)? {
-        Ok(scenario) => circle::points(&scenario).unwrap_or_default(),
-        Err(why) => return Ok(Err(why)),
-    };
-    let Continuous { hold, sequence, motions } = circle::continuous(&points, map, &mut until_interrupted)?;
-    let separate = circle::separate(&points, map, &mut until_interrupted)?;
-    Ok(Ok((vec![("hold", hold), ("sequence", sequence), ("separate", separate)], motions)))
 }

@@ -61,9 +61,12 @@ pub enum CliError {
     /// A plan that the simulation cannot be built from.
     #[error("failed to simulate the plan: {0}")]
     Simulation(crate::sim::SimError),
-    /// The person or the tool is none.
+    /// The person or the tool is invalid.
     #[error(transparent)]
     Human(#[from] crate::human::HumanError),
+    /// A scenario cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] crate::planner::PlanError),
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] crate::report::file::WriteError),
@@ -104,6 +107,7 @@ impl CliError {
             | Self::Input(_)
             | Self::Simulation(_)
             | Self::Human(_)
+            | Self::Plan(_)
             | Self::Write(_)
             | Self::Machine(_)
             | Self::Usage(_)

@@ -4,12 +4,11 @@ use super::{
     args::FrontArgs,
     exit::{CliError, Exit},
     interrupt,
-    maps::Maps,
     output,
     plan::{infeasible, to_be_planned, until_interrupted},
 };
 use crate::{
-    planner::{self, Front, FrontOutcome},
+    planner::{Front, FrontPoint, Outcome, Planner},
     report::{self, front::Row},
 };
 
@@ -19,20 +18,18 @@ pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
     args.search.apply(&mut loaded.scenario.planner);
     report::file::check_folder(&args.out)?;
     interrupt::listen("the front of what was found is written")?;
-    let scenario = &loaded.scenario;
-    let outcome = Maps::default()
-        .with(&loaded.robot, scenario.object.size_m, |map, _| planner::front(scenario, map, &mut until_interrupted))?;
-    match outcome {
-        FrontOutcome::Found(front) => {
+    let planner = Planner::new(&loaded.robot);
+    match planner.search(&loaded.scenario).observer(&mut until_interrupted).front()? {
+        Outcome::Found(front) => {
             write(&front, args)?;
             Ok(if interrupt::requested() { Exit::Interrupted } else { Exit::Met })
         }
-        FrontOutcome::Infeasible(why) => Ok(infeasible(&loaded, &why)),
+        Outcome::Infeasible(why) => Ok(infeasible(&loaded, &why)),
     }
 }
 
 fn write(front: &Front, args: &FrontArgs) -> Result<(), CliError> {
-    let row = |point: &planner::FrontPoint, own| {
+    let row = |point: &FrontPoint, own| {
         let [muscular, peripersonal_m] = point.comforts();
         Row { share: point.share, muscular, peripersonal_m, own }
     };

@@ -14,11 +14,11 @@ mod help;
 #[cfg(feature = "recording")]
 mod inspect;
 mod interrupt;
-mod maps;
 mod margin;
 mod output;
 mod pipeline;
 mod plan;
+mod planners;
 mod progress;
 #[cfg(feature = "recording")]
 mod recording;

@@ -1,8 +1,8 @@
 //! The main path: scenario -> plan -> simulation -> judgement -> verdict, for one scenario.
 
-use std::{collections::BTreeMap, time::Instant};
+use std::collections::BTreeMap;
 
-use super::{exit::CliError, maps::Maps, versions::versions};
+use super::{exit::CliError, planners::Planners, versions::versions};
 use crate::{
     judge::{Judgement, judge},
     model::{
@@ -12,7 +12,7 @@ use crate::{
         trace::Trace,
         verdict::{Verdict, VerdictKind},
     },
-    planner::{self, Onlooker, PlanOutcome},
+    planner::{self, Outcome},
     robot::Robot,
     scenario::LoadedScenario,
     sim::{self, Conditions},
@@ -33,13 +33,13 @@ pub struct Run {
 ///
 /// # Errors
 /// When the person or the tool is none, or the simulation cannot be built from the plan.
-pub fn run_scenario(loaded: &LoadedScenario, maps: &Maps) -> Result<Run, CliError> {
+pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run, CliError> {
     let scenario = &loaded.scenario;
     let plan = match &loaded.plan {
         Some(plan) => plan.clone(),
-        None => match timed_plan(scenario, &loaded.robot, maps, &mut planner::nobody)? {
-            PlanOutcome::Found(plan) => *plan,
-            PlanOutcome::Infeasible(why) => {
+        None => match planners.timed_plan(scenario, &loaded.robot, None)? {
+            Outcome::Found(plan) => plan,
+            Outcome::Infeasible(why) => {
                 let verdict = without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
                 return Ok(Run { verdict, plan: None, simulated: None });
             }
@@ -62,29 +62,6 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
     Ok(Run { verdict, plan: Some(plan), simulated: Some((trace, judgement)) })
-}
-
-/// Plans a scenario, with the time that it took in the plan; the onlooker may end the search.
-///
-/// # Errors
-/// When the scenario's person or tool is none.
-pub fn timed_plan(
-    scenario: &Scenario,
-    robot: &Robot,
-    maps: &Maps,
-    onlooker: &mut Onlooker<'_>,
-) -> Result<PlanOutcome, CliError> {
-    Ok(maps.with_work(robot, scenario, |map, work, map_ms| {
-        let start = Instant::now();
-        let mut outcome = planner::plan_with(scenario, map, work, onlooker)?;
-        if let PlanOutcome::Found(plan) = &mut outcome
-            && let Some(record) = &mut plan.planner
-        {
-            record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);
-            record.map_ms = Some(map_ms);
-        }
-        Ok(outcome)
-    })?)
 }
 
 /// The verdict on a scenario that has nothing to simulate.

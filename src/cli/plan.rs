@@ -6,12 +6,12 @@ use super::{
     args::PlanArgs,
     exit::{CliError, Exit},
     interrupt,
-    maps::Maps,
-    output, pipeline,
+    output,
+    planners::Planners,
 };
 use crate::{
     model::verdict::VerdictKind,
-    planner::{self, Infeasible, PlanOutcome, Progress, TopOutcome},
+    planner::{Infeasible, Outcome, Planner, Progress},
     report,
     scenario::{self, LoadedScenario},
 };
@@ -45,9 +45,9 @@ pub fn until_interrupted(_: &Progress<'_>) -> ControlFlow<()> {
 }
 
 fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError> {
-    let outcome = pipeline::timed_plan(&loaded.scenario, &loaded.robot, &Maps::default(), &mut until_interrupted)?;
+    let outcome = Planners::default().timed_plan(&loaded.scenario, &loaded.robot, Some(&mut until_interrupted))?;
     match outcome {
-        PlanOutcome::Found(plan) => {
+        Outcome::Found(plan) => {
             let text = report::json::plan(&plan);
             match output {
                 Some(path) => report::file::write_whole(path, text.as_bytes())?,
@@ -55,18 +55,15 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
             }
             Ok(found(loaded))
         }
-        PlanOutcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
+        Outcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
     }
 }
 
 fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, CliError> {
     report::file::check_folder(folder)?;
-    let scenario = &loaded.scenario;
-    let outcome = Maps::default().with(&loaded.robot, scenario.object.size_m, |map, _| {
-        planner::top(scenario, map, wanted, &mut until_interrupted)
-    })?;
-    match outcome {
-        TopOutcome::Found(plans) => {
+    let planner = Planner::new(&loaded.robot);
+    match planner.search(&loaded.scenario).observer(&mut until_interrupted).top(wanted)? {
+        Outcome::Found(plans) => {
             for (index, plan) in plans.iter().enumerate() {
                 let path = folder.join(format!("plan-{}.json", index + 1));
                 report::file::write_whole(&path, report::json::plan(plan).as_bytes())?;
@@ -74,7 +71,7 @@ fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, Cl
             output::print(&report::plans::table(&plans))?;
             Ok(found(loaded))
         }
-        TopOutcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
+        Outcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
     }
 }
 

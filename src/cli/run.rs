@@ -14,7 +14,7 @@ use super::{
     exit::{CliError, Exit},
     finish::{self, Ended, Ending},
     interrupt,
-    maps::Maps,
+    planners::Planners,
     pipeline,
     progress::Progress,
     select::{self, Selected},
@@ -29,7 +29,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     interrupt::listen("the scenarios at work are finished and reported")?;
     let turns = Turns {
         args,
-        maps: Maps::default(),
+        planners: Planners::default(),
         progress: Progress::new(wanted.len()),
         failed: AtomicBool::new(false),
         broken: Mutex::new(None),
@@ -50,7 +50,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
 /// What the scenarios of a run share.
 struct Turns<'a> {
     args: &'a RunArgs,
-    maps: Maps,
+    planners: Planners,
     progress: Progress,
     /// True once an expectation was not met.
     failed: AtomicBool,
@@ -82,7 +82,7 @@ impl Turns<'_> {
     }
 
     fn run(&self, loaded: &LoadedScenario) -> Result<Ended, CliError> {
-        let run = pipeline::run_scenario(loaded, &self.maps)?;
+        let run = pipeline::run_scenario(loaded, &self.planners)?;
         finish::finish(run, &loaded.scenario, &loaded.robot, &self.args.report)
     }
 

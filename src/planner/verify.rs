@@ -6,6 +6,7 @@
 
 use nalgebra::Vector3;
 
+use super::outcome::PlanError;
 use crate::{
     collision::{CollisionModel, PersonPart, Scene},
     comfort,
@@ -18,7 +19,7 @@ use crate::{
     statics::{Hold, StabilityWorkspace},
 };
 
-/// How exact inverse kinematics must be, m and rad (METHOD section 3).
+/// How exact inverse kinematics must be, m and rad (docs/method.md#34-constraints).
 const POSE_TOLERANCE: f64 = 1e-6;
 /// How far a figure of the plan may be from the one computed again: rounding, relative.
 const FIGURE_TOLERANCE: f64 = 1e-6;
@@ -37,7 +38,7 @@ impl std::fmt::Display for Flaw {
 ///
 /// # Errors
 /// When the scenario's person or tool is none.
-pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Vec<Flaw>, HumanError> {
+pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Vec<Flaw>, PlanError> {
     let mut flaws = Vec::new();
     arms(plan, robot, &mut flaws);
     stability(plan, scenario, robot, &mut flaws);
@@ -153,7 +154,7 @@ fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Op
     })
 }
 
-/// The first two bodies of a plan that touch, or come closer to the person than METHOD section 3 allows; the person is
+/// The first two bodies of a plan that touch, or come closer to the person than docs/method.md#35-clearances allows; the person is
 /// left out where the plan has none.
 ///
 /// # Errors

@@ -17,7 +17,7 @@ use crate::{
     cli::{
         args::RecordChoice,
         exit::CliError,
-        maps::Maps,
+        planners::Planners,
         margin,
         pipeline::{self, Run},
         recording,
@@ -26,7 +26,7 @@ use crate::{
         plan::Plan,
         scenario::{PlannerKind, Scenario, StabilityKind},
     },
-    planner::{self, PlanOutcome},
+    planner::Outcome,
     report::{
         file,
         reproduce::{FIRST_SEED, Hold},
@@ -120,7 +120,7 @@ impl Done {
 /// Where holds are made and kept.
 pub struct Workshop<'a> {
     robot: &'a Robot,
-    maps: Maps,
+    planners: Planners,
     out: PathBuf,
     program: String,
     record: RecordChoice,
@@ -143,7 +143,7 @@ impl<'a> Workshop<'a> {
         let program = std::env::current_exe()
             .and_then(fs::read)
             .map_err(|error| CliError::Machine(format!("failed to read this program's own file: {error}")))?;
-        Ok(Self { robot, maps: Maps::default(), out: out.to_owned(), program: hex(&Sha256::digest(program)), record })
+        Ok(Self { robot, planners: Planners::default(), out: out.to_owned(), program: hex(&Sha256::digest(program)), record })
     }
 
     /// Where holds are kept.
@@ -197,7 +197,7 @@ impl<'a> Workshop<'a> {
     fn make(&self, job: &Job) -> Result<Hold, CliError> {
         let scenario = &job.scenario;
         let start = Instant::now();
-        let outcome = pipeline::timed_plan(scenario, self.robot, &self.maps, &mut planner::nobody)?;
+        let outcome = self.planners.timed_plan(scenario, self.robot, None)?;
         let mut hold = Hold {
             operation: scenario.name.clone(),
             kind: scenario.operation.kind,
@@ -212,14 +212,14 @@ impl<'a> Workshop<'a> {
             simulate_ms: None,
         };
         match outcome {
-            PlanOutcome::Infeasible(why) => hold.infeasible = Some(why.to_string()),
-            PlanOutcome::Found(plan) => {
+            Outcome::Infeasible(why) => hold.infeasible = Some(why.to_string()),
+            Outcome::Found(plan) => {
                 // Without the map, which is made once for all plans.
                 hold.plan_ms = plan.planner.and_then(|planner| planner.wall_ms).unwrap_or(hold.plan_ms);
                 if job.work != Work::Plan {
                     self.simulate(job, &plan, &mut hold)?;
                 }
-                hold.plan = Some(*plan);
+                hold.plan = Some(plan);
             }
         }
         Ok(hold)

@@ -1,10 +1,10 @@
-//! A map of where an arm's hand can be: it says at once that a pose is hopeless, and where to start for one that is not.
+//! A map of where an arm's gripper can be: it rejects hopeless poses at once and seeds inverse kinematics for the others.
 //!
-//! Turning the first joint turns the hand about that joint's axis, and turning the last one leaves that joint's own axis
-//! where it is. So what an arm reaches depends, but for those two joints' limits, on four numbers: the distance of the last
-//! joint from the first one's axis, its height along it, and the direction of the last axis seen from there. The map
-//! divides them into cells and keeps a few configurations of each. It holds for every arm with a revolute joint at either
-//! end, knows nothing of boards and people, and is made anew in some 20 ms: there is no file that could be out of date.
+//! Turning the first joint turns the gripper about that joint's axis, and turning the last joint leaves the last axis where it
+//! is. So what an arm reaches depends, but for the limits of these two joints, on four numbers: the distance of the last
+//! joint from the first axis, its height along that axis, and the direction of the last axis seen from there. The map
+//! divides them into cells and keeps a few configurations of each. It works for every arm whose first and last joints are
+//! revolute.
 
 use std::f64::consts::PI;
 
@@ -12,20 +12,15 @@ use nalgebra::{Isometry3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-use super::{person_map::direction_cell, propose::uniform};
-use crate::{model::frames::Pose, robot::Chain};
-
-/// Configurations that the map is made of.
-const SAMPLES: usize = 24_000;
-/// Configurations that a cell keeps.
-const KEPT: usize = 4;
-/// Side of a cell in distance and height, m.
-const CELL_M: f64 = 0.1;
-/// Cells along a side of each face of the cube that directions are sorted into: some 30 degrees.
-const CELLS_A_SIDE: usize = 3;
-const DIRECTIONS: usize = 6 * CELLS_A_SIDE * CELLS_A_SIDE;
-/// The map's seed: it is the same for every search.
-const SEED: u128 = 0x05ee_d0fa_11ab_0a2d;
+use super::direction::{direction_cell, direction_cells};
+use crate::{
+    model::frames::Pose,
+    planner::{
+        domain::uniform,
+        params::library::{REACH_CELL_M, REACH_DIRECTIONS, REACH_SAMPLES, REACH_SEED, REACH_SEEDS},
+    },
+    robot::Chain,
+};
 
 /// The map of one arm.
 #[derive(Clone, Debug)]
@@ -34,7 +29,7 @@ pub struct ReachMap {
     levels: usize,
     reach_m: f64,
     samples: Vec<Sample>,
-    /// The numbers of the samples in each cell.
+    /// Indices of the samples in each cell.
     cells: Vec<Vec<usize>>,
 }
 
@@ -46,8 +41,8 @@ struct Sample {
     x_wg: Pose,
 }
 
-/// Where a hand is, seen from the first joint's axis.
-struct Seen {
+/// Where a gripper is relative to the first joint's axis.
+struct Located {
     cell: Option<usize>,
     azimuth_rad: f64,
 }
@@ -56,18 +51,18 @@ impl ReachMap {
     /// The map of an arm.
     pub fn new(chain: &Chain) -> Self {
         let reach_m = chain.reach_m();
-        let rings = (reach_m / CELL_M).ceil() as usize;
+        let rings = (reach_m / REACH_CELL_M).ceil() as usize;
         let levels = 2 * rings;
-        let cells = vec![Vec::new(); rings * levels * DIRECTIONS];
+        let cells = vec![Vec::new(); rings * levels * direction_cells(REACH_DIRECTIONS)];
         let mut map = Self { rings, levels, reach_m, samples: Vec::new(), cells };
-        let mut random = Pcg64::new(SEED, 0);
-        for _ in 0..SAMPLES {
+        let mut random = Pcg64::new(REACH_SEED, 0);
+        for _ in 0..REACH_SAMPLES {
             let limits = chain.lower().iter().zip(chain.upper());
             let q_rad: Vec<_> = limits.map(|(&low, &high)| uniform(&mut random, low, high)).collect();
             let x_wg = chain.gripper_pose(&q_rad);
-            let Seen { cell, azimuth_rad } = map.seen(chain, &x_wg);
+            let Located { cell, azimuth_rad } = map.locate(chain, &x_wg);
             if let Some(cell) = cell.map(|cell| &mut map.cells[cell])
-                && cell.len() < KEPT
+                && cell.len() < REACH_SEEDS
             {
                 cell.push(map.samples.len());
             }
@@ -76,14 +71,14 @@ impl ReachMap {
         map
     }
 
-    /// False when no configuration is known near this pose of the hand.
+    /// False if no configuration is known near this pose of the gripper.
     pub fn reaches(&self, chain: &Chain, x_wg: &Pose) -> bool {
-        self.seen(chain, x_wg).cell.is_some_and(|cell| !self.cells[cell].is_empty())
+        self.locate(chain, x_wg).cell.is_some_and(|cell| !self.cells[cell].is_empty())
     }
 
-    /// Configurations near those that bring the hand to this pose, within the joints' limits.
+    /// Configurations near those that bring the gripper to this pose, within the joint limits.
     pub fn seeds<'a>(&'a self, chain: &'a Chain, x_wg: &'a Pose) -> impl Iterator<Item = Vec<f64>> + 'a {
-        let Seen { cell, azimuth_rad } = self.seen(chain, x_wg);
+        let Located { cell, azimuth_rad } = self.locate(chain, x_wg);
         let samples = cell.map_or(&[][..], |cell| &self.cells[cell]);
         samples.iter().filter_map(move |&number| {
             let sample = &self.samples[number];
@@ -100,8 +95,8 @@ impl ReachMap {
         })
     }
 
-    /// A configuration that is one of the map's but for the first joint, which turns what the hand holds at `x_gb` to a drawn
-    /// azimuth, and the pose of that; none when `accepts` does not want it or the joint does not turn so far.
+    /// A configuration of the map with the first joint drawn at random, and the pose of a body that the gripper holds at
+    /// `x_gb`; `None` if `accepts` refuses that pose.
     pub fn draw(
         &self,
         chain: &Chain,
@@ -126,23 +121,23 @@ impl ReachMap {
         })
     }
 
-    fn seen(&self, chain: &Chain, x_wg: &Pose) -> Seen {
+    fn locate(&self, chain: &Chain, x_wg: &Pose) -> Located {
         let (origin_w, axis_w) = chain.first_axis_w();
         let (p_w, direction_w) = chain.last_axis_w(x_wg);
         let from_axis = p_w - origin_w;
         let height_m = from_axis.dot(&axis_w);
         let outward = from_axis - axis_w * height_m;
         let distance_m = outward.norm();
-        // Any direction will do as the azimuth's zero, as long as it is always the same.
+        // Any fixed direction serves as the azimuth's zero.
         let zero = axis_w.cross(&if axis_w.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() }).normalize();
         let azimuth_rad = axis_w.cross(&zero).dot(&outward).atan2(zero.dot(&outward));
         let outward = outward / distance_m.max(f64::MIN_POSITIVE);
         let direction = [outward.dot(&direction_w), axis_w.cross(&outward).dot(&direction_w), axis_w.dot(&direction_w)];
-        let ring = (distance_m / CELL_M) as usize;
-        let level = ((height_m + self.reach_m) / CELL_M).floor();
+        let ring = (distance_m / REACH_CELL_M) as usize;
+        let level = ((height_m + self.reach_m) / REACH_CELL_M).floor();
         let inside = ring < self.rings && level >= 0.0 && (level as usize) < self.levels;
         let cell = inside
-            .then(|| (ring * self.levels + level as usize) * DIRECTIONS + direction_cell(direction, CELLS_A_SIDE));
-        Seen { cell, azimuth_rad }
+            .then(|| (ring * self.levels + level as usize) * direction_cells(REACH_DIRECTIONS) + direction_cell(direction, REACH_DIRECTIONS));
+        Located { cell, azimuth_rad }
     }
 }

@@ -1,35 +1,39 @@
 //! The quadratic program of one step: the dual active-set method of Goldfarb and Idnani (Mathematical Programming 27,
 //! 1983), for a few dozen variables.
 //!
-//! From the unconstrained optimum on, the constraint that is broken most is made active, others are let go where their
-//! multipliers would turn negative, until none is broken. The curvature is positive definite, so every step is unique.
-//! With so few variables the projections are worked out anew at every change of the active set. (clarabel, which solves
-//! the programs of stability, takes ten times as long here: it is made for large sparse programs.)
+//! Starting at the unconstrained optimum, the most violated constraint becomes active and constraints whose multipliers would
+//! turn negative become inactive, until none is violated. The Hessian is positive definite, so every step is unique. With so
+//! few variables the projections are computed from scratch at every change of the active set.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A linearised constraint: `margin + gradient . d >= 0`.
+/// A linear constraint on the step d: `margin + gradient . d >= 0`.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct LinearConstraint {
     pub gradient: DVector<f64>,
     pub margin: f64,
 }
 
-/// A constraint that is broken by less than this share of its gradient's length is kept.
+/// A constraint that is violated by less than this share of its gradient's length is satisfied.
 const TOLERANCE: f64 = 1e-9;
-/// Changes of the active set after which a program is given up; a few more than there are variables are usual.
+/// Changes of the active set after which a program is given up; a few more than the number of variables are usual.
 const MAX_CHANGES: usize = 200;
 
-/// The move that maximises `gradient . d - 1/2 d' curvature d` within `|d_i| <= radius` and all rows; none when the rows
-/// leave no room or the curvature is not positive definite.
-pub fn best_move(gradient: &DVector<f64>, curvature: &DMatrix<f64>, rows: &[Row], radius: f64) -> Option<DVector<f64>> {
-    let inverse = curvature.clone().cholesky()?.inverse();
-    let program = Program { rows: live(rows, radius), radius, count: gradient.len() };
+/// The step that maximises `gradient . d - 1/2 d' hessian d` within `|d_i| <= radius` and all constraints; `None` if they have
+/// no common point or the Hessian is not positive definite.
+pub fn solve(
+    gradient: &DVector<f64>,
+    hessian: &DMatrix<f64>,
+    constraints: &[LinearConstraint],
+    radius: f64,
+) -> Option<DVector<f64>> {
+    let inverse = hessian.clone().cholesky()?.inverse();
+    let program = Program { constraints: relevant(constraints, radius), radius, count: gradient.len() };
     let mut d = &inverse * gradient;
     let mut active: Vec<Active> = Vec::new();
     let mut changes = 0;
-    while let Some(broken) = program.most_broken(&d) {
-        let normal = program.normal(broken);
+    while let Some(violated) = program.most_violated(&d) {
+        let normal = program.normal(violated);
         let along = &inverse * &normal;
         let mut multiplier = 0.0;
         loop {
@@ -38,9 +42,9 @@ pub fn best_move(gradient: &DVector<f64>, curvature: &DMatrix<f64>, rows: &[Row]
                 return None;
             }
             let Direction { primal, dual } = direction(&active, &normal, &along)?;
-            let curvature_along = primal.dot(&normal);
-            let full = if curvature_along > TOLERANCE * inverse.amax() {
-                -program.margin(broken, &d) / curvature_along
+            let curvature = primal.dot(&normal);
+            let full = if curvature > TOLERANCE * inverse.amax() {
+                -program.margin(violated, &d) / curvature
             } else {
                 f64::INFINITY
             };
@@ -69,37 +73,43 @@ pub fn best_move(gradient: &DVector<f64>, curvature: &DMatrix<f64>, rows: &[Row]
 /// A constraint that holds with equality.
 struct Active {
     normal: DVector<f64>,
-    /// The inverse curvature times the normal.
+    /// The inverse Hessian times the normal.
     along: DVector<f64>,
     multiplier: f64,
 }
 
 /// All constraints, with normals of length 1.
 struct Program {
-    rows: Vec<Row>,
+    constraints: Vec<LinearConstraint>,
     radius: f64,
     count: usize,
 }
 
-/// Rows with gradients of length 1; those that no move within the trust region can break are left out.
-fn live(rows: &[Row], radius: f64) -> Vec<Row> {
-    let live = rows.iter().filter(|row| row.margin < radius * row.gradient.lp_norm(1));
-    live.map(|row| (row, row.gradient.norm()))
+/// Constraints with gradients of length 1, without those that no step within the trust region can violate.
+fn relevant(constraints: &[LinearConstraint], radius: f64) -> Vec<LinearConstraint> {
+    constraints
+        .iter()
+        .filter(|constraint| constraint.margin < radius * constraint.gradient.lp_norm(1))
+        .map(|constraint| (constraint, constraint.gradient.norm()))
         .filter(|(_, length)| *length > 0.0)
-        .map(|(row, length)| Row { gradient: &row.gradient / length, margin: row.margin / length })
+        .map(|(LinearConstraint { gradient, margin }, length)| LinearConstraint {
+            gradient: gradient / length,
+            margin: margin / length,
+        })
         .collect()
 }
 
 impl Program {
-    /// The constraint that is broken most: the rows come first, then `radius - d_i` and `radius + d_i` by turns.
-    fn most_broken(&self, d: &DVector<f64>) -> Option<usize> {
-        let margins = (0..self.rows.len() + 2 * self.count).map(|number| (number, self.margin(number, d)));
+    /// The most violated constraint, as an index: the linear constraints come first, then `radius - d_i` and `radius + d_i`
+    /// alternately.
+    fn most_violated(&self, d: &DVector<f64>) -> Option<usize> {
+        let margins = (0..self.constraints.len() + 2 * self.count).map(|number| (number, self.margin(number, d)));
         margins.filter(|(_, margin)| *margin < -TOLERANCE).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| number)
     }
 
     fn margin(&self, number: usize, d: &DVector<f64>) -> f64 {
-        match self.rows.get(number) {
-            Some(row) => row.margin + row.gradient.dot(d),
+        match self.constraints.get(number) {
+            Some(constraint) => constraint.margin + constraint.gradient.dot(d),
             None => {
                 let (variable, sign) = self.bound(number);
                 self.radius + sign * d[variable]
@@ -108,8 +118,8 @@ impl Program {
     }
 
     fn normal(&self, number: usize) -> DVector<f64> {
-        match self.rows.get(number) {
-            Some(row) => row.gradient.clone(),
+        match self.constraints.get(number) {
+            Some(constraint) => constraint.gradient.clone(),
             None => {
                 let (variable, sign) = self.bound(number);
                 let mut normal = DVector::zeros(self.count);
@@ -120,19 +130,19 @@ impl Program {
     }
 
     fn bound(&self, number: usize) -> (usize, f64) {
-        let number = number - self.rows.len();
+        let number = number - self.constraints.len();
         (number / 2, if number.is_multiple_of(2) { -1.0 } else { 1.0 })
     }
 }
 
-/// How the move and the active multipliers change as a further constraint's multiplier grows.
+/// How the step and the active multipliers change as a further constraint's multiplier grows.
 struct Direction {
     primal: DVector<f64>,
     /// The rates at which the multipliers fall.
     dual: DVector<f64>,
 }
 
-/// With H the inverse curvature, N the active normals and `along` = H n: `dual = (N' H N)^-1 N' H n`,
+/// With H the inverse Hessian, N the active normals and `along` = H n: `dual = (N' H N)^-1 N' H n`,
 /// `primal = H (n - N dual)`.
 fn direction(active: &[Active], normal: &DVector<f64>, along: &DVector<f64>) -> Option<Direction> {
     if active.is_empty() {
@@ -163,49 +173,48 @@ mod tests {
 
     use super::*;
 
-    fn row(gradient: &[f64], margin: f64) -> Row {
-        Row { gradient: DVector::from_column_slice(gradient), margin }
+    fn constraint(gradient: &[f64], margin: f64) -> LinearConstraint {
+        LinearConstraint { gradient: DVector::from_column_slice(gradient), margin }
     }
 
     #[test]
     fn the_nearest_point_of_a_corner_is_found() {
         // min |d - (2, 1)|^2 / 2 within d_0 + d_1 <= 1 and d_0 <= 0.75: by hand d = (0.75, 0.25).
-        let rows = [row(&[-1.0, -1.0], 1.0), row(&[-1.0, 0.0], 0.75)];
-        let d = best_move(&DVector::from_column_slice(&[2.0, 1.0]), &DMatrix::identity(2, 2), &rows, 10.0).unwrap();
+        let constraints = [constraint(&[-1.0, -1.0], 1.0), constraint(&[-1.0, 0.0], 0.75)];
+        let d = solve(&DVector::from_column_slice(&[2.0, 1.0]), &DMatrix::identity(2, 2), &constraints, 10.0).unwrap();
         assert!((d - DVector::from_column_slice(&[0.75, 0.25])).norm() < 1e-12);
     }
 
     #[test]
-    fn rows_that_leave_no_room_have_no_move() {
-        let rows = [row(&[1.0, 0.0], -1.0), row(&[-1.0, 0.0], -1.0)];
-        assert!(best_move(&DVector::from_column_slice(&[1.0, 0.0]), &DMatrix::identity(2, 2), &rows, 10.0).is_none());
+    fn contradictory_constraints_have_no_solution() {
+        let constraints = [constraint(&[1.0, 0.0], -1.0), constraint(&[-1.0, 0.0], -1.0)];
+        assert!(solve(&DVector::from_column_slice(&[1.0, 0.0]), &DMatrix::identity(2, 2), &constraints, 10.0).is_none());
     }
 
     proptest! {
-        /// Feasible, and no feasible point is better: a convex program's optimum beats every convex combination with any
-        /// other feasible point.
+        /// The solution is feasible, and no drawn feasible point has a higher objective.
         #[test]
-        fn no_feasible_move_is_better(
+        fn no_feasible_step_is_better(
             numbers in prop::collection::vec(-1.0..1.0_f64, 6 * 6 + 6 + 12 * 7),
             others in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 6), 40),
         ) {
             let root = DMatrix::from_column_slice(6, 6, &numbers[..36]);
-            let curvature = &root * root.transpose() + DMatrix::identity(6, 6) * 0.05;
+            let hessian = &root * root.transpose() + DMatrix::identity(6, 6) * 0.05;
             let gradient = DVector::from_column_slice(&numbers[36..42]);
-            // Margins of at least 0: no move is always allowed.
-            let rows: Vec<_> = numbers[42..].chunks(7).map(|row_| row(&row_[..6], row_[6].abs())).collect();
-            let worth = |d: &DVector<f64>| gradient.dot(d) - 0.5 * d.dot(&(&curvature * d));
-            let d = best_move(&gradient, &curvature, &rows, 0.8).unwrap();
-            let kept = |d: &DVector<f64>| {
-                d.amax() <= 0.8 + 1e-8 && rows.iter().all(|row| row.margin + row.gradient.dot(d) >= -1e-8)
+            // Margins of at least 0: the zero step is feasible.
+            let constraints: Vec<_> = numbers[42..].chunks(7).map(|numbers| constraint(&numbers[..6], numbers[6].abs())).collect();
+            let objective = |d: &DVector<f64>| gradient.dot(d) - 0.5 * d.dot(&(&hessian * d));
+            let d = solve(&gradient, &hessian, &constraints, 0.8).unwrap();
+            let feasible = |d: &DVector<f64>| {
+                d.amax() <= 0.8 + 1e-8 && constraints.iter().all(|constraint| constraint.margin + constraint.gradient.dot(d) >= -1e-8)
             };
-            prop_assert!(kept(&d));
+            prop_assert!(feasible(&d));
             for other in others {
                 let mut other = DVector::from_column_slice(&other);
-                while !kept(&other) {
+                while !feasible(&other) {
                     other *= 0.7;
                 }
-                prop_assert!(worth(&other) <= worth(&d) + 1e-8);
+                prop_assert!(objective(&other) <= objective(&d) + 1e-8);
             }
         }
     }
