@@ -50,13 +50,13 @@
 //! ```no_run
 //! use std::path::Path;
 //!
-//! use benchdog::{planner, planner::PlanOutcome, report, scenario};
+//! use benchdog::{planner::{Outcome, Planner}, report, scenario};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let loaded = scenario::load(Path::new("scenarios/quickstart.toml"))?;
-//! match planner::plan(&loaded.scenario, &loaded.robot)? {
-//!     PlanOutcome::Found(plan) => report::file::write_whole(Path::new("plan.json"), report::json::plan(&plan).as_bytes())?,
-//!     PlanOutcome::Infeasible(why) => println!("no plan: {why}"),
+//! match Planner::new(&loaded.robot).plan(&loaded.scenario)? {
+//!     Outcome::Found(plan) => report::file::write_whole(Path::new("plan.json"), report::json::plan(&plan).as_bytes())?,
+//!     Outcome::Infeasible(why) => println!("no plan: {why}"),
 //! }
 //! # Ok(())
 //! # }

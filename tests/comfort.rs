@@ -7,7 +7,7 @@ use benchdog::{
         plan::{AverageComfort, Plan},
         scenario::PersonAnswer,
     },
-    planner::{self, PlanOutcome},
+    planner::{self, Outcome, Planner},
     robot::Robot,
     scenario::{self, LoadedScenario},
 };
@@ -17,9 +17,9 @@ fn cut() -> LoadedScenario {
 }
 
 fn plan(loaded: &LoadedScenario) -> Plan {
-    match planner::plan(&loaded.scenario, &loaded.robot).unwrap() {
-        PlanOutcome::Found(plan) => *plan,
-        PlanOutcome::Infeasible(why) => panic!("{why}"),
+    match Planner::new(&loaded.robot).plan(&loaded.scenario).unwrap() {
+        Outcome::Found(plan) => plan,
+        Outcome::Infeasible(why) => panic!("{why}"),
     }
 }
 

@@ -4,8 +4,7 @@ use super::{
     args::CircleArgs,
     curve::circle_radius_m,
     exit::{CliError, Exit},
-    interrupt,
-    output,
+    interrupt, output,
     plan::{infeasible, to_be_planned, until_interrupted},
 };
 use crate::{

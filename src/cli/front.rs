@@ -3,8 +3,7 @@
 use super::{
     args::FrontArgs,
     exit::{CliError, Exit},
-    interrupt,
-    output,
+    interrupt, output,
     plan::{infeasible, to_be_planned, until_interrupted},
 };
 use crate::{

@@ -5,8 +5,7 @@ use std::{ops::ControlFlow, path::Path};
 use super::{
     args::PlanArgs,
     exit::{CliError, Exit},
-    interrupt,
-    output,
+    interrupt, output,
     planners::Planners,
 };
 use crate::{

@@ -13,9 +13,8 @@ use super::{
     args::RunArgs,
     exit::{CliError, Exit},
     finish::{self, Ended, Ending},
-    interrupt,
+    interrupt, pipeline,
     planners::Planners,
-    pipeline,
     progress::Progress,
     select::{self, Selected},
 };

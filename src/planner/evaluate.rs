@@ -173,14 +173,7 @@ pub fn comfort(problem: &Problem<'_>, candidate: &Candidate, configuration: &Con
     let robot_points_w = comfort::robot_points_w(&problem.robot.robot, &configuration.link_poses);
     let Placement { x_wo, x_wb } = configuration.placement;
     let wrench_w = problem.scenario.operation.wrench_w(&x_wo);
-    comfort::of_posture(
-        &problem.human,
-        &problem.objective,
-        &robot_points_w,
-        &x_wb,
-        &candidate.work.q_h_rad,
-        &wrench_w,
-    )
+    comfort::of_posture(&problem.human, &problem.objective, &robot_points_w, &x_wb, &candidate.work.q_h_rad, &wrench_w)
 }
 
 /// The query for the person's responses to a grasp; the tool's roll is counted from that of `operation`.

@@ -83,8 +83,7 @@ pub fn front(
         sweep.search(scenario, true, reborrow(&mut observer))?;
     }
     let optima = sweep.optima();
-    let swept: Vec<_> =
-        FRONT_SHARES.into_iter().map(|share| weighted(scenario, normalised(share, optima))).collect();
+    let swept: Vec<_> = FRONT_SHARES.into_iter().map(|share| weighted(scenario, normalised(share, optima))).collect();
     let all = || std::iter::once(&own).chain(&swept);
     for scenario in all().filter(|scenario| !is_alone(scenario)) {
         sweep.search(scenario, true, reborrow(&mut observer))?;
@@ -99,9 +98,7 @@ pub fn front(
     }
     Ok(match points.first().cloned() {
         Some(own) => Outcome::Found(Front { optima, points: non_dominated(points), own }),
-        None => {
-            Outcome::Infeasible(sweep.infeasible.unwrap_or(Infeasible { candidates: 0, removed: Vec::new() }))
-        }
+        None => Outcome::Infeasible(sweep.infeasible.unwrap_or(Infeasible { candidates: 0, removed: Vec::new() })),
     })
 }
 
@@ -197,8 +194,7 @@ impl Sweep<'_> {
 
     /// The plan of the pool's best candidate that passes the check.
     fn best(&mut self, scenario: &Scenario) -> Result<Option<Plan>, PlanError> {
-        let mut evaluator =
-            Evaluator::new(Problem::new(scenario, &self.library.robot)?, SearchStats::unlimited());
+        let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot)?, SearchStats::unlimited());
         while let Some(index) = self.index_of_best(scenario) {
             if let Some(plan) = assemble(&mut evaluator, &self.pool[index], 0)
                 && is_sound(&evaluator, &plan)?

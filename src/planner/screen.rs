@@ -180,12 +180,7 @@ pub fn standing_pose(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
 
 /// A candidate from a grasp and the posture nearest to `near_q_rad` that brings the tool exactly to its pose; `None` if the
 /// person's arm cannot. `x_bt` is the tool pose of `near_q_rad`.
-pub fn align(
-    problem: &Problem<'_>,
-    grasp: &BoardGrasp,
-    near_q_rad: &ArmAngles,
-    x_bt: &Pose,
-) -> Option<Candidate> {
+pub fn align(problem: &Problem<'_>, grasp: &BoardGrasp, near_q_rad: &ArmAngles, x_bt: &Pose) -> Option<Candidate> {
     let Alignment { roll_rad, x_wt, x_wb } = Alignment::new(problem, grasp, x_bt);
     let x_bt = x_wb.inverse() * x_wt;
     let swivel_rad = problem.human.swivel_rad(near_q_rad);
@@ -197,7 +192,6 @@ pub fn align(
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     let heading = x_wb.rotation * Vector3::x();
     let p_wo = grasp.x_wo.translation.vector;
-    let work =
-        WorkPose { q_h_rad, heading_rad: heading.y.atan2(heading.x), roll_rad, p_wo_xy_m: [p_wo.x, p_wo.y] };
+    let work = WorkPose { q_h_rad, heading_rad: heading.y.atan2(heading.x), roll_rad, p_wo_xy_m: [p_wo.x, p_wo.y] };
     Some(Candidate { work, arms: grasp.arms.clone() })
 }

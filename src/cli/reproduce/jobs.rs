@@ -17,9 +17,9 @@ use crate::{
     cli::{
         args::RecordChoice,
         exit::CliError,
-        planners::Planners,
         margin,
         pipeline::{self, Run},
+        planners::Planners,
         recording,
     },
     model::{
@@ -143,7 +143,13 @@ impl<'a> Workshop<'a> {
         let program = std::env::current_exe()
             .and_then(fs::read)
             .map_err(|error| CliError::Machine(format!("failed to read this program's own file: {error}")))?;
-        Ok(Self { robot, planners: Planners::default(), out: out.to_owned(), program: hex(&Sha256::digest(program)), record })
+        Ok(Self {
+            robot,
+            planners: Planners::default(),
+            out: out.to_owned(),
+            program: hex(&Sha256::digest(program)),
+            record,
+        })
     }
 
     /// Where holds are kept.

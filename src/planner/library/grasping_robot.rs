@@ -120,7 +120,8 @@ fn moved_by(robot: &Robot) -> Vec<Option<(usize, usize)>> {
     let mut moved_by: Vec<Option<(usize, usize)>> = Vec::with_capacity(robot.links.len());
     // Parents come before children.
     for link in &robot.links {
-        let by = link.parent_joint.and_then(|joint| driven(joint).or_else(|| moved_by[robot.joints[joint].parent_link]));
+        let by =
+            link.parent_joint.and_then(|joint| driven(joint).or_else(|| moved_by[robot.joints[joint].parent_link]));
         moved_by.push(by);
     }
     moved_by

@@ -136,8 +136,10 @@ impl ReachMap {
         let ring = (distance_m / REACH_CELL_M) as usize;
         let level = ((height_m + self.reach_m) / REACH_CELL_M).floor();
         let inside = ring < self.rings && level >= 0.0 && (level as usize) < self.levels;
-        let cell = inside
-            .then(|| (ring * self.levels + level as usize) * direction_cells(REACH_DIRECTIONS) + direction_cell(direction, REACH_DIRECTIONS));
+        let cell = inside.then(|| {
+            (ring * self.levels + level as usize) * direction_cells(REACH_DIRECTIONS)
+                + direction_cell(direction, REACH_DIRECTIONS)
+        });
         Located { cell, azimuth_rad }
     }
 }

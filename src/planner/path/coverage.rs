@@ -50,9 +50,8 @@ impl<'a, 'o> PathProblem<'a> {
         library: &'a GraspLibrary,
         observer: Option<&'a mut Observer<'a>>,
     ) -> Result<Option<Self>, PlanError> {
-        let evaluator = |scenario| {
-            Ok(Evaluator::new(Problem::new(scenario, &library.robot)?, SearchStats::unlimited()))
-        };
+        let evaluator =
+            |scenario| Ok(Evaluator::new(Problem::new(scenario, &library.robot)?, SearchStats::unlimited()));
         let evaluators = points.iter().map(evaluator).collect::<Result<Vec<_>, PlanError>>()?;
         let Some(Evaluator { problem, .. }) = evaluators.first() else { return Ok(None) };
         let budget = SearchBudget::of(problem.scenario.planner.budget);
@@ -93,8 +92,7 @@ impl<'a, 'o> PathProblem<'a> {
             let x_wb = standing_pose(&x_wt, &posture.x_bt, floor_z_m);
             let body_w = posture.medium_points_w(&x_wb);
             let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body_w, robot_points_w);
-            let objective =
-                settings.weight_muscular * posture.muscular + settings.weight_peripersonal * distance_m;
+            let objective = settings.weight_muscular * posture.muscular + settings.weight_peripersonal * distance_m;
             Estimate { posture: *posture, x_wb, objective }
         };
         let mut estimates: Vec<_> = self.postures.postures(&x_wt, floor_z_m).iter().map(estimate).collect();
@@ -156,8 +154,7 @@ impl<'a, 'o> PathProblem<'a> {
         let evaluator = &mut self.evaluators[point];
         let Problem { scenario, human, objective, .. } = &evaluator.problem;
         let wrench_w = scenario.operation.wrench_w(&grasp.x_wo);
-        let comfort =
-            comfort::of_posture(human, objective, &points_w, &response.x_wb, &response.q_rad, &wrench_w);
+        let comfort = comfort::of_posture(human, objective, &points_w, &response.x_wb, &response.q_rad, &wrench_w);
         let mut candidate = Candidate::without_person(grasp);
         let heading_rad = response.x_wb.rotation.euler_angles().2;
         candidate.work = WorkPose { q_h_rad: response.q_rad, heading_rad, ..candidate.work };

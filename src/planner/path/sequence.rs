@@ -150,8 +150,7 @@ impl Graph {
         for (point, &pose) in path.iter().enumerate() {
             let value = self.values[pose][point];
             if !value.exact {
-                let response =
-                    if value.value > 0.0 { problem.response(&self.poses[pose], point, None) } else { None };
+                let response = if value.value > 0.0 { problem.response(&self.poses[pose], point, None) } else { None };
                 self.values[pose][point] = Value::exact(response);
                 changed = true;
             }
@@ -177,9 +176,8 @@ impl Graph {
         for point in 1..points {
             let best_before = |to: usize| {
                 let from = (0..count).filter(|&from| self.motions[from][to] != Some(false));
-                let cost = |from: usize| {
-                    COST_PER_RAD * motion::largest_joint_distance_rad(&self.poses[from], &self.poses[to])
-                };
+                let cost =
+                    |from: usize| COST_PER_RAD * motion::largest_joint_distance_rad(&self.poses[from], &self.poses[to]);
                 // Staying at a pose is always possible.
                 from.map(|from| (from, sums[from] - cost(from)))
                     .max_by(|a, b| a.1.total_cmp(&b.1))

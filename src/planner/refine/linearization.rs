@@ -144,8 +144,7 @@ impl Linearization {
                 })
                 .unwrap_or_else(|| evaluator.utilisation(&candidate, &x_wo));
             // Where there is no equilibrium the difference says nothing: a positive entry keeps the step away.
-            gradient[number] =
-                if there.is_finite() { (there - here.utilisation) / STABILITY_DIFFERENCE } else { 1.0 };
+            gradient[number] = if there.is_finite() { (there - here.utilisation) / STABILITY_DIFFERENCE } else { 1.0 };
         }
         self.stability = Some(gradient.clone());
         gradient
@@ -159,8 +158,7 @@ impl Linearization {
         }
         let error = to.utilisation - from.utilisation - known.dot(d);
         let gradient = known + d * (error / d.norm_squared());
-        self.constraints
-            .push(LinearConstraint { gradient: -&gradient, margin: FULL_UTILISATION - to.utilisation });
+        self.constraints.push(LinearConstraint { gradient: -&gradient, margin: FULL_UTILISATION - to.utilisation });
         self.stability = Some(gradient);
         self.stability_is_updated = true;
     }

@@ -188,7 +188,9 @@ mod tests {
     #[test]
     fn contradictory_constraints_have_no_solution() {
         let constraints = [constraint(&[1.0, 0.0], -1.0), constraint(&[-1.0, 0.0], -1.0)];
-        assert!(solve(&DVector::from_column_slice(&[1.0, 0.0]), &DMatrix::identity(2, 2), &constraints, 10.0).is_none());
+        assert!(
+            solve(&DVector::from_column_slice(&[1.0, 0.0]), &DMatrix::identity(2, 2), &constraints, 10.0).is_none()
+        );
     }
 
     proptest! {

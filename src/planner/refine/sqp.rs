@@ -111,12 +111,7 @@ impl Iterate {
         true
     }
 
-    fn trial(
-        &mut self,
-        evaluator: &mut Evaluator<'_>,
-        d: &DVector<f64>,
-        constraints: &[LinearConstraint],
-    ) -> Trial {
+    fn trial(&mut self, evaluator: &mut Evaluator<'_>, d: &DVector<f64>, constraints: &[LinearConstraint]) -> Trial {
         let problem = &evaluator.problem;
         let Some(candidate) = self.linearization.variables.apply(problem, &self.here.candidate, d) else {
             return Trial::Failed;
