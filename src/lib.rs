@@ -34,7 +34,7 @@
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (plan, robot) = scenario::read_plan(Path::new("scenarios/plans/cut-rim-weak-grip.json"), None)?;
-//! let scenario = scenario::for_plan(&plan, &robot);
+//! let scenario = scenario::default_for_plan(&plan, &robot);
 //! let trace = sim::simulate(&robot, &plan, &sim::Conditions::of(&scenario))?;
 //! let judgement = judge::judge(&trace, &scenario.limits);
 //! assert_eq!(judgement.verdict, VerdictKind::Slips);

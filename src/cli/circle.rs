@@ -7,13 +7,13 @@ use super::{
     interrupt,
     maps::Maps,
     output,
-    plan::{infeasible, to_be_planned, until_interrupted},
+    plan::{infeasible, load_for_planning, stop_on_interrupt},
 };
 use crate::{
     human::HumanError,
     model::{
         plan::Plan,
-        scenario::{PersonAnswer, Scenario},
+        scenario::{ResponseKind, Scenario},
     },
     planner::{
         self, Infeasible, RobotMap,
@@ -24,20 +24,20 @@ use crate::{
 
 /// Writes plans and tables of the three ways.
 pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
-    let mut loaded = to_be_planned(&args.scenario)?;
+    let mut loaded = load_for_planning(&args.scenario)?;
     circle_radius_m(&loaded)?;
     args.search.apply(&mut loaded.scenario.planner);
     // Of three ways to hold the best answers are compared; the mean of all would take minutes for each.
-    loaded.scenario.comfort.person = PersonAnswer::Most;
+    loaded.scenario.comfort.person = ResponseKind::Best;
     report::file::check_folder(&args.out)?;
     interrupt::listen("what was found of the circle is written")?;
     let size_m = loaded.scenario.object.size_m;
-    let found = Maps::default().with(&loaded.robot, size_m, |map, _| three_ways(&loaded.scenario, map))?;
-    let (ways, motions) = match found {
+    let found = Maps::default().with(&loaded.robot, size_m, |map, _| solve_all(&loaded.scenario, map))?;
+    let (strategies, motions) = match found {
         Ok(found) => found,
         Err(why) => return Ok(infeasible(&loaded, &why)),
     };
-    for (name, plans) in &ways {
+    for (name, plans) in &strategies {
         for (index, plan) in plans.iter().enumerate() {
             let path = args.out.join(format!("{name}-{}.json", index + 1));
             match plan {
@@ -46,16 +46,16 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
             }
         }
     }
-    let joints = ways.iter().flat_map(|(_, plans)| plans).flatten().next().map_or_else(Vec::new, joints);
+    let joints = strategies.iter().flat_map(|(_, plans)| plans).flatten().next().map_or_else(Vec::new, joints);
     let step = |step: &MotionStep| report::circle::Step { x_wo: step.x_wo, q_rad: step.q_rad.concat() };
     let motions: Vec<Vec<_>> = motions.iter().map(|motion| motion.iter().map(step).collect()).collect();
     report::file::write_whole(&args.out.join("motion.csv"), report::circle::motion_csv(&joints, &motions).as_bytes())?;
-    let ways: Vec<_> = ways.iter().map(|(name, plans)| (*name, plans.as_slice())).collect();
-    report::file::write_whole(&args.out.join("circle.csv"), report::circle::csv(&ways).as_bytes())?;
-    output::print(&report::circle::table(&ways))?;
+    let strategies: Vec<_> = strategies.iter().map(|(name, plans)| (*name, plans.as_slice())).collect();
+    report::file::write_whole(&args.out.join("circle.csv"), report::circle::csv(&strategies).as_bytes())?;
+    output::print(&report::circle::table(&strategies))?;
     Ok(if interrupt::requested() {
         Exit::Interrupted
-    } else if ways.iter().any(|(_, plans)| plans.iter().any(Option::is_some)) {
+    } else if strategies.iter().any(|(_, plans)| plans.iter().any(Option::is_some)) {
         Exit::Met
     } else {
         Exit::Infeasible
@@ -67,16 +67,16 @@ fn joints(plan: &Plan) -> Vec<String> {
     plan.arms.iter().flat_map(|arm| arm.joints.clone()).collect()
 }
 
-type Ways = Vec<(&'static str, PlansByPoint)>;
+type Strategies = Vec<(&'static str, PlansByPoint)>;
 type Motions = Vec<Vec<MotionStep>>;
 
-fn three_ways(scenario: &Scenario, map: &RobotMap) -> Result<Result<(Ways, Motions), Infeasible>, HumanError> {
+fn solve_all(scenario: &Scenario, map: &RobotMap) -> Result<Result<(Strategies, Motions), Infeasible>, HumanError> {
     // The optima of one cut are good enough for all, and make them comparable.
     let points = match planner::with_optima(scenario, map)? {
         Ok(scenario) => circle::points(&scenario).unwrap_or_default(),
         Err(why) => return Ok(Err(why)),
     };
-    let Continuous { hold, sequence, motions } = circle::continuous(&points, map, &mut until_interrupted)?;
-    let separate = circle::separate(&points, map, &mut until_interrupted)?;
+    let Continuous { hold, sequence, motions } = circle::continuous(&points, map, &mut stop_on_interrupt)?;
+    let separate = circle::separate(&points, map, &mut stop_on_interrupt)?;
     Ok(Ok((vec![("hold", hold), ("sequence", sequence), ("separate", separate)], motions)))
 }

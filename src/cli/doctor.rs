@@ -34,52 +34,52 @@ const SOLVER_TOLERANCE: f64 = 1e-5;
 const BALANCE_N: f64 = 0.01;
 
 /// What a look at one thing found: what is well, or what is wrong.
-type Finding = Result<String, String>;
+type CheckResult = Result<String, String>;
 
 /// What is looked at, and how.
-type Look = (&'static str, fn() -> Finding);
+type Check = (&'static str, fn() -> CheckResult);
 
 /// Looks at everything and prints a line each.
 ///
 /// # Errors
 /// When standard output cannot be written, or something is wrong.
 pub fn doctor() -> Result<Exit, CliError> {
-    let findings: [Look; 5] =
+    let checks: [Check; 5] =
         [("versions", versions), ("robot", robot), ("person", person), ("solver", solver), ("physics", physics)];
     let mut wrong = Vec::new();
-    for (what, look) in findings {
-        let (mark, told) = match look() {
-            Ok(told) => ("ok", told),
-            Err(told) => {
+    for (what, check) in checks {
+        let (mark, message) = match check() {
+            Ok(message) => ("ok", message),
+            Err(message) => {
                 wrong.push(what);
-                ("WRONG", told)
+                ("WRONG", message)
             }
         };
-        output::print(&format!("{mark:<5}  {what:<9} {told}\n"))?;
+        output::print(&format!("{mark:<5}  {what:<9} {message}\n"))?;
     }
-    let (mark, told) = viewer();
-    output::print(&format!("{mark:<5}  {:<9} {told}\n", "viewer"))?;
+    let (mark, message) = viewer();
+    output::print(&format!("{mark:<5}  {:<9} {message}\n", "viewer"))?;
     if wrong.is_empty() { Ok(Exit::Met) } else { Err(CliError::Machine(format!("wrong: {}", wrong.join(", ")))) }
 }
 
-fn versions() -> Finding {
+fn versions() -> CheckResult {
     Ok(format!("benchdog {}", LONG.replace('\n', ", ")))
 }
 
-fn robot() -> Finding {
-    let mut told = Vec::new();
+fn robot() -> CheckResult {
+    let mut message = Vec::new();
     for name in BUILTIN {
         let robot = Robot::load(name, std::path::Path::new("")).map_err(|error| error.to_string())?;
         let joints: usize = robot.arms.iter().map(|arm| arm.joints.len()).sum();
         let (arms, points) = (robot.arms.len(), robot.body_points.len());
-        told.push(format!("{name}: {arms} arms of {joints} joints, {points} points"));
+        message.push(format!("{name}: {arms} arms of {joints} joints, {points} points"));
     }
-    Ok(told.join("; "))
+    Ok(message.join("; "))
 }
 
-fn person() -> Finding {
+fn person() -> CheckResult {
     let plan = plan()?;
-    let person = scenario::for_plan(&plan, &loaded(&plan)?).human;
+    let person = scenario::default_for_plan(&plan, &loaded(&plan)?).human;
     let human = Human::new(&person, &default_tool(plan.operation.kind)).map_err(|error| error.to_string())?;
     Ok(format!("{} m, {} kg, reach {:.2} m, {BODY_POINTS} points", person.height_m, person.mass_kg, human.reach_m()))
 }
@@ -94,7 +94,7 @@ fn loaded(plan: &Plan) -> Result<Robot, String> {
 
 /// The cone program against a closed form: both hands under a force in the board's plane, through the middle between them
 /// and without the board's weight, hold `4 mu F`.
-fn solver() -> Finding {
+fn solver() -> CheckResult {
     let plan = plan()?;
     let robot = loaded(&plan)?;
     let mut hold = Hold::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION)
@@ -105,12 +105,12 @@ fn solver() -> Finding {
     let expected_n: f64 = plan.arms.iter().map(|arm| 2.0 * FRICTION * arm.grip_force_n).sum();
     let outcome = StabilityWorkspace::new().friction_load_factor(&hold).map_err(|error| error.to_string())?;
     let found_n = outcome.load_factor().ok_or("found no load factor where there is one")?;
-    let told = format!("four pads hold {found_n:.4} N, closed form {expected_n:.4} N");
-    if (found_n / expected_n - 1.0).abs() < SOLVER_TOLERANCE { Ok(told) } else { Err(told) }
+    let message = format!("four pads hold {found_n:.4} N, closed form {expected_n:.4} N");
+    if (found_n / expected_n - 1.0).abs() < SOLVER_TOLERANCE { Ok(message) } else { Err(message) }
 }
 
 /// A second of simulation, twice: bit by bit the same, and the forces on the board in balance under the whole load.
-fn physics() -> Finding {
+fn physics() -> CheckResult {
     let plan = plan()?;
     let robot = loaded(&plan)?;
     let settings = SimulationSettings { settle_s: 0.3, ramp_s: 0.3, hold_s: 0.3, release_s: 0.1, ..Default::default() };
@@ -125,8 +125,8 @@ fn physics() -> Finding {
     }
     let last = last_loaded(&trace).ok_or("found no sample under the whole load")?;
     let off_n = imbalance_n(last, plan.object.mass_kg);
-    let told = format!("1 s simulated twice, bit by bit the same; forces on the board off balance by {off_n:.4} N");
-    if off_n < BALANCE_N { Ok(told) } else { Err(format!("{told}, expected less than {BALANCE_N} N")) }
+    let message = format!("1 s simulated twice, bit by bit the same; forces on the board off balance by {off_n:.4} N");
+    if off_n < BALANCE_N { Ok(message) } else { Err(format!("{message}, expected less than {BALANCE_N} N")) }
 }
 
 fn last_loaded(trace: &Trace) -> Option<&Sample> {

@@ -11,7 +11,7 @@ use crate::{
 
 /// Writes the scene of a plan as MJCF.
 pub fn export(args: &ExportArgs) -> Result<Exit, CliError> {
-    let (plan, robot, scenario) = scenario::plan_and_scenario(&args.plan, args.scenario.as_deref())?;
+    let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
     let text = sim::mjcf(&robot, &plan, &Conditions::of(&scenario)).map_err(CliError::Simulation)?;
     report::file::write_whole(&args.mjcf, text.as_bytes())?;
     Ok(Exit::Met)

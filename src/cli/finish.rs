@@ -17,7 +17,7 @@ use crate::{
 
 /// How one run ended: what is reported of it and what it means for the exit code.
 #[derive(Debug)]
-pub struct Ended {
+pub struct FinishedRun {
     /// What is reported.
     pub outcome: Outcome,
     /// The exit code if it were the only one.
@@ -26,7 +26,7 @@ pub struct Ended {
     pub wall_s: Option<f64>,
 }
 
-impl Ended {
+impl FinishedRun {
     /// Runs a job to its end, whatever that is: other scenarios must not suffer from an error or a bug in this one.
     ///
     /// # Errors
@@ -80,7 +80,7 @@ pub fn prepare<'a>(args: &ReportArgs, names: impl Iterator<Item = &'a str>) -> R
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -> Result<Ended, CliError> {
+pub fn write_run(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -> Result<FinishedRun, CliError> {
     let folder = args.out.join(&run.verdict.name);
     let wanted = match args.record {
         RecordChoice::Never => false,
@@ -94,7 +94,7 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
     write_or_remove(&folder.join("recording.rrd"), recording)?;
     write_or_remove(&folder.join("verdict.json"), Some(report::json::verdict(&run.verdict).into_bytes()))?;
     let recording = recorded.then(|| folder.join("recording.rrd"));
-    Ok(Ended {
+    Ok(FinishedRun {
         exit: Exit::of(&run.verdict),
         wall_s: None,
         outcome: Outcome::Judged {
@@ -116,7 +116,7 @@ fn write_or_remove(path: &Path, bytes: Option<Vec<u8>>) -> Result<(), CliError> 
 }
 
 /// The table; a single run is shown with its checks.
-fn for_people(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
+fn text(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     let mut text = report::console::table(outcomes, wall_s);
     if let [Outcome::Judged { verdict, recording, .. }] = outcomes {
         text.push('\n');
@@ -126,7 +126,7 @@ fn for_people(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
 }
 
 /// All that ended, as the reports need it.
-pub struct Ending {
+pub struct RunSummary {
     /// What became of each.
     pub outcomes: Vec<Outcome>,
     /// How long each took, s.
@@ -135,8 +135,8 @@ pub struct Ending {
     pub exit: Exit,
 }
 
-impl From<Vec<Ended>> for Ending {
-    fn from(ended: Vec<Ended>) -> Self {
+impl From<Vec<FinishedRun>> for RunSummary {
+    fn from(ended: Vec<FinishedRun>) -> Self {
         let exit = ended.iter().map(|ended| ended.exit).max().unwrap_or(Exit::Met);
         let (outcomes, wall_s) = ended.into_iter().map(|ended| (ended.outcome, ended.wall_s)).unzip();
         Self { outcomes, wall_s, exit }
@@ -147,13 +147,13 @@ impl From<Vec<Ended>> for Ending {
 ///
 /// # Errors
 /// When the report cannot be written.
-pub fn report(ending: &Ending, args: &ReportArgs) -> Result<(), CliError> {
+pub fn report(summary: &RunSummary, args: &ReportArgs) -> Result<(), CliError> {
     match args.format {
-        Format::Human => output::print(&for_people(&ending.outcomes, &ending.wall_s))?,
-        Format::Json => output::print(&report::json::verdicts(&ending.outcomes))?,
+        Format::Human => output::print(&text(&summary.outcomes, &summary.wall_s))?,
+        Format::Json => output::print(&report::json::verdicts(&summary.outcomes))?,
     }
     if let Some(path) = &args.junit {
-        report::file::write_whole(path, report::junit::document(&ending.outcomes)?.as_bytes())?;
+        report::file::write_whole(path, report::junit::document(&summary.outcomes)?.as_bytes())?;
     }
     Ok(())
 }
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_panic_in_one_run_is_a_bug_with_its_message() {
-        let ended = Ended::catch("bad-luck", || panic!("{}", "out of cheese")).unwrap();
+        let ended = FinishedRun::catch("bad-luck", || panic!("{}", "out of cheese")).unwrap();
         assert_eq!(ended.exit, Exit::Bug);
         let Outcome::Crashed { name, message } = ended.outcome else { panic!("a panic is a crash") };
         assert_eq!((name.as_str(), message.as_str()), ("bad-luck", "this is a bug in benchdog: out of cheese"));

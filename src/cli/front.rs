@@ -6,7 +6,7 @@ use super::{
     interrupt,
     maps::Maps,
     output,
-    plan::{infeasible, to_be_planned, until_interrupted},
+    plan::{infeasible, load_for_planning, stop_on_interrupt},
 };
 use crate::{
     planner::{self, Front, FrontOutcome},
@@ -15,13 +15,13 @@ use crate::{
 
 /// Writes the front.
 pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
-    let mut loaded = to_be_planned(&args.scenario)?;
+    let mut loaded = load_for_planning(&args.scenario)?;
     args.search.apply(&mut loaded.scenario.planner);
     report::file::check_folder(&args.out)?;
     interrupt::listen("the front of what was found is written")?;
     let scenario = &loaded.scenario;
     let outcome = Maps::default()
-        .with(&loaded.robot, scenario.object.size_m, |map, _| planner::front(scenario, map, &mut until_interrupted))?;
+        .with(&loaded.robot, scenario.object.size_m, |map, _| planner::front(scenario, map, &mut stop_on_interrupt))?;
     match outcome {
         FrontOutcome::Found(front) => {
             write(&front, args)?;

@@ -24,15 +24,15 @@ use crate::{
 /// Prints what a recording says; on request judges its trace again, which decides the exit code then.
 pub fn inspect(args: &InspectArgs) -> Result<Exit, CliError> {
     let summary = record::read_summary(&args.recording)?;
-    let again = if asks_for_check(args) { Some(judge_again(args)?) } else { None };
+    let rejudged = if wants_check(args) { Some(judge_again(args)?) } else { None };
     match args.format {
-        Format::Human => output::print(&for_people(&summary, again.as_ref()))?,
-        Format::Json => output::print(&for_programs(&summary, again.as_ref()))?,
+        Format::Human => output::print(&text(&summary, rejudged.as_ref()))?,
+        Format::Json => output::print(&json(&summary, rejudged.as_ref()))?,
     }
-    Ok(again.as_ref().map_or(Exit::Met, Exit::of))
+    Ok(rejudged.as_ref().map_or(Exit::Met, Exit::of))
 }
 
-fn asks_for_check(args: &InspectArgs) -> bool {
+fn wants_check(args: &InspectArgs) -> bool {
     let LimitArgs { slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio } = args.limits;
     let limits = [slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio];
     args.check || args.scenario.is_some() || limits.iter().any(Option::is_some)
@@ -68,7 +68,7 @@ fn with(limits: Limits, given: LimitArgs) -> Limits {
     }
 }
 
-fn for_people(summary: &RecordedSummary, again: Option<&Verdict>) -> String {
+fn text(summary: &RecordedSummary, rejudged: Option<&Verdict>) -> String {
     let mut text = console::details(&summary.verdict, None);
     let peaks = &summary.peaks;
     let by_hand = |figures: &BTreeMap<String, f64>, unit: &str| {
@@ -91,7 +91,7 @@ fn for_people(summary: &RecordedSummary, again: Option<&Verdict>) -> String {
     for (time_s, event) in &summary.events {
         text.push_str(&format!("{time_s:>7.3} s  {event}\n"));
     }
-    if let Some(verdict) = again {
+    if let Some(verdict) = rejudged {
         text.push_str("\njudged again\n");
         text.push_str(&console::details(verdict, None));
     }
@@ -123,7 +123,7 @@ struct Moment<'a> {
     text: &'a str,
 }
 
-fn for_programs(summary: &RecordedSummary, judged_again: Option<&Verdict>) -> String {
+fn json(summary: &RecordedSummary, judged_again: Option<&Verdict>) -> String {
     let peaks = &summary.peaks;
     let document = Document {
         verdict: &summary.verdict,

@@ -19,7 +19,7 @@ pub fn listen(ending: &'static str) -> Result<(), CliError> {
         if REQUESTED.swap(true, Ordering::SeqCst) {
             std::process::exit(Exit::Interrupted.code().into());
         }
-        output::complain(&format!("interrupted: {ending}; once more to end at once"));
+        output::message(&format!("interrupted: {ending}; once more to end at once"));
     })?;
     Ok(())
 }

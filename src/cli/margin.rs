@@ -61,10 +61,10 @@ struct Predicted {
 
 /// Finds and reports the margin of a plan.
 pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
-    let (plan, robot, scenario) = scenario::plan_and_scenario(&args.plan, args.scenario.as_deref())?;
+    let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
     let margin = margin_of(&plan, &robot, &scenario)?;
     match args.format {
-        Format::Human => output::print(&for_people(&margin))?,
+        Format::Human => output::print(&text(&margin))?,
         Format::Json => {
             // Serialisation fails only for maps with keys that are no strings, and there are none.
             let text = serde_json::to_string_pretty(&margin).expect("a margin has only string keys");
@@ -99,7 +99,7 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
     let met = match expected {
         VerdictKind::Holds => holds_at >= scenario.limits.load_factor,
         // The load itself fails as expected, or a load beyond it does.
-        other => judged(plan, robot, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
+        other => judge_at(plan, robot, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
     };
     Ok(Margin {
         load_factor: holds_at,
@@ -118,11 +118,11 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
 /// # Errors
 /// When the simulation cannot be built from the plan.
 pub fn simulated(plan: &Plan, robot: &Robot, scenario: &Scenario, guess: f64) -> Result<FailingLoad, CliError> {
-    failing_load(guess, |factor| judged(plan, robot, scenario, factor))
+    failing_load(guess, |factor| judge_at(plan, robot, scenario, factor))
 }
 
 /// What becomes of the hold under a multiple of its load.
-fn judged(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
+fn judge_at(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
     let trace = sim::simulate(robot, plan, &Conditions::of(scenario).scaled(factor)).map_err(CliError::Simulation)?;
     Ok(judge(&trace, &scenario.limits))
 }
@@ -141,7 +141,7 @@ fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<P
     }))
 }
 
-fn for_people(margin: &Margin) -> String {
+fn text(margin: &Margin) -> String {
     let why = match (&margin.check, &margin.reason) {
         (Some(check), _) => format!(" ({} {:.3} {}, at most {})", check.name, check.value, check.unit, check.limit),
         (None, Some(reason)) => format!(" ({reason})"),

@@ -72,12 +72,12 @@ pub fn main() -> ExitCode {
     match outcome {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(error)) => {
-            output::complain(&format!("error: {error}"));
+            output::message(&format!("error: {error}"));
             error.exit().into()
         }
         // The panic's own message has been printed by the default hook.
         Err(_) => {
-            output::complain("error: this is a bug in benchdog; please report it with the message above");
+            output::message("error: this is a bug in benchdog; please report it with the message above");
             Exit::Bug.into()
         }
     }

@@ -16,6 +16,6 @@ pub fn print(text: &str) -> Result<(), CliError> {
 }
 
 /// Writes a message to standard error; there is nobody to tell when that fails.
-pub fn complain(message: &str) {
+pub fn message(message: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{message}");
 }

@@ -40,7 +40,7 @@ pub fn run_scenario(loaded: &LoadedScenario, maps: &Maps) -> Result<Run, CliErro
         None => match timed_plan(scenario, &loaded.robot, maps, &mut planner::nobody)? {
             PlanOutcome::Found(plan) => *plan,
             PlanOutcome::Infeasible(why) => {
-                let verdict = without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
+                let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
                 return Ok(Run { verdict, plan: None, simulated: None });
             }
         },
@@ -54,7 +54,7 @@ pub fn run_scenario(loaded: &LoadedScenario, maps: &Maps) -> Result<Run, CliErro
 /// When the simulation cannot be built from the plan.
 pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
     if let Some(touch) = planner::first_touch(&plan, &scenario.tool, robot)? {
-        let verdict = without_simulation(scenario, VerdictKind::Touches, touch);
+        let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, touch);
         return Ok(Run { verdict, plan: Some(plan), simulated: None });
     }
     let trace = sim::simulate(robot, &plan, &Conditions::of(scenario)).map_err(CliError::Simulation)?;
@@ -88,7 +88,7 @@ pub fn timed_plan(
 }
 
 /// The verdict on a scenario that has nothing to simulate.
-fn without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
+fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
     Verdict {
         format: FORMAT,
         name: scenario.name.clone(),

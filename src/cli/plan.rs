@@ -18,7 +18,7 @@ use crate::{
 
 /// Plans a scenario. Ctrl-C ends the search with the best hold so far.
 pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
-    let mut loaded = to_be_planned(&args.scenario)?;
+    let mut loaded = load_for_planning(&args.scenario)?;
     args.planner.apply(&mut loaded.scenario.planner);
     interrupt::listen("the best plan so far is checked and written")?;
     match (args.top, &args.output) {
@@ -28,7 +28,7 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
 }
 
 /// Reads a scenario that does not bring its plan.
-pub fn to_be_planned(path: &Path) -> Result<LoadedScenario, CliError> {
+pub fn load_for_planning(path: &Path) -> Result<LoadedScenario, CliError> {
     let loaded = scenario::load(path)?;
     if loaded.plan.is_some() {
         let path = path.display();
@@ -40,12 +40,12 @@ pub fn to_be_planned(path: &Path) -> Result<LoadedScenario, CliError> {
 }
 
 /// Ends a search once the user has asked for it.
-pub fn until_interrupted(_: &Progress<'_>) -> ControlFlow<()> {
+pub fn stop_on_interrupt(_: &Progress<'_>) -> ControlFlow<()> {
     if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError> {
-    let outcome = pipeline::timed_plan(&loaded.scenario, &loaded.robot, &Maps::default(), &mut until_interrupted)?;
+    let outcome = pipeline::timed_plan(&loaded.scenario, &loaded.robot, &Maps::default(), &mut stop_on_interrupt)?;
     match outcome {
         PlanOutcome::Found(plan) => {
             let text = report::json::plan(&plan);
@@ -63,7 +63,7 @@ fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, Cl
     report::file::check_folder(folder)?;
     let scenario = &loaded.scenario;
     let outcome = Maps::default().with(&loaded.robot, scenario.object.size_m, |map, _| {
-        planner::top(scenario, map, wanted, &mut until_interrupted)
+        planner::top(scenario, map, wanted, &mut stop_on_interrupt)
     })?;
     match outcome {
         TopOutcome::Found(plans) => {
@@ -90,7 +90,7 @@ fn found(loaded: &LoadedScenario) -> Exit {
 
 /// Says that a scenario has no plan, and why.
 pub fn infeasible(loaded: &LoadedScenario, why: &Infeasible) -> Exit {
-    output::complain(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
+    output::message(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
     if interrupt::requested() {
         Exit::Interrupted
     } else if loaded.scenario.expect.verdict == VerdictKind::Infeasible {

@@ -43,7 +43,7 @@ impl Progress {
     pub fn advances(&self, line: Option<&str>) {
         self.bar.inc(1);
         match line {
-            Some(line) if self.bar.is_hidden() => output::complain(line),
+            Some(line) if self.bar.is_hidden() => output::message(line),
             Some(line) => self.bar.println(line),
             None => {}
         }

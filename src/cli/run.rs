@@ -12,7 +12,7 @@ use std::{
 use super::{
     args::RunArgs,
     exit::{CliError, Exit},
-    finish::{self, Ended, Ending},
+    finish::{self, FinishedRun, RunSummary},
     interrupt,
     maps::Maps,
     pipeline,
@@ -27,72 +27,72 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
     finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
     interrupt::listen("the scenarios at work are finished and reported")?;
-    let turns = Turns {
+    let runner = Runner {
         args,
         maps: Maps::default(),
         progress: Progress::new(wanted.len()),
         failed: AtomicBool::new(false),
-        broken: Mutex::new(None),
+        fatal: Mutex::new(None),
     };
     let jobs = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
-    let ended = in_parallel(jobs, &scenarios, |selected| turns.take(selected));
-    turns.progress.finish();
-    if let Some(error) = turns.broken.into_inner().unwrap_or_else(PoisonError::into_inner) {
+    let finished = in_parallel(jobs, &scenarios, |selected| runner.run_or_skip(selected));
+    runner.progress.finish();
+    if let Some(error) = runner.fatal.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(error);
     }
-    let ending = Ending::from(ended);
+    let summary = RunSummary::from(finished);
     // The table first: a disk that has become full must not cost it.
-    finish::report(&ending, &args.report)?;
-    finish::write_reports(&ending.outcomes, &args.report.out)?;
-    Ok(ending.exit)
+    finish::report(&summary, &args.report)?;
+    finish::write_reports(&summary.outcomes, &args.report.out)?;
+    Ok(summary.exit)
 }
 
 /// What the scenarios of a run share.
-struct Turns<'a> {
+struct Runner<'a> {
     args: &'a RunArgs,
     maps: Maps,
     progress: Progress,
     /// True once an expectation was not met.
     failed: AtomicBool,
     /// The first error that leaves no sense in going on: a disk that takes no more is full for all.
-    broken: Mutex<Option<CliError>>,
+    fatal: Mutex<Option<CliError>>,
 }
 
-impl Turns<'_> {
+impl Runner<'_> {
     /// Runs a scenario, or says why not.
-    fn take(&self, selected: &Selected) -> Ended {
+    fn run_or_skip(&self, selected: &Selected) -> FinishedRun {
         let name = &selected.loaded.scenario.name;
         if let Some(reason) = self.reason_to_skip(selected) {
-            return Ended::skipped(name, reason);
+            return FinishedRun::skipped(name, reason);
         }
         self.progress.begins(name);
         let start = Instant::now();
-        let mut ended = match Ended::catch(name, || self.run(&selected.loaded)) {
-            Ok(ended) => ended,
+        let mut finished = match FinishedRun::catch(name, || self.run(&selected.loaded)) {
+            Ok(finished) => finished,
             Err(error) => {
-                self.broken.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-                return Ended::skipped(name, SkipReason::AfterFailure);
+                self.fatal.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                return FinishedRun::skipped(name, SkipReason::AfterFailure);
             }
         };
         let wall_s = start.elapsed().as_secs_f64();
-        ended.wall_s = Some(wall_s);
-        self.failed.fetch_or(ended.exit != Exit::Met, Ordering::SeqCst);
-        self.progress.ends(&ended.outcome, wall_s);
-        ended
+        finished.wall_s = Some(wall_s);
+        self.failed.fetch_or(finished.exit != Exit::Met, Ordering::SeqCst);
+        self.progress.ends(&finished.outcome, wall_s);
+        finished
     }
 
-    fn run(&self, loaded: &LoadedScenario) -> Result<Ended, CliError> {
+    fn run(&self, loaded: &LoadedScenario) -> Result<FinishedRun, CliError> {
         let run = pipeline::run_scenario(loaded, &self.maps)?;
-        finish::finish(run, &loaded.scenario, &loaded.robot, &self.args.report)
+        finish::write_run(run, &loaded.scenario, &loaded.robot, &self.args.report)
     }
 
     fn reason_to_skip(&self, selected: &Selected) -> Option<SkipReason> {
-        let broken = || self.broken.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+        let fatal = || self.fatal.lock().unwrap_or_else(PoisonError::into_inner).is_some();
         if !selected.wanted {
             Some(SkipReason::Filtered)
         } else if interrupt::requested() {
             Some(SkipReason::Interrupted)
-        } else if broken() || self.args.fail_fast && self.failed.load(Ordering::SeqCst) {
+        } else if fatal() || self.args.fail_fast && self.failed.load(Ordering::SeqCst) {
             Some(SkipReason::AfterFailure)
         } else {
             None

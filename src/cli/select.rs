@@ -24,7 +24,7 @@ pub struct Selected {
 /// # Errors
 /// When an argument names no scenario, a scenario cannot be used, two have one name, or no name passes the filters.
 pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArgs) -> Result<Vec<Selected>, CliError> {
-    let asked = filters.join(", ");
+    let given = filters.join(", ");
     let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
     let mut names = BTreeMap::<String, PathBuf>::new();
     let mut selected = Vec::new();
@@ -44,7 +44,7 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
     }
     let known: Vec<_> = names.into_keys().collect();
     Err(CliError::Usage(format!(
-        "--filter {asked}: found no scenario that passes, expected one of {}",
+        "--filter {given}: found no scenario that passes, expected one of {}",
         known.join(", ")
     )))
 }

@@ -25,7 +25,7 @@ pub fn view(args: &ViewArgs) -> Result<Exit, CliError> {
     };
     if !is_matching(&version) {
         let how = how_to_install();
-        output::complain(&format!("warning: found {version}, expected {RERUN}: should it not open the file, {how}"));
+        output::message(&format!("warning: found {version}, expected {RERUN}: should it not open the file, {how}"));
     }
     open(&args.recording)
 }

@@ -15,13 +15,6 @@ pub struct Load {
     pub profile: ForceProfile,
 }
 
-impl Load {
-    /// True for the load that a file need not spell out: a ramp that turns with the board.
-    pub fn is_plain(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// What the direction of the tool's wrench is fixed to. It acts at the same point of the board either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -83,7 +76,7 @@ impl ForceProfile {
     /// z_O it went around the centre, rad: `speed / radius` a second, counter-clockwise when the force drives it so.
     ///
     /// `p_ot_m` is the start and `force_o_n` the force there, O axes.
-    pub fn turned_rad(
+    pub fn travel_angle_rad(
         speed_m_s: f64,
         centre_m: [f64; 2],
         p_ot_m: &Vector3<f64>,
@@ -109,13 +102,6 @@ pub struct Uncertainty {
     pub contact_stiffness_scale: f64,
     /// Stiffness of every joint's position control.
     pub joint_stiffness_scale: f64,
-}
-
-impl Uncertainty {
-    /// True when the simulation has what the plan counts on.
-    pub fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 impl Default for Uncertainty {

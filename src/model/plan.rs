@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     frames::{Pose, PoseRecord, pose},
     operation::Operation,
-    scenario::{Hand, Person, PlannerKind, Scenario, Sex, is_zero},
+    scenario::{Hand, Person, PlannerKind, Scenario, Sex, is_default},
 };
 
 /// A hold of a board. `comfort`, `stability`, `human`, `planner` and `scenario` may be absent in a file that is read.
@@ -95,7 +95,7 @@ pub struct HumanPosture {
     /// Strength percentile.
     pub percentile: f64,
     /// How far the trunk leans forward about the hips, degrees; upright unless given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub lean_deg: f64,
     /// Pose of the body, on the floor between the feet.
     #[serde(with = "pose")]
@@ -140,7 +140,7 @@ pub struct Comfort {
     pub activations: [f64; 7],
     /// The mean over all of the person's answers to the hold; only with `comfort.person = "average"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub average: Option<AverageComfort>,
+    pub average: Option<MeanComfort>,
     /// The posture's RULA score; reported, not optimised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rula: Option<RulaScore>,
@@ -149,9 +149,10 @@ pub struct Comfort {
 /// The mean comfort over the person's feasible answers on a uniform grid (METHOD section 3).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct AverageComfort {
+pub struct MeanComfort {
     /// How many answers the grid has.
-    pub answers: u64,
+    #[serde(rename = "answers")]
+    pub responses: u64,
     /// Mean of `1 / (||alpha||^2 + 0.01)`.
     pub muscular_regularised: f64,
     /// Mean of the peripersonal metric, m.

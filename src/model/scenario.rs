@@ -21,7 +21,7 @@ pub struct Scenario {
     /// A name for tables and file names.
     pub name: String,
     /// The robot, with the figures of its description that the result depends on.
-    pub robot: RobotFigures,
+    pub robot: RobotParameters,
     /// The person.
     pub human: Person,
     /// The tool in the person's hand.
@@ -39,10 +39,10 @@ pub struct Scenario {
     /// The simulation.
     pub simulation: SimulationSettings,
     /// How the tool loads the board over time; a ramp that turns with the board unless given.
-    #[serde(default, skip_serializing_if = "Load::is_plain")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub load: Load,
     /// How far the simulation departs from what the plan counts on; not at all unless given.
-    #[serde(default, skip_serializing_if = "Uncertainty::is_none")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub uncertainty: Uncertainty,
     /// What the hold must keep to.
     pub limits: Limits,
@@ -53,17 +53,17 @@ pub struct Scenario {
 /// The robot's name and those of its figures that the stability and the simulation use.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RobotFigures {
+pub struct RobotParameters {
     /// The name of a built-in robot, or the path of a description file.
     pub description: String,
     /// One entry an arm, in the description's order.
-    pub arms: Vec<ArmFigures>,
+    pub arms: Vec<ArmParameters>,
 }
 
 /// Figures of one arm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ArmFigures {
+pub struct ArmParameters {
     /// The arm's name.
     pub name: String,
     /// The arm's joints, from the base outward.
@@ -75,13 +75,13 @@ pub struct ArmFigures {
     /// The largest torque of each joint, N m.
     pub effort_nm: Vec<f64>,
     /// The pads of the arm's gripper.
-    pub pads: Vec<PadFigures>,
+    pub pads: Vec<PadParameters>,
 }
 
 /// One pad of a gripper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PadFigures {
+pub struct PadParameters {
     /// The pad's name, such as `upper`.
     pub name: String,
     /// Its full sides along x_G and z_G, m.
@@ -125,17 +125,12 @@ pub struct Person {
     /// Strength percentile, 0.1 to 99.9.
     pub percentile: f64,
     /// How far the trunk leans forward about the hips, degrees; 0, upright, unless given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub lean_deg: f64,
 }
 
 /// True for what need not be written.
-pub(super) fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-/// True for what need not be written.
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
@@ -173,12 +168,14 @@ impl Board {
 /// How the person answers a hold, when it is scored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum PersonAnswer {
-    /// The best feasible answer.
-    Most,
+pub enum ResponseKind {
+    /// The best feasible response.
+    #[serde(rename = "most")]
+    Best,
     /// The mean over all feasible answers of a uniform grid. The search looks for holds with the best answer and ranks the
     /// best few of them by the mean.
-    Average,
+    #[serde(rename = "average")]
+    Mean,
 }
 
 /// The form of the peripersonal metric (METHOD section 5).
@@ -208,7 +205,7 @@ pub enum StrengthDirection {
 #[serde(deny_unknown_fields, default)]
 pub struct ComfortSettings {
     /// Best or mean answer of the person.
-    pub person: PersonAnswer,
+    pub person: ResponseKind,
     /// Form of the peripersonal metric.
     pub peripersonal: PeripersonalForm,
     /// The distance beyond which the robot's being farther away is no more comfortable, m: every distance `d` of the
@@ -244,7 +241,7 @@ pub struct Optima {
 
 impl Optima {
     /// Stands in where optima are not known: the bound of the muscular comfort, and 1 m.
-    const UNKNOWN: Self = Self { muscular_regularised: 100.0, peripersonal_m: 1.0 };
+    const FALLBACK: Self = Self { muscular_regularised: 100.0, peripersonal_m: 1.0 };
 }
 
 impl ComfortSettings {
@@ -252,7 +249,7 @@ impl ComfortSettings {
     /// weighted sum in either form.
     pub fn weights(&self) -> [f64; 2] {
         let Some(share) = self.peripersonal_share else { return [self.weight_muscular, self.weight_peripersonal] };
-        let Optima { muscular_regularised, peripersonal_m } = self.optima.unwrap_or(Optima::UNKNOWN);
+        let Optima { muscular_regularised, peripersonal_m } = self.optima.unwrap_or(Optima::FALLBACK);
         // A comfort whose best is nothing cannot be weighed by it.
         let over = |share: f64, best: f64| if best > 0.0 { 100.0 * share / best } else { 0.0 };
         [over(1.0 - share, muscular_regularised), over(share, peripersonal_m)]
@@ -263,7 +260,7 @@ impl Default for ComfortSettings {
     /// METHOD section 5: the weights of the paper's combined metric, 64 being the number of body points.
     fn default() -> Self {
         Self {
-            person: PersonAnswer::Most,
+            person: ResponseKind::Best,
             peripersonal: PeripersonalForm::Weighted,
             saturation_m: None,
             direction: StrengthDirection::Paper,

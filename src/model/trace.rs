@@ -115,7 +115,7 @@ pub struct StepCheck {
 
 impl Sample {
     /// True when some pad presses on the board.
-    pub fn is_touched(&self) -> bool {
+    pub fn has_contact(&self) -> bool {
         self.arms.iter().flat_map(|arm| &arm.pads).any(|pad| pad.normal_force_n > 0.0)
     }
 }

@@ -4,7 +4,7 @@ use super::{
     Problem,
     assess::{self, Feasible},
 };
-use crate::{comfort, model::scenario::PersonAnswer};
+use crate::{comfort, model::scenario::ResponseKind};
 
 /// How many of the best holds are compared by their mean comfort: one takes some seconds when the roll is free.
 const COMPARED: usize = 4;
@@ -16,7 +16,7 @@ const COMPARED: usize = 4;
 /// the rest left out. So the mean is the best of those few, not of all holds.
 pub fn rank(problem: &Problem<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
     let settings = &problem.objective;
-    if settings.person == PersonAnswer::Most {
+    if settings.person == ResponseKind::Best {
         return found;
     }
     let mut rated: Vec<_> = found

@@ -18,7 +18,7 @@ use crate::{
     model::{
         frames::Pose,
         grasp::EdgeGrasp,
-        plan::{ArmHold, AverageComfort, Comfort, PlacedObject},
+        plan::{ArmHold, Comfort, MeanComfort, PlacedObject},
         scenario::{Limits, Scenario, StabilityKind, StrengthDirection},
         wrench::Wrench,
     },
@@ -335,7 +335,7 @@ pub fn hold<'a>(
 }
 
 /// The mean comfort of the person's answers to a candidate's hold.
-pub fn average(problem: &Problem<'_>, found: &Feasible) -> Option<AverageComfort> {
+pub fn average(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComfort> {
     let points = comfort::robot_points_w(&problem.map.robot, &found.configured.link_poses);
     comfort::average(&hold(problem, &found.candidate, &found.configured, &points))
 }

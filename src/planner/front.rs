@@ -15,7 +15,7 @@ use crate::{
     human::HumanError,
     model::{
         plan::{Comfort, Plan},
-        scenario::{ComfortSettings, Optima, PersonAnswer, PlannerKind, PlannerSettings, Scenario},
+        scenario::{ComfortSettings, Optima, PlannerKind, PlannerSettings, ResponseKind, Scenario},
     },
 };
 
@@ -109,7 +109,7 @@ pub fn front(scenario: &Scenario, map: &RobotMap, onlooker: &mut Onlooker<'_>) -
 
 /// A scenario with other weights, of the person's best answers.
 fn weighted(scenario: &Scenario, [weight_muscular, weight_peripersonal]: [f64; 2]) -> Scenario {
-    let person = PersonAnswer::Most;
+    let person = ResponseKind::Best;
     Scenario {
         comfort: ComfortSettings {
             person,

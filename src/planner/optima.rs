@@ -3,7 +3,7 @@
 use super::{Infeasible, PlanOutcome, RobotMap, WorkMap, nobody, plan_with};
 use crate::{
     human::HumanError,
-    model::scenario::{ComfortSettings, Optima, PersonAnswer, PlannerKind, PlannerSettings, Scenario},
+    model::scenario::{ComfortSettings, Optima, PlannerKind, PlannerSettings, ResponseKind, Scenario},
 };
 
 /// The planners whose results are the optima: muscular, peripersonal.
@@ -63,7 +63,7 @@ fn alone(scenario: &Scenario, kind: PlannerKind) -> Scenario {
     let [weight_muscular, weight_peripersonal] = ALONE.map(|other| f64::from(u8::from(other == kind)));
     Scenario {
         comfort: ComfortSettings {
-            person: PersonAnswer::Most,
+            person: ResponseKind::Best,
             peripersonal_share: None,
             weight_muscular,
             weight_peripersonal,

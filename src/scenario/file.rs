@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     error::{InputError, InputErrorKind},
+    load_section::LoadSection,
     locate,
-    profile::LoadSection,
 };
 use crate::model::{
     load::Uncertainty,

@@ -7,15 +7,15 @@ use toml::de::{DeTable, DeValue};
 
 /// One step of a key path such as `arms[0].q_rad[3]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Segment<'a> {
+enum KeyPart<'a> {
     Key(&'a str),
     Index(usize),
 }
 
-fn segments(path: &str) -> impl Iterator<Item = Segment<'_>> {
+fn key_parts(path: &str) -> impl Iterator<Item = KeyPart<'_>> {
     path.split(['.', '[']).filter(|part| !part.is_empty()).map(|part| match part.strip_suffix(']').map(str::parse) {
-        Some(Ok(index)) => Segment::Index(index),
-        _ => Segment::Key(part),
+        Some(Ok(index)) => KeyPart::Index(index),
+        _ => KeyPart::Key(part),
     })
 }
 
@@ -30,12 +30,12 @@ pub fn toml_line(text: &str, path: &str) -> Option<usize> {
     let mut place: Option<usize> = None;
     let mut table: Option<&DeTable<'_>> = Some(document.get_ref());
     let mut value: Option<&DeValue<'_>> = None;
-    for segment in segments(path) {
-        let next = match segment {
-            Segment::Key(key) => {
+    for part in key_parts(path) {
+        let next = match part {
+            KeyPart::Key(key) => {
                 table.and_then(|table| table.get_key_value(key)).map(|(key, value)| (key.span().start, value.get_ref()))
             }
-            Segment::Index(index) => value
+            KeyPart::Index(index) => value
                 .and_then(DeValue::as_array)
                 .and_then(|array| array.get(index))
                 .map(|element| (element.span().start, element.get_ref())),
@@ -79,12 +79,12 @@ fn key_in_value(value: &toml::Spanned<DeValue<'_>>, span: &Range<usize>, path: S
 /// The line of a key in JSON text, or of the closest value that would hold it.
 pub fn json_line(text: &str, path: &str) -> Option<usize> {
     let mut here: &RawValue = serde_json::from_str(text).ok()?;
-    for segment in segments(path) {
-        let next = match segment {
-            Segment::Key(key) => serde_json::from_str::<BTreeMap<String, &RawValue>>(here.get())
+    for part in key_parts(path) {
+        let next = match part {
+            KeyPart::Key(key) => serde_json::from_str::<BTreeMap<String, &RawValue>>(here.get())
                 .ok()
                 .and_then(|object| object.get(key).copied()),
-            Segment::Index(index) => {
+            KeyPart::Index(index) => {
                 serde_json::from_str::<Vec<&RawValue>>(here.get()).ok().and_then(|array| array.get(index).copied())
             }
         };

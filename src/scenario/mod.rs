@@ -6,11 +6,11 @@
 mod check;
 pub mod error;
 pub mod file;
+pub mod load_section;
 mod locate;
 pub mod material;
 pub mod paper;
 pub mod plan_file;
-pub mod profile;
 mod resolve;
 
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub use plan_file::read_plan;
 use crate::{
     model::{
         plan::Plan,
-        scenario::{ArmFigures, PadFigures, RobotFigures, Scenario},
+        scenario::{ArmParameters, PadParameters, RobotParameters, Scenario},
     },
     robot::{BUILTIN, Robot, RobotError},
 };
@@ -61,7 +61,7 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     let plan = match &scenario.planner.plan {
         Some(plan) => {
             let plan = read_plan(&folder.join(plan), Some(&robot))?.0;
-            resolve::plan_answers(path, text, &scenario, &plan)?;
+            resolve::check_plan_matches(path, text, &scenario, &plan)?;
             Some(plan)
         }
         None => None,
@@ -85,11 +85,11 @@ fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
 }
 
 /// The figures of a robot that a plan's result depends on.
-pub fn robot_figures(robot: &Robot) -> RobotFigures {
+pub fn robot_parameters(robot: &Robot) -> RobotParameters {
     let arms = robot
         .arms
         .iter()
-        .map(|arm| ArmFigures {
+        .map(|arm| ArmParameters {
             name: arm.name.clone(),
             joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
             stiffness_nm_rad: arm.stiffness_nm_rad.clone(),
@@ -99,7 +99,7 @@ pub fn robot_figures(robot: &Robot) -> RobotFigures {
                 .gripper
                 .fingers
                 .iter()
-                .map(|finger| PadFigures {
+                .map(|finger| PadParameters {
                     name: finger.pad.name.clone(),
                     size_m: finger.pad.size_m,
                     centre_m: finger.pad.centre_m,
@@ -107,16 +107,16 @@ pub fn robot_figures(robot: &Robot) -> RobotFigures {
                 .collect(),
         })
         .collect();
-    RobotFigures { description: robot.description.clone(), arms }
+    RobotParameters { description: robot.description.clone(), arms }
 }
 
 /// The scenario of a file for a plan that is given, which must be one for its robot, board and operation.
 ///
 /// # Errors
 /// As [`load`], and when the plan answers another scenario.
-pub fn load_for(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
+pub fn load_for_plan(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
     let scenario = load(path)?.scenario;
-    resolve::plan_answers(path, &error::read_text(path)?, &scenario, plan)?;
+    resolve::check_plan_matches(path, &error::read_text(path)?, &scenario, plan)?;
     Ok(scenario)
 }
 
@@ -124,19 +124,19 @@ pub fn load_for(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
 /// for its operation; named after the plan.
 ///
 /// # Errors
-/// As [`read_plan`] and [`load_for`].
-pub fn plan_and_scenario(plan: &Path, scenario: Option<&Path>) -> Result<(Plan, Robot, Scenario), InputError> {
+/// As [`read_plan`] and [`load_for_plan`].
+pub fn load_plan_and_scenario(plan: &Path, scenario: Option<&Path>) -> Result<(Plan, Robot, Scenario), InputError> {
     let (plan, robot) = read_plan(plan, None)?;
     let mut scenario = match (scenario, &plan.scenario) {
-        (Some(path), _) => load_for(path, &plan)?,
+        (Some(path), _) => load_for_plan(path, &plan)?,
         (None, Some(scenario)) => scenario.clone(),
-        (None, None) => for_plan(&plan, &robot),
+        (None, None) => default_for_plan(&plan, &robot),
     };
     scenario.name.clone_from(&plan.name);
     Ok((plan, robot, scenario))
 }
 
 /// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
-pub fn for_plan(plan: &Plan, robot: &Robot) -> Scenario {
-    resolve::defaults_for_plan(plan, robot)
+pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
+    resolve::default_for_plan(plan, robot)
 }

@@ -48,7 +48,7 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
     if let Some(scenario) = &plan.scenario {
         let check = check.under("scenario.");
         check.format(scenario.format)?;
-        resolve::check_figures(&check, scenario, &robot)?;
+        resolve::check_values(&check, scenario, &robot)?;
     }
     Ok((plan, robot))
 }

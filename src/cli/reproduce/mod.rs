@@ -67,9 +67,7 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let Some(holds) = work_off(&workshop, threads, &tasks.jobs)? else {
         let folder = workshop.folder();
         let folder = folder.display();
-        output::complain(&format!(
-            "stopped: what is done is kept in {folder}, and the same command goes on from there"
-        ));
+        output::message(&format!("stopped: what is done is kept in {folder}, and the same command goes on from there"));
         return Ok(Exit::Interrupted);
     };
     let reproduction = tasks.reproduction(holds, &extent, left_out(args, operations.len()));

@@ -202,7 +202,7 @@ fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError
     let radius_m = libm::hypot(p_ot_m.x - centre_m[0], p_ot_m.y - centre_m[1]);
     check.that(radius_m > 1e-6, "load.centre_m", "the tool point", "a centre beside the tool point")?;
     let force_o_n = scenario.operation.wrench_o.force_n;
-    let turned = |time_s| ForceProfile::turned_rad(speed_m_s, centre_m, &p_ot_m, &force_o_n, time_s);
+    let turned = |time_s| ForceProfile::travel_angle_rad(speed_m_s, centre_m, &p_ot_m, &force_o_n, time_s);
     let whole_rad = turned(scenario.simulation.hold_s).clamp(-std::f64::consts::TAU, std::f64::consts::TAU);
     let centre = Vector3::new(centre_m[0], centre_m[1], 0.0);
     // Every degree of a full turn.
