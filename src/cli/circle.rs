@@ -1,4 +1,4 @@
-//! `benchdog circle`: the three ways to hold a board for a whole circle that is cut, side by side.
+//! `benchdog circle`: plans the cut of a whole circle with three strategies and compares them.
 
 use super::{
     args::CircleArgs,
@@ -22,15 +22,15 @@ use crate::{
     report,
 };
 
-/// Writes plans and tables of the three ways.
+/// Plans with the three strategies and writes plans and tables.
 pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     let mut loaded = load_for_planning(&args.scenario)?;
     circle_radius_m(&loaded)?;
     args.search.apply(&mut loaded.scenario.planner);
-    // Of three ways to hold the best answers are compared; the mean of all would take minutes for each.
+    // The strategies are compared by the person's best response: the mean response would take minutes per grasp.
     loaded.scenario.comfort.person = ResponseKind::Best;
     report::file::check_folder(&args.out)?;
-    interrupt::listen("what was found of the circle is written")?;
+    interrupt::listen("what was found is written")?;
     let size_m = loaded.scenario.object.size_m;
     let found = Maps::default().with(&loaded.robot, size_m, |map, _| solve_all(&loaded.scenario, map))?;
     let (strategies, motions) = match found {
@@ -71,7 +71,7 @@ type Strategies = Vec<(&'static str, PlansByPoint)>;
 type Motions = Vec<Vec<MotionStep>>;
 
 fn solve_all(scenario: &Scenario, map: &RobotMap) -> Result<Result<(Strategies, Motions), Infeasible>, HumanError> {
-    // The optima of one cut are good enough for all, and make them comparable.
+    // The optima of one cut are used for all points, so that their objectives are comparable.
     let points = match planner::with_optima(scenario, map)? {
         Ok(scenario) => circle::points(&scenario).unwrap_or_default(),
         Err(why) => return Ok(Err(why)),

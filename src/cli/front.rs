@@ -1,4 +1,4 @@
-//! `benchdog front`: the trade-off of the two comforts, as a table for programs, a picture and plans.
+//! `benchdog front`: the Pareto front of the two comforts as CSV, SVG and plans.
 
 use super::{
     args::FrontArgs,
@@ -13,12 +13,12 @@ use crate::{
     report::{self, front::Row},
 };
 
-/// Writes the front.
+/// Computes and writes the front.
 pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
     let mut loaded = load_for_planning(&args.scenario)?;
     args.search.apply(&mut loaded.scenario.planner);
     report::file::check_folder(&args.out)?;
-    interrupt::listen("the front of what was found is written")?;
+    interrupt::listen("the front of the plans found so far is written")?;
     let scenario = &loaded.scenario;
     let outcome = Maps::default()
         .with(&loaded.robot, scenario.object.size_m, |map, _| planner::front(scenario, map, &mut stop_on_interrupt))?;

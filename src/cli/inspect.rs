@@ -1,4 +1,4 @@
-//! `benchdog inspect`: what a recording says, from the file alone, and what other limits would say of its trace.
+//! `benchdog inspect`: prints the contents of a recording and judges its trace again with other limits.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ use crate::{
     scenario,
 };
 
-/// Prints what a recording says; on request judges its trace again, which decides the exit code then.
+/// Prints a recording's contents. If its trace is judged again, the new verdict determines the exit code.
 pub fn inspect(args: &InspectArgs) -> Result<Exit, CliError> {
     let summary = record::read_summary(&args.recording)?;
     let rejudged = if wants_check(args) { Some(judge_again(args)?) } else { None };
@@ -38,7 +38,7 @@ fn wants_check(args: &InspectArgs) -> bool {
     args.check || args.scenario.is_some() || limits.iter().any(Option::is_some)
 }
 
-/// The verdict on the stored trace under the limits asked for.
+/// The verdict on the stored trace under the given limits.
 fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
     let RecordedRun { scenario, verdict, trace, .. } = record::read_run(&args.recording)?;
     let (limits, expect) = match &args.scenario {
@@ -51,7 +51,7 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
     let judgement = judge(&trace, &with(limits, args.limits));
     if judgement.fingerprint != verdict.fingerprint {
         let (found, expected) = (judgement.fingerprint, verdict.fingerprint);
-        let problem = format!("found a trace of fingerprint {found}, expected the one that was judged, {expected}");
+        let problem = format!("found a trace with fingerprint {found}, expected {expected}, that of the verdict");
         return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
     }
     Ok(judgement.to_verdict(&verdict.name, expect.verdict, verdict.seed, versions()))
@@ -105,7 +105,7 @@ struct Document<'a> {
     phases: Vec<Moment<'a>>,
     events: Vec<Moment<'a>>,
     end_s: f64,
-    /// The verdict under other limits; null when none were asked for.
+    /// The verdict under other limits; null if the trace was not judged again.
     judged_again: Option<&'a Verdict>,
 }
 
@@ -138,7 +138,7 @@ fn json(summary: &RecordedSummary, judged_again: Option<&Verdict>) -> String {
         end_s: summary.end_s,
         judged_again,
     };
-    // Serialisation into a string fails only for maps with keys that are no strings.
+    // Serialisation to a string fails only for maps whose keys are not strings.
     let text = serde_json::to_string_pretty(&document).expect("a recording's summary has only string keys");
     format!("{text}\n")
 }

@@ -1,4 +1,4 @@
-//! `benchdog plan`: a scenario's hold, written to a file or to standard output; with `--top` several that differ.
+//! `benchdog plan`: writes a scenario's plan or, with `--top`, the best plans that differ.
 
 use std::{ops::ControlFlow, path::Path};
 
@@ -16,7 +16,7 @@ use crate::{
     scenario::{self, LoadedScenario},
 };
 
-/// Plans a scenario. Ctrl-C ends the search with the best hold so far.
+/// Plans a scenario. Ctrl-C ends the search with the best plan so far.
 pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     let mut loaded = load_for_planning(&args.scenario)?;
     args.planner.apply(&mut loaded.scenario.planner);
@@ -27,19 +27,20 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     }
 }
 
-/// Reads a scenario that does not bring its plan.
+/// Reads a scenario that does not name a plan.
+///
+/// # Errors
+/// If it is invalid or names a plan.
 pub fn load_for_planning(path: &Path) -> Result<LoadedScenario, CliError> {
     let loaded = scenario::load(path)?;
     if loaded.plan.is_some() {
         let path = path.display();
-        return Err(CliError::Usage(format!(
-            "{path}: planner.plan: the scenario has its plan, there is nothing to plan"
-        )));
+        return Err(CliError::Usage(format!("{path}: planner.plan: found a plan, expected a scenario without one")));
     }
     Ok(loaded)
 }
 
-/// Ends a search once the user has asked for it.
+/// Ends a search after Ctrl-C.
 pub fn stop_on_interrupt(_: &Progress<'_>) -> ControlFlow<()> {
     if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
@@ -88,7 +89,7 @@ fn found(loaded: &LoadedScenario) -> Exit {
     }
 }
 
-/// Says that a scenario has no plan, and why.
+/// Prints why no plan was found; returns the command's result.
 pub fn infeasible(loaded: &LoadedScenario, why: &Infeasible) -> Exit {
     output::message(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
     if interrupt::requested() {

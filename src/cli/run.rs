@@ -1,4 +1,4 @@
-//! `benchdog run`: the main job, on one scenario or many.
+//! `benchdog run`: plans, simulates, judges, records and reports scenarios.
 
 use std::{
     num::NonZero,
@@ -21,12 +21,12 @@ use super::{
 };
 use crate::{report::SkipReason, scenario::LoadedScenario};
 
-/// Runs scenarios: all are read and checked, and the folder for the results too, before the first is planned.
+/// Runs scenarios. All scenarios and the output folder are checked before the first one is planned.
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let scenarios = select::scenarios(&args.scenarios, &args.filter, &args.planner)?;
     let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
     finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
-    interrupt::listen("the scenarios at work are finished and reported")?;
+    interrupt::listen("the scenarios in progress are finished and reported")?;
     let runner = Runner {
         args,
         maps: Maps::default(),
@@ -41,25 +41,25 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
         return Err(error);
     }
     let summary = RunSummary::from(finished);
-    // The table first: a disk that has become full must not cost it.
+    // The table first: it must not depend on a disk that is full by now.
     finish::report(&summary, &args.report)?;
     finish::write_reports(&summary.outcomes, &args.report.out)?;
     Ok(summary.exit)
 }
 
-/// What the scenarios of a run share.
+/// State shared by the scenarios of a run.
 struct Runner<'a> {
     args: &'a RunArgs,
     maps: Maps,
     progress: Progress,
-    /// True once an expectation was not met.
+    /// True after an expectation was not met.
     failed: AtomicBool,
-    /// The first error that leaves no sense in going on: a disk that takes no more is full for all.
+    /// The first error that affects all scenarios, such as a full disk.
     fatal: Mutex<Option<CliError>>,
 }
 
 impl Runner<'_> {
-    /// Runs a scenario, or says why not.
+    /// Runs or skips a scenario.
     fn run_or_skip(&self, selected: &Selected) -> FinishedRun {
         let name = &selected.loaded.scenario.name;
         if let Some(reason) = self.reason_to_skip(selected) {

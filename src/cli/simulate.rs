@@ -1,4 +1,4 @@
-//! `benchdog simulate`: any plan, ours or not.
+//! `benchdog simulate`: simulates and judges a plan from any planner.
 
 use std::time::Instant;
 
@@ -13,7 +13,7 @@ use crate::{
     scenario,
 };
 
-/// Simulates and judges a plan under the scenario given, the one in the plan, or the defaults for its operation.
+/// Simulates and judges a plan under the given scenario, the one in the plan, or the defaults for its operation.
 pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
     let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
     report::file::check_folder(&args.report.out)?;

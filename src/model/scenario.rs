@@ -446,7 +446,7 @@ pub struct Limits {
     pub creep_mm_s: f64,
     /// Demanded joint torque divided by its limit.
     pub torque_ratio: f64,
-    /// Smallest predicted load factor of a plan. The planner requires 1.1 times as much of the compliant load factor.
+    /// Smallest predicted load factor of a plan; the planner requires 1.1 times this value of the compliant load factor.
     pub load_factor: f64,
 }
 

@@ -1,7 +1,7 @@
-//! Scenario and plan files: read, checked, completed with defaults.
+//! Reads scenario and plan files, checks them and fills in defaults.
 //!
-//! Whatever a file gets wrong is found here, before anything is planned or written, and said with the file, the line,
-//! the key, what was found and what was expected. This module knows files and figures; it never plans or simulates.
+//! All errors of input files are found here, before anything is planned or written. Each error names the file, the line,
+//! the key, the value found and the value expected. This module does not plan or simulate.
 
 mod check;
 pub mod error;
@@ -26,28 +26,28 @@ use crate::{
     robot::{BUILTIN, Robot, RobotError},
 };
 
-/// A scenario that can be run: resolved, with its robot and, where the file names one, the plan to judge.
+/// A resolved scenario with its robot and, if the file names one, its plan.
 #[derive(Clone, Debug)]
 pub struct LoadedScenario {
-    /// Where it was read from.
+    /// The file that it was read from.
     pub path: PathBuf,
-    /// Every figure, defaults filled in.
+    /// The resolved scenario.
     pub scenario: Scenario,
     /// The robot.
     pub robot: Robot,
-    /// The plan of `planner.plan`.
+    /// The plan that `planner.plan` names.
     pub plan: Option<Plan>,
 }
 
 /// Reads, checks and completes a scenario file.
 ///
 /// # Errors
-/// When the file, the robot or the plan that it names cannot be read, or any value is not what the format asks for.
+/// If the file, or a robot or plan that it names, cannot be read or contains an invalid value.
 pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
     load_text(path, &error::read_text(path)?)
 }
 
-/// Checks and completes the text of a scenario file; files that it names are relative to `path`'s folder.
+/// Checks and completes the text of a scenario file. Files that it names are relative to the folder of `path`.
 ///
 /// # Errors
 /// As for [`load`].
@@ -69,11 +69,11 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan })
 }
 
-/// Loads a robot for a file in `folder`. One that comes from a path is named by its whole path from then on, since the
-/// plan that names it may be written to another folder.
+/// Loads a robot for a file in `folder`. If the description is a path, the robot's `description` becomes the absolute
+/// path, because a plan that names it may be written to another folder.
 ///
 /// # Errors
-/// When there is no such robot or its files cannot be used.
+/// If there is no such robot or its files are invalid.
 fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
     let mut robot = Robot::load(description, folder)?;
     if !BUILTIN.contains(&description)
@@ -84,7 +84,7 @@ fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
     Ok(robot)
 }
 
-/// The figures of a robot that a plan's result depends on.
+/// The parameters of a robot that results depend on.
 pub fn robot_parameters(robot: &Robot) -> RobotParameters {
     let arms = robot
         .arms
@@ -110,18 +110,18 @@ pub fn robot_parameters(robot: &Robot) -> RobotParameters {
     RobotParameters { description: robot.description.clone(), arms }
 }
 
-/// The scenario of a file for a plan that is given, which must be one for its robot, board and operation.
+/// Reads a scenario file for a given plan, which must have the same robot, board and operation.
 ///
 /// # Errors
-/// As [`load`], and when the plan answers another scenario.
+/// As [`load`], and if the plan is for another robot, board, operation or grip force.
 pub fn load_for_plan(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
     let scenario = load(path)?.scenario;
     resolve::check_plan_matches(path, &error::read_text(path)?, &scenario, plan)?;
     Ok(scenario)
 }
 
-/// A plan file, its robot, and what it is to be judged under: the scenario given, the one in the plan, or the defaults
-/// for its operation; named after the plan.
+/// Reads a plan file and returns the plan, its robot and the scenario to judge it by: that of the file `scenario`, or the
+/// one in the plan, or the defaults for its operation. The scenario gets the plan's name.
 ///
 /// # Errors
 /// As [`read_plan`] and [`load_for_plan`].
@@ -136,7 +136,7 @@ pub fn load_plan_and_scenario(plan: &Path, scenario: Option<&Path>) -> Result<(P
     Ok((plan, robot, scenario))
 }
 
-/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
+/// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
 pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
     resolve::default_for_plan(plan, robot)
 }

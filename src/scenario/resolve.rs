@@ -1,4 +1,4 @@
-//! From a scenario file to the resolved scenario: defaults filled in, every figure checked.
+//! Resolves a scenario file: fills in defaults and checks every value.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ use crate::{
 /// The resolved scenario of a file, and its robot.
 ///
 /// # Errors
-/// When the robot cannot be loaded or a figure is not what it must be.
+/// If the robot cannot be loaded or a value is invalid.
 pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario, Robot), InputError> {
     let check = Checker::toml(path, text);
     check.name(&file.name)?;
@@ -61,7 +61,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     Ok((scenario, robot))
 }
 
-/// Checks the figures of a scenario that do not depend on how its file is written: all but board and operation.
+/// Checks all values of a resolved scenario but those of board and operation, which depend on the form of the file.
 pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> Result<(), InputError> {
     check_person(check, &scenario.human)?;
     check_tool(check, &scenario.tool)?;
@@ -73,7 +73,7 @@ pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> 
     check_limits(check, &scenario.limits)
 }
 
-/// The person of a file, with the height and mass of typical adults (`assets/human/`) where it gives none.
+/// The person of a file. The default height and mass are those of typical adults (`docs/method.md#43-body-dimensions`).
 fn person_with_defaults(section: &HumanSection) -> Person {
     let (default_height_m, default_mass_kg) = match section.sex {
         Sex::Male => (1.75, 75.0),
@@ -89,11 +89,11 @@ fn person_with_defaults(section: &HumanSection) -> Person {
     }
 }
 
-/// Checks a person's figures.
+/// Checks a person's values.
 pub fn check_person(check: &Checker<'_>, person: &Person) -> Result<(), InputError> {
     check.within("human.height_m", person.height_m, 1.2, 2.3, "m")?;
     check.within("human.mass_kg", person.mass_kg, 30.0, 250.0, "kg")?;
-    // Outside these the normal distribution of strength would reach zero torque.
+    // Outside this range the normal distribution of strength could reach zero torque.
     check.within("human.percentile", person.percentile, 0.1, 99.9, "%")?;
     check.within("human.lean_deg", person.lean_deg, 0.0, MAX_LEAN_DEG, "degrees")
 }
@@ -199,11 +199,12 @@ fn simulation(check: &Checker<'_>, settings: &SimulationSettings) -> Result<(), 
     let expected = format!("at most {most} steps in all phases together");
     check.that(steps <= most, "simulation", format!("{steps:.0} steps"), &expected)?;
     let least_s = SimulationSettings::MIN_HOLD_STEPS as f64 * timestep_s;
-    let expected = format!("at least {} time steps, for creep to be seen", SimulationSettings::MIN_HOLD_STEPS);
+    let expected = format!("at least {} time steps, to measure creep", SimulationSettings::MIN_HOLD_STEPS);
     check.that(hold_s >= least_s, "simulation.hold_s", hold_s.to_string(), &expected)
 }
 
-/// The limits of a file, with the deflection that suits the operation where it gives none (METHOD section 8).
+/// The limits of a file. The default deflection depends on the kind of operation
+/// (`docs/method.md#810-default-limits`).
 fn limits_with_defaults(section: &LimitsSection, kind: OperationKind) -> Limits {
     let default_mm = if kind == OperationKind::Cut { 15.0 } else { 5.0 };
     Limits {
@@ -222,17 +223,18 @@ fn check_limits(check: &Checker<'_>, limits: &Limits) -> Result<(), InputError> 
     check.positive("limits.deflection_mm", limits.deflection_mm, "mm")?;
     check.positive("limits.creep_mm_s", limits.creep_mm_s, "mm/s")?;
     check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
-    // The solvers look no further than 100, and the planner asks for a reserve on top.
+    // The solvers stop at 100, and the planner applies a safety factor.
     check.within("limits.load_factor", limits.load_factor, 0.0, 50.0, "a multiple of the load")
 }
 
-/// How far a plan's board or operation may be from the scenario's, m, N and N m: rounding of written figures.
+/// Largest deviation of a plan's board, operation and grip force from the scenario's, m, kg, N and N m: rounding of
+/// written numbers.
 const SAME_TOLERANCE: f64 = 1e-6;
 
-/// Checks that the plan which a scenario names is one for its robot, board and operation; the tool's roll is the plan's.
+/// Checks that a plan has a scenario's robot, board, operation and grip force. The roll of a drill may differ.
 ///
 /// # Errors
-/// When it answers another scenario.
+/// If one of them differs.
 pub fn check_plan_matches(path: &Path, text: &str, scenario: &Scenario, plan: &Plan) -> Result<(), InputError> {
     let check = Checker::toml(path, text);
     let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME_TOLERANCE);
@@ -267,7 +269,7 @@ pub fn check_plan_matches(path: &Path, text: &str, scenario: &Scenario, plan: &P
     check.that(other.is_none(), "planner.plan", format!("a plan that grips with {found} N"), &expected)
 }
 
-/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
+/// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
 pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
     let kind = plan.operation.kind;
     let size_m = plan.object.size_m;
