@@ -181,3 +181,45 @@ fn only_failed_runs_are_recorded_on_request() {
     assert_eq!(verdicts[0]["verdict"], "slips");
     assert!(!folder.path().join("as-expected/recording.rrd").exists());
 }
+
+/// Runs benchdog and returns its exit code and the largest number of threads that it had.
+#[cfg(target_os = "linux")]
+fn most_threads(arguments: &[&str], folder: &Path) -> (Option<i32>, usize) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .current_dir(folder)
+        .args(arguments)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let tasks = format!("/proc/{}/task", child.id());
+    let mut most = 0;
+    loop {
+        most = most.max(fs::read_dir(&tasks).map_or(0, Iterator::count));
+        if let Some(status) = child.try_wait().unwrap() {
+            return (status.code(), most);
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn jobs_bounds_the_threads_of_maps_plans_and_simulations() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let text = fs::read_to_string(root.join("quickstart.toml")).unwrap();
+    // Four scenarios that share their maps: with more threads than one, several ask for the same map.
+    for place in 1..=4 {
+        let text = text.replace("quickstart", &format!("hole-{place}"));
+        let text = text.replace("[0.0, 0.0]", &format!("[0.0, 0.0{place}]"));
+        fs::write(folder.path().join(format!("hole-{place}.toml")), text).unwrap();
+    }
+    for jobs in [1, 3] {
+        let (code, threads) =
+            most_threads(&["run", ".", "--record", "never", "--jobs", &jobs.to_string()], folder.path());
+        assert_eq!(code, Some(0));
+        // The main thread and that of the signal handler do no work of their own.
+        assert_eq!(threads, jobs + 2, "--jobs {jobs}");
+    }
+}

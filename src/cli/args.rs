@@ -82,8 +82,7 @@ pub struct RunArgs {
     /// Start no scenario after one that does not meet its expectation
     #[arg(long)]
     pub fail_fast: bool,
-    /// How many scenarios run at once; all cores unless given. The planner's maps are made on all cores in any case. The
-    /// results do not depend on it
+    /// Number of threads; by default one per core. The results do not depend on it
     #[arg(long, value_name = "N")]
     pub jobs: Option<NonZero<usize>>,
     /// The planner.
@@ -219,9 +218,9 @@ pub struct ReproduceArgs {
     /// Only operations whose name contains this text or, if it has one of * ? [, matches it as a pattern; may be repeated
     #[arg(long, value_name = "TEXT")]
     pub filter: Vec<String>,
-    /// How many holds are worked on at once; all cores unless given. The results do not depend on it
+    /// Number of threads; by default one per core. The results do not depend on it
     #[arg(long, value_name = "N")]
-    pub jobs: Option<std::num::NonZero<usize>>,
+    pub jobs: Option<NonZero<usize>>,
     /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Never)]
     pub record: RecordChoice,

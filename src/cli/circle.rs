@@ -32,7 +32,7 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     report::file::check_folder(&args.out)?;
     interrupt::listen("what was found is written")?;
     let size_m = loaded.scenario.object.size_m;
-    let found = Maps::default().with(&loaded.robot, size_m, |map, _| solve_all(&loaded.scenario, map))?;
+    let found = Maps::default().with(&loaded.robot, size_m, |map| solve_all(&loaded.scenario, map))?;
     let (strategies, motions) = match found {
         Ok(found) => found,
         Err(why) => return Ok(infeasible(&loaded, &why)),

@@ -21,7 +21,7 @@ pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
     interrupt::listen("the front of the plans found so far is written")?;
     let scenario = &loaded.scenario;
     let outcome = Maps::default()
-        .with(&loaded.robot, scenario.object.size_m, |map, _| planner::front(scenario, map, &mut stop_on_interrupt))?;
+        .with(&loaded.robot, scenario.object.size_m, |map| planner::front(scenario, map, &mut stop_on_interrupt))?;
     match outcome {
         FrontOutcome::Found(front) => {
             write(&front, args)?;

@@ -17,7 +17,7 @@ pub const RUN: &str = "\
 Examples:
   benchdog run scenarios/quickstart.toml        one scenario, with its checks
   benchdog run scenarios                        every .toml file of a folder
-  benchdog run 'grasps/**/*.toml' --jobs 4      a pattern, four at once
+  benchdog run 'grasps/**/*.toml' --jobs 4      a pattern, four threads
   benchdog run scenarios --filter cut --filter 'fails-*'
   benchdog run scenarios --record failed --fail-fast
 

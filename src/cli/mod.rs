@@ -30,6 +30,7 @@ mod run;
 mod schema;
 mod select;
 mod simulate;
+mod threads;
 mod versions;
 #[cfg(feature = "recording")]
 mod view;

@@ -63,7 +63,7 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
 fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, CliError> {
     report::file::check_folder(folder)?;
     let scenario = &loaded.scenario;
-    let outcome = Maps::default().with(&loaded.robot, scenario.object.size_m, |map, _| {
+    let outcome = Maps::default().with(&loaded.robot, scenario.object.size_m, |map| {
         planner::top(scenario, map, wanted, &mut stop_on_interrupt)
     })?;
     match outcome {

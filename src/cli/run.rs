@@ -1,10 +1,9 @@
 //! `benchdog run`: plans, simulates, judges, records and reports scenarios.
 
 use std::{
-    num::NonZero,
     sync::{
         Mutex, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicBool, Ordering},
     },
     time::Instant,
 };
@@ -18,6 +17,7 @@ use super::{
     pipeline,
     progress::Progress,
     select::{self, Selected},
+    threads,
 };
 use crate::{report::SkipReason, scenario::LoadedScenario};
 
@@ -34,8 +34,12 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
         failed: AtomicBool::new(false),
         fatal: Mutex::new(None),
     };
-    let jobs = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
-    let finished = in_parallel(jobs, &scenarios, |selected| runner.run_or_skip(selected));
+    let to_be_planned = wanted.iter().map(|selected| &selected.loaded).filter(|loaded| loaded.plan.is_none());
+    let to_be_planned: Vec<_> = to_be_planned.map(|loaded| (&loaded.robot, &loaded.scenario)).collect();
+    let finished = threads::with_threads(args.jobs, || {
+        runner.maps.prepare(&to_be_planned);
+        threads::map_in_parallel(&scenarios, |selected| runner.run_or_skip(selected))
+    })?;
     runner.progress.finish();
     if let Some(error) = runner.fatal.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(error);
@@ -97,41 +101,5 @@ impl Runner<'_> {
         } else {
             None
         }
-    }
-}
-
-/// The results of a job on every item, in the order of the items, worked off by so many threads.
-pub(super) fn in_parallel<T: Sync, R: Send>(jobs: usize, items: &[T], job: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::with_capacity(items.len()));
-    std::thread::scope(|scope| {
-        for _ in 0..jobs.min(items.len()) {
-            scope.spawn(|| {
-                while let Some((index, item)) = {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    items.get(index).map(|item| (index, item))
-                } {
-                    let result = job(item);
-                    done.lock().unwrap_or_else(PoisonError::into_inner).push((index, result));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    done.sort_by_key(|&(index, _)| index);
-    done.into_iter().map(|(_, result)| result).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_come_in_the_order_of_the_items() {
-        let items: Vec<u64> = (0..50).collect();
-        for jobs in [1, 2, 7, 100] {
-            assert_eq!(in_parallel(jobs, &items, |item| item * item), items.iter().map(|i| i * i).collect::<Vec<_>>());
-        }
-        assert!(in_parallel(2, &[], |item: &u64| *item).is_empty());
     }
 }
