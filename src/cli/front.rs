@@ -1,24 +1,24 @@
-//! `benchdog front`: the trade-off of the two comforts, as a table for programs, a picture and plans.
+//! `benchdog front`: the Pareto front of the two comforts as CSV, SVG and plans.
 
 use super::{
     args::FrontArgs,
     exit::{CliError, Exit},
     interrupt, output,
-    plan::{infeasible, to_be_planned, until_interrupted},
+    plan::{infeasible, load_for_planning, stop_on_interrupt},
 };
 use crate::{
     planner::{Front, FrontPoint, Outcome, Planner},
     report::{self, front::Row},
 };
 
-/// Writes the front.
+/// Computes and writes the front.
 pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
-    let mut loaded = to_be_planned(&args.scenario)?;
+    let mut loaded = load_for_planning(&args.scenario)?;
     args.search.apply(&mut loaded.scenario.planner);
     report::file::check_folder(&args.out)?;
-    interrupt::listen("the front of what was found is written")?;
+    interrupt::listen("the front of the plans found so far is written")?;
     let planner = Planner::new(&loaded.robot);
-    match planner.search(&loaded.scenario).observer(&mut until_interrupted).front()? {
+    match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).front()? {
         Outcome::Found(front) => {
             write(&front, args)?;
             Ok(if interrupt::requested() { Exit::Interrupted } else { Exit::Met })

@@ -2,11 +2,12 @@
 
 use std::{
     collections::HashMap,
+    panic::{AssertUnwindSafe, catch_unwind},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     time::Instant,
 };
 
-use super::exit::CliError;
+use super::{exit::CliError, interrupt};
 use crate::{
     model::{plan::Plan, scenario::Scenario},
     planner::{Observer, Outcome, Planner},
@@ -17,8 +18,8 @@ use crate::{
 #[derive(Default)]
 pub struct Planners {
     known: Mutex<Vec<(String, Arc<Planner>)>>,
-    /// Time that [`Planners::prepare`] took for each scenario, ms.
-    prepared_ms: Mutex<HashMap<String, f64>>,
+    /// Time that the maps of each scenario took to make, ms.
+    map_ms: Mutex<HashMap<String, f64>>,
 }
 
 impl Planners {
@@ -33,15 +34,21 @@ impl Planners {
         planner
     }
 
-    /// Makes the maps of a scenario. A command does this for all its scenarios before it plans them in parallel: every map is
-    /// made once, on all cores.
-    ///
-    /// # Errors
-    /// When the scenario's person or tool is invalid.
-    pub fn prepare(&self, scenario: &Scenario, robot: &Robot) -> Result<(), CliError> {
+    /// Makes the maps of scenarios before they are planned in parallel, each on all threads. A thread of rayon's pool must not
+    /// wait for a map that another thread makes: while it makes parts of its own map, rayon gives it other work, which may
+    /// need that same map. Stops early after Ctrl-C. A map that cannot be made is left out: the plan that needs it fails.
+    pub fn prepare(&self, scenarios: &[(&Robot, &Scenario)]) {
+        for (robot, scenario) in scenarios {
+            if !interrupt::requested() {
+                let _ = catch_unwind(AssertUnwindSafe(|| self.prepare_one(robot, scenario)));
+            }
+        }
+    }
+
+    fn prepare_one(&self, robot: &Robot, scenario: &Scenario) -> Result<(), CliError> {
         let start = Instant::now();
         self.of(robot).prepare(scenario)?;
-        *lock(&self.prepared_ms).entry(scenario.name.clone()).or_default() += start.elapsed().as_secs_f64() * 1e3;
+        *lock(&self.map_ms).entry(scenario.name.clone()).or_default() += start.elapsed().as_secs_f64() * 1e3;
         Ok(())
     }
 
@@ -55,8 +62,8 @@ impl Planners {
         robot: &Robot,
         observer: Option<&'a mut Observer<'a>>,
     ) -> Result<Outcome<Plan>, CliError> {
-        self.prepare(scenario, robot)?;
-        let map_ms = lock(&self.prepared_ms).remove(&scenario.name);
+        self.prepare_one(robot, scenario)?;
+        let map_ms = lock(&self.map_ms).remove(&scenario.name);
         let planner = self.of(robot);
         let start = Instant::now();
         let search = planner.search(scenario);

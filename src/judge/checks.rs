@@ -130,7 +130,7 @@ fn pad_open_channels(trace: &Trace, judged: &[Sample]) -> Vec<Channel> {
 
 /// How long no pad of any hand has touched the board at each sample, ms.
 fn contact_lost_channel(judged: &[Sample]) -> Channel {
-    Channel { what: String::new(), values: duration_ms(judged, |sample| !sample.is_touched()) }
+    Channel { what: String::new(), values: duration_ms(judged, |sample| !sample.has_contact()) }
 }
 
 /// How deep robot or board reach into the person; none when nobody stands there.

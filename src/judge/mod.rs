@@ -149,7 +149,7 @@ fn reference(samples: &[Sample]) -> usize {
     if samples.iter().any(|sample| sample.phase.is_loaded()) {
         return settled;
     }
-    let last_touch = samples.iter().rposition(Sample::is_touched).map_or(0, |last| last + 1);
+    let last_touch = samples.iter().rposition(Sample::has_contact).map_or(0, |last| last + 1);
     settled.min(last_touch)
 }
 
@@ -157,7 +157,7 @@ fn reference(samples: &[Sample]) -> usize {
 /// load; none when the load never acted for another reason.
 fn judged(samples: &[Sample], reference: usize) -> &[Sample] {
     let end = samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
-    let lost = !samples[reference].is_touched();
+    let lost = !samples[reference].has_contact();
     let end = end.unwrap_or(if lost { samples.len() } else { reference });
     &samples[reference..end.max(reference)]
 }

@@ -30,7 +30,7 @@ pub(super) fn self_checks(decisive: &[Sample]) -> Vec<Check> {
     let largest = |of: fn(&Sample) -> f64| decisive.iter().map(of).fold(0.0, worse);
     let ends = |phase| decisive.windows(2).filter(move |pair| pair[0].phase == phase && pair[1].phase != phase);
     let steady_ends = ends(Phase::Settle).chain(ends(Phase::Hold)).map(|pair| &pair[0]);
-    let held = steady_ends.filter(|sample| sample.is_touched());
+    let held = steady_ends.filter(|sample| sample.has_contact());
     let residual_n = held.map(|sample| sample.self_check.force_residual_n).fold(0.0, worse);
     vec![
         check(CheckKind::Penetration, 1e3 * largest(|s| s.self_check.penetration_m), PENETRATION_LIMIT_MM),

@@ -16,7 +16,7 @@ use crate::{
     model::{
         frames::Pose,
         operation::Operation,
-        plan::{ArmHold, AverageComfort, Comfort, PlacedObject, Stability},
+        plan::{ArmHold, Comfort, MeanComfort, PlacedObject, Stability},
         scenario::{Scenario, StabilityKind},
     },
     statics::{HandModel, Hold, HoldError, NearbyResponse, StabilityWorkspace},
@@ -196,7 +196,7 @@ pub fn response_query<'q>(
 }
 
 /// The mean comfort over the person's responses to a candidate's grasp.
-pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<AverageComfort> {
+pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComfort> {
     let Configuration { placement, link_poses, .. } = &found.configuration;
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
     let operation = problem.scenario.operation.rolled(found.candidate.work.roll_rad);

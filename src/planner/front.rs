@@ -21,7 +21,7 @@ use crate::{
     comfort,
     model::{
         plan::{Comfort, Plan},
-        scenario::{ComfortSettings, Optima, PersonAnswer, PlannerKind, PlannerSettings, Scenario},
+        scenario::{ComfortSettings, Optima, PlannerKind, PlannerSettings, ResponseKind, Scenario},
     },
 };
 
@@ -104,7 +104,7 @@ pub fn front(
 
 /// A scenario with other weights and the person's best response.
 fn weighted(scenario: &Scenario, [weight_muscular, weight_peripersonal]: [f64; 2]) -> Scenario {
-    let person = PersonAnswer::Most;
+    let person = ResponseKind::Best;
     Scenario {
         comfort: ComfortSettings {
             person,

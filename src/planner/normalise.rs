@@ -3,7 +3,7 @@
 //! A normalised objective divides each comfort by the best that its own planner reaches. Two plans find these optima unless
 //! the scenario states them.
 
-use crate::model::scenario::{ComfortSettings, Optima, PersonAnswer, PlannerKind, PlannerSettings, Scenario};
+use crate::model::scenario::{ComfortSettings, Optima, PlannerKind, PlannerSettings, ResponseKind, Scenario};
 
 /// The planners whose results are the optima: muscular, peripersonal.
 const ALONE: [PlannerKind; 2] = [PlannerKind::Muscular, PlannerKind::Peripersonal];
@@ -21,7 +21,7 @@ pub fn alone(scenario: &Scenario) -> [Scenario; 2] {
         let [weight_muscular, weight_peripersonal] = ALONE.map(|other| f64::from(u8::from(other == kind)));
         Scenario {
             comfort: ComfortSettings {
-                person: PersonAnswer::Most,
+                person: ResponseKind::Best,
                 peripersonal_share: None,
                 weight_muscular,
                 weight_peripersonal,

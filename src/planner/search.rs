@@ -13,7 +13,7 @@ use super::{
 use crate::{
     comfort,
     human::Human,
-    model::scenario::{PersonAnswer, PlannerKind, PlannerSettings},
+    model::scenario::{PlannerKind, PlannerSettings, ResponseKind},
 };
 
 /// The candidates that the scenario's planner finds, the best first.
@@ -67,7 +67,7 @@ fn own_postures(human: &Human, scenario: &crate::model::scenario::Scenario) -> P
 /// the others are dropped. So the result is the best of those few.
 fn rank(evaluator: &Evaluator<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
     let problem = &evaluator.problem;
-    if problem.objective.person == PersonAnswer::Most {
+    if problem.objective.person == ResponseKind::Best {
         return found;
     }
     let mut ranked: Vec<_> = found

@@ -12,8 +12,8 @@ use crate::{
     comfort,
     human::{Human, HumanError},
     model::{
-        plan::{AverageComfort, Comfort, HumanPosture, Plan},
-        scenario::{PersonAnswer, Scenario, StabilityKind, Tool},
+        plan::{Comfort, HumanPosture, MeanComfort, Plan},
+        scenario::{ResponseKind, Scenario, StabilityKind, Tool},
     },
     robot::{Chain, Robot},
     statics::{Hold, StabilityWorkspace},
@@ -111,7 +111,7 @@ fn figures(
     let mut found = comfort::of_posture(human, &scenario.comfort, &surface, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
     expect(strongest <= 1.0, flaws, || format!("an activation is {strongest}, more than the person has"));
-    if scenario.comfort.person == PersonAnswer::Average {
+    if scenario.comfort.person == ResponseKind::Mean {
         match average(plan, scenario, robot, human) {
             Some(average) => comfort::rate_by_average(&mut found, average, &scenario.comfort),
             None => flaws.push(Flaw("the person has no answer on the grid of the average".into())),
@@ -124,7 +124,7 @@ fn figures(
         ("objective", written.objective, found.objective),
     ];
     if let (Some(written), Some(found)) = (written.average, found.average) {
-        let AverageComfort { muscular_regularised, peripersonal_m, .. } = found;
+        let MeanComfort { muscular_regularised, peripersonal_m, .. } = found;
         compared.push(("average.muscular_regularised", written.muscular_regularised, muscular_regularised));
         compared.push(("average.peripersonal_m", written.peripersonal_m, peripersonal_m));
     }
@@ -134,7 +134,7 @@ fn figures(
 }
 
 /// The mean comfort of the person's answers to the plan's hold.
-fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<AverageComfort> {
+fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<MeanComfort> {
     let poses = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
     comfort::average(&comfort::Hold {

@@ -138,7 +138,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<T
         scene.observe(sample);
         sample.person_distance_m = person.as_mut().map(|person| person.distance_m(step, sample));
         // Before the first step there are no forces yet.
-        untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + timestep_s };
+        untouched_s = if step == 0 || sample.has_contact() { 0.0 } else { untouched_s + timestep_s };
         if untouched_s > LOST_AFTER_S {
             trace.samples.truncate(step + 1);
             break;

@@ -98,7 +98,7 @@ impl<'a> ToolLoad<'a> {
             }
             &ForceProfile::Path { speed_m_s, centre_m, normal_share } => {
                 let force_n = wrench_o.force_n;
-                let turned_rad = ForceProfile::turned_rad(speed_m_s, centre_m, &p_ot_m, &force_n, held_s);
+                let turned_rad = ForceProfile::travel_angle_rad(speed_m_s, centre_m, &p_ot_m, &force_n, held_s);
                 let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turned_rad);
                 let centre = Vector3::new(centre_m[0], centre_m[1], 0.0);
                 let pressed = Wrench::from_force(z_t * (normal_share * force_n.norm()));

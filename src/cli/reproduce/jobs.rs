@@ -157,22 +157,34 @@ impl<'a> Workshop<'a> {
         self.out.join("work")
     }
 
+    /// Makes the planner's maps for all jobs whose holds are not kept.
+    pub fn prepare(&self, jobs: &[Job]) {
+        let to_be_planned = jobs.iter().filter(|job| self.kept(job, &self.fingerprint(job)).is_none());
+        self.planners.prepare(&to_be_planned.map(|job| (self.robot, &job.scenario)).collect::<Vec<_>>());
+    }
+
+    /// The hold of a job, if it is kept and needs no new recording.
+    fn kept(&self, job: &Job, fingerprint: &str) -> Option<Hold> {
+        read(&self.path(job), fingerprint).filter(|hold| !self.lacks_recording(job, hold))
+    }
+
+    fn path(&self, job: &Job) -> PathBuf {
+        self.folder().join(job.folder()).join(format!("{}.json", job.stem()))
+    }
+
     /// The hold of a job: the one that is kept, or a new one, which is kept.
     ///
     /// # Errors
     /// When it cannot be simulated or kept.
     pub fn hold(&self, job: &Job) -> Result<Done, CliError> {
         let fingerprint = self.fingerprint(job);
-        let path = self.folder().join(job.folder()).join(format!("{}.json", job.stem()));
-        if let Some(hold) = read(&path, &fingerprint)
-            && !self.lacks_recording(job, &hold)
-        {
+        if let Some(hold) = self.kept(job, &fingerprint) {
             return Ok(Done { hold, fresh: false });
         }
         let kept = Kept { fingerprint, hold: self.make(job)? };
         // Serialisation fails only for maps with keys that are no strings, and there are none.
         let bytes = serde_json::to_vec(&kept).expect("a hold has only string keys");
-        file::write_whole(&path, &bytes)?;
+        file::write_whole(&self.path(job), &bytes)?;
         Ok(Done { hold: kept.hold, fresh: true })
     }
 

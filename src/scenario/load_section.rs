@@ -1,4 +1,4 @@
-//! `[load]`: how the tool loads the board over time, and measured forces from a CSV file.
+//! The section `[load]` of a scenario file, and measured forces from a CSV file.
 
 use std::path::Path;
 
@@ -13,58 +13,59 @@ use crate::model::{
     scenario::Scenario,
 };
 
-/// The first line of a file of measured forces.
+/// The header of a file of measured forces.
 const HEADER: [&str; 7] = ["time_s", "fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm"];
 
-/// Steps of the simulation in a period of a vibration: with fewer it is no sine any more.
-const STEPS_IN_PERIOD: f64 = 4.0;
+/// Fewest simulation steps per period of a vibration; fewer do not sample a sine.
+const STEPS_PER_PERIOD: f64 = 4.0;
 
-/// What a `[load]` loads the board with.
+/// The kind of a load.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum LoadKind {
-    /// The operation's wrench, growing evenly in the ramp.
+    /// The operation's wrench; it grows linearly in the ramp.
     #[default]
     Ramp,
-    /// A drill that turns, shakes and breaks through.
+    /// A drill with spindle torque, vibration and breakthrough.
     Drill,
-    /// A knife that travels around a circle in the hold.
+    /// A knife that moves along a circle during the hold.
     Path,
     /// A measured wrench from a file.
     Measured,
 }
 
-/// `[load]`: which keys may stand beside `kind` depends on it.
+/// `[load]`: `kind` determines which other keys are allowed.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LoadSection {
-    /// `ramp`, `drill`, `path` or `measured`; `ramp` unless given.
+    /// `ramp`, `drill`, `path` or `measured`; `ramp` by default.
     pub kind: LoadKind,
-    /// What the wrench's direction is fixed to: `board`, as unless given, or `world`.
+    /// The frame in which the wrench's direction is constant: `board`, the default, or `world`.
     pub frame: ForceFrame,
-    /// For `drill`: moment of the spindle on the board about the tool's axis z_T, N m; none unless given.
+    /// For `drill`: torque of the spindle on the board about the tool's axis z_T, N m; 0 by default.
     pub spindle_torque_nm: Option<f64>,
-    /// For `drill`: amplitude of the thrust's vibration, N; none unless given.
+    /// For `drill`: amplitude of the thrust's vibration, N; 0 by default.
     pub vibration_n: Option<f64>,
-    /// For `drill`: frequency of that vibration, Hz.
+    /// For `drill`: frequency of the vibration, Hz.
     pub vibration_hz: Option<f64>,
-    /// For `drill`: when the thrust collapses, within 20 ms, s after the hold began; never unless given.
+    /// For `drill`: when the drill breaks through, s after the start of the hold; the thrust then falls to zero within 20 ms. By
+    /// default it does not break through.
     pub breakthrough_s: Option<f64>,
     /// For `path`: speed of the knife along the circle, m/s.
     pub speed_m_s: Option<f64>,
-    /// For `path`: the circle's centre on the face, m along x_O and y_O; the board's centre unless given.
+    /// For `path`: the circle's centre on the worked face, m along x_O and y_O; by default the board's centre.
     pub centre_m: Option<[f64; 2]>,
-    /// For `path`: force into the face as a share of the cutting force; none unless given.
+    /// For `path`: force into the face as a fraction of the cutting force; 0 by default.
     pub normal_share: Option<f64>,
-    /// For `measured`: a CSV file with the columns `time_s, fx_n, fy_n, fz_n, mx_nm, my_nm, mz_nm`, relative to the
-    /// scenario's file: s since the load began, N and N m about the tool tip in O axes.
+    /// For `measured`: a CSV file with the columns `time_s, fx_n, fy_n, fz_n, mx_nm, my_nm, mz_nm`: s since the ramp began, N,
+    /// and N m about the tool tip, O axes. The path is relative to the scenario file's folder.
     pub file: Option<String>,
 }
 
-/// The load of a section; a file of forces is relative to `folder`.
+/// The load that a section describes. The file of measured forces is relative to `folder`.
 ///
 /// # Errors
-/// When a key is missing or belongs to another kind, or the file of forces cannot be used.
+/// If a key is missing or belongs to another kind, or the file of measured forces is invalid.
 pub fn load(check: &Checker<'_>, section: &LoadSection, folder: &Path) -> Result<Load, InputError> {
     check_keys(check, section)?;
     let profile = match section.kind {
@@ -107,11 +108,11 @@ fn check_keys(check: &Checker<'_>, section: &LoadSection) -> Result<(), InputErr
     })
 }
 
-/// The rows of a file of measured forces.
+/// Reads a file of measured forces.
 ///
 /// # Errors
-/// When the file cannot be read, has other columns, a cell that is no finite number, a time that does not grow, or no
-/// load at all; with the file and the line.
+/// If the file cannot be read or has other columns, a cell that is not a finite number, times that do not increase, or
+/// only zero wrenches. The error names the file and the line.
 pub fn measured(path: &Path) -> Result<Vec<[f64; 7]>, InputError> {
     let text = read_text(path)?;
     let mut reader =
@@ -147,7 +148,7 @@ pub fn measured(path: &Path) -> Result<Vec<[f64; 7]>, InputError> {
     Ok(rows)
 }
 
-/// True when some row loads the board.
+/// True if at least one row has a nonzero wrench.
 fn loads(rows: &[[f64; 7]]) -> bool {
     rows.iter().any(|row| row[1..].iter().any(|&component| component != 0.0))
 }
@@ -172,7 +173,7 @@ pub fn check_load(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputE
             check.that(kind == OperationKind::Drill, "load.kind", found, "an operation of the kind \"drill\"")?;
             check.within("load.spindle_torque_nm", *spindle_torque_nm, -100.0, 100.0, "N m")?;
             check.not_negative("load.vibration_n", *vibration_n, "N")?;
-            let most_hz = 1.0 / (STEPS_IN_PERIOD * scenario.simulation.timestep_s);
+            let most_hz = 1.0 / (STEPS_PER_PERIOD * scenario.simulation.timestep_s);
             check.within("load.vibration_hz", *vibration_hz, 0.0, most_hz, "Hz, four time steps a period")?;
             let Some(breakthrough_s) = *breakthrough_s else { return Ok(()) };
             check.within("load.breakthrough_s", breakthrough_s, 0.0, scenario.simulation.hold_s, "s, within the hold")
@@ -191,7 +192,7 @@ pub fn check_load(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputE
     }
 }
 
-/// The knife must start beside the centre and stay on the board.
+/// Requires a knife that does not start at the circle's centre and stays on the board.
 fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError> {
     let ForceProfile::Path { speed_m_s, centre_m, normal_share } = scenario.load.profile else { return Ok(()) };
     check.within("load.speed_m_s", speed_m_s, 0.0, 10.0, "m/s")?;
@@ -202,10 +203,10 @@ fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError
     let radius_m = libm::hypot(p_ot_m.x - centre_m[0], p_ot_m.y - centre_m[1]);
     check.that(radius_m > 1e-6, "load.centre_m", "the tool point", "a centre beside the tool point")?;
     let force_o_n = scenario.operation.wrench_o.force_n;
-    let turned = |time_s| ForceProfile::turned_rad(speed_m_s, centre_m, &p_ot_m, &force_o_n, time_s);
+    let turned = |time_s| ForceProfile::travel_angle_rad(speed_m_s, centre_m, &p_ot_m, &force_o_n, time_s);
     let whole_rad = turned(scenario.simulation.hold_s).clamp(-std::f64::consts::TAU, std::f64::consts::TAU);
     let centre = Vector3::new(centre_m[0], centre_m[1], 0.0);
-    // Every degree of a full turn.
+    // At every 360th of the path.
     (0..=360).try_for_each(|part| {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), whole_rad * f64::from(part) / 360.0);
         let mut x_ot = x_ot;
@@ -214,12 +215,12 @@ fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError
     })
 }
 
-/// Checks how far a simulation departs from its plan.
+/// Checks the deviations of a simulation from its plan.
 pub fn check_uncertainty(check: &Checker<'_>, uncertainty: &Uncertainty) -> Result<(), InputError> {
     let Uncertainty { friction_scale, grip_force_scale, contact_stiffness_scale, joint_stiffness_scale } = *uncertainty;
     check.within("uncertainty.friction_scale", friction_scale, 0.0, 10.0, "a factor")?;
     check.within("uncertainty.grip_force_scale", grip_force_scale, 0.01, 10.0, "a factor")?;
-    // Softer, and pads sink in by millimetres; stiffer than 16/9, two oscillations in a substep, and boards ring.
+    // Below this range pads penetrate by millimetres; above 16/9, two oscillations per substep, boards oscillate.
     check.within("uncertainty.contact_stiffness_scale", contact_stiffness_scale, 0.001, 1.75, "a factor")?;
     check.within("uncertainty.joint_stiffness_scale", joint_stiffness_scale, 0.01, 100.0, "a factor")
 }
