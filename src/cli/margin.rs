@@ -18,7 +18,7 @@ use crate::{
     robot::Robot,
     scenario,
     sim::{self, Conditions},
-    statics::{Hold, HoldError, StabilityWorkspace},
+    statics::{ContactModel, ContactModelError, StabilityWorkspace},
 };
 
 /// How much load a hold stands, by the simulation and by both predictions.
@@ -128,8 +128,8 @@ fn judged(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Resul
 }
 
 /// What the statics say of the plan, under the friction that it counts on.
-fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, HoldError> {
-    let hold = Hold::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
+fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, ContactModelError> {
+    let hold = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
     let mut workspace = StabilityWorkspace::new();
     let crate::statics::LoadFactorOutcome::Solved(best_case) = workspace.load_factor(&hold)? else { return Ok(None) };
     let compliant = workspace.compliant_load_factor(&hold, &scenario.limits)?;

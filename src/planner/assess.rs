@@ -23,7 +23,7 @@ use crate::{
         wrench::Wrench,
     },
     robot::Gripper,
-    statics::{HandModel, Hold, HoldError},
+    statics::{ContactModel, ContactModelError, HandModel},
 };
 
 /// Height of the board's centre in W, m (METHOD section 3).
@@ -383,7 +383,11 @@ pub fn stability_limits(scenario: &Scenario) -> Limits {
 }
 
 /// A candidate as the statics see it.
-pub fn statics_hold(problem: &Problem<'_>, candidate: &Candidate, x_wo: &Pose) -> Result<Hold, HoldError> {
+pub fn statics_hold(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+) -> Result<ContactModel, ContactModelError> {
     let Scenario { object, operation, grip, .. } = problem.scenario;
     let object = PlacedObject { size_m: object.size_m, mass_kg: object.mass_kg(), x_wo: *x_wo };
     let hands: Result<Vec<_>, _> = arm_holds(problem, candidate)
@@ -391,5 +395,5 @@ pub fn statics_hold(problem: &Problem<'_>, candidate: &Candidate, x_wo: &Pose) -
         .zip(&problem.map.arms)
         .map(|(hold, arm)| HandModel::from_plan(&problem.map.robot, &arm.chain, hold, &object, grip.friction))
         .collect();
-    Ok(Hold::from_hands(hands?, &object, &operation.rolled(candidate.roll_rad)))
+    Ok(ContactModel::from_hands(hands?, &object, &operation.rolled(candidate.roll_rad)))
 }

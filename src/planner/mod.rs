@@ -45,7 +45,7 @@ use crate::{
         wrench::Wrench,
     },
     robot::Robot,
-    statics::{Hold, StabilityWorkspace},
+    statics::{ContactModel, StabilityWorkspace},
 };
 use assess::{Configured, Feasible, Rejection, Tally};
 use candidate::{Candidate, Placed};
@@ -243,7 +243,7 @@ fn assemble_placed(
     let operation = scenario.operation.rolled(candidate.roll_rad);
     let object = PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo };
     let arms = assess::arm_holds(problem, candidate);
-    let hold = Hold::from_plan(&problem.map.robot, &arms, &object, &operation, scenario.grip.friction).ok()?;
+    let hold = ContactModel::from_plan(&problem.map.robot, &arms, &object, &operation, scenario.grip.friction).ok()?;
     Some(Plan {
         format: FORMAT,
         name: scenario.name.clone(),

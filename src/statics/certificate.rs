@@ -8,7 +8,7 @@ use clarabel::solver::SupportedConeT;
 use nalgebra::Vector6;
 
 use super::{
-    hold::{HandModel, Hold, HoldError},
+    contact_model::{ContactModel, ContactModelError, HandModel},
     layout::{HandLayout, Layout},
     program::{FORCE_UNIT_N, MAX_LOAD_FACTOR, Program, ProgramKind, wrench_units},
 };
@@ -31,10 +31,10 @@ impl DualVector {
     ///
     /// # Errors
     /// When the hold is broken.
-    pub fn upper_bound(&self, hold: &Hold) -> Result<f64, HoldError> {
-        hold.check()?;
-        let program = Program::load(hold, self.kind);
-        Ok(self.bound(hold, &program, &program.q))
+    pub fn upper_bound(&self, model: &ContactModel) -> Result<f64, ContactModelError> {
+        model.check()?;
+        let program = Program::load(model, self.kind);
+        Ok(self.bound(model, &program, &program.q))
     }
 
     /// True when this vector proves that no load factor from 0 to 100 can be held, so in particular not the weight
@@ -42,24 +42,24 @@ impl DualVector {
     ///
     /// # Errors
     /// When the hold is broken.
-    pub fn proves_infeasible(&self, hold: &Hold) -> Result<bool, HoldError> {
-        hold.check()?;
-        let program = Program::load(hold, self.kind);
-        Ok(self.refutes(hold, &program))
+    pub fn proves_infeasible(&self, model: &ContactModel) -> Result<bool, ContactModelError> {
+        model.check()?;
+        let program = Program::load(model, self.kind);
+        Ok(self.refutes(model, &program))
     }
 
     /// True when this vector proves that the program has no feasible point.
-    pub(super) fn refutes(&self, hold: &Hold, program: &Program) -> bool {
-        self.bound(hold, program, &vec![0.0; program.q.len()]) < 0.0
+    pub(super) fn refutes(&self, model: &ContactModel, program: &Program) -> bool {
+        self.bound(model, program, &vec![0.0; program.q.len()]) < 0.0
     }
 
     /// `b'z + sum |q + A'z|_i x_i,max` for the vector moved into the dual cone.
-    fn bound(&self, hold: &Hold, program: &Program, q: &[f64]) -> f64 {
+    fn bound(&self, model: &ContactModel, program: &Program, q: &[f64]) -> f64 {
         if self.z.len() != program.b.len() {
             return f64::INFINITY;
         }
         let z = self.in_dual_cone(&program.layout);
-        let largest = largest_variables(hold, program);
+        let largest = largest_variables(model, program);
         let value: f64 = program.b.iter().zip(&z).map(|(b, z)| b * z).sum();
         let residual = |column: usize| {
             let entries = program.a.colptr[column]..program.a.colptr[column + 1];
@@ -97,9 +97,9 @@ fn split_off<'a>(rest: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
 }
 
 /// The largest size of each scaled variable at any feasible point.
-fn largest_variables(hold: &Hold, program: &Program) -> Vec<f64> {
+fn largest_variables(model: &ContactModel, program: &Program) -> Vec<f64> {
     let mut largest = Vec::with_capacity(program.q.len());
-    for (hand, place) in hold.hands.iter().zip(program.layout.hands()) {
+    for (hand, place) in model.hands.iter().zip(program.layout.hands()) {
         let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
         for pad in place.pads().into_iter().flat_map(|_| &hand.pads) {
             let friction = pad.friction * normal;
@@ -110,7 +110,7 @@ fn largest_variables(hold: &Hold, program: &Program) -> Vec<f64> {
         }
         largest.extend(largest_wrench(hand).iter());
     }
-    for (hand, place) in hold.hands.iter().zip(program.layout.hands()) {
+    for (hand, place) in model.hands.iter().zip(program.layout.hands()) {
         largest.extend(largest_point_forces(hand, place));
     }
     largest.push(MAX_LOAD_FACTOR * program.load_scale);

@@ -3,7 +3,7 @@
 
 use nalgebra::{Cholesky, Const, DVector, Dyn, Matrix3, Matrix6, Vector3, Vector6};
 
-use super::hold::{HandModel, Hold};
+use super::contact_model::{ContactModel, HandModel};
 use crate::model::wrench::Wrench;
 
 /// The smallest ratio of two pivots of a compliance that still counts as invertible: rounding leaves about 1e-15 where
@@ -52,7 +52,7 @@ impl std::ops::Sub for Twist {
 impl HandModel {
     /// Compliance of the arm at the grasp point, `C = J (K_q + dg/dq)^-1 J'`, 6 x 6, O axes: the hand gives way by `C w`
     /// under a wrench `w` on it (m/N, rad/(N m)). Not a number when the joints' springs do not hold the arm itself, which
-    /// [`Hold::check`] refuses.
+    /// [`ContactModel::check`] refuses.
     pub fn compliance(&self) -> Matrix6<f64> {
         let Some(factor) = self.spring_factor() else { return Matrix6::repeat(f64::NAN) };
         // L^-1 J': symmetric to the last bit.
@@ -62,7 +62,7 @@ impl HandModel {
     }
 
     /// The joints' displacement, rad, under torques on them, N m: `(K_q + dg/dq)^-1 tau`.
-    pub(super) fn joint_give_rad(&self, torque_nm: &DVector<f64>) -> DVector<f64> {
+    pub(super) fn joint_deflection_rad(&self, torque_nm: &DVector<f64>) -> DVector<f64> {
         self.spring_factor().map_or_else(|| torque_nm * f64::NAN, |factor| factor.solve(torque_nm))
     }
 
@@ -78,7 +78,7 @@ impl HandModel {
 
 /// A hold whose hands are taken to be welded to the board: right as long as no pad is at its limit.
 #[derive(Clone, Debug)]
-pub struct WeldedHold {
+pub struct WeldedStiffness {
     p_ot: Vector3<f64>,
     stiffness_t: Matrix6<f64>,
     factor: Cholesky<f64, Const<6>>,
@@ -86,20 +86,20 @@ pub struct WeldedHold {
     hands: Vec<(Matrix6<f64>, Matrix6<f64>)>,
 }
 
-impl WeldedHold {
+impl WeldedStiffness {
     /// `K_O = sum_i Ad_i' C_i^-1 Ad_i` about the tool tip (METHOD section 6), `Ad_i` taking the board's
     /// twist at the tool tip to that at the grasp point. None when an arm has a direction in which its joints' springs
     /// do not give way at all (fewer than six joints, or a singular posture): its stiffness there is not finite.
-    pub fn new(hold: &Hold) -> Option<Self> {
+    pub fn new(model: &ContactModel) -> Option<Self> {
         let mut stiffness_t = Matrix6::zeros();
-        let mut hands = Vec::with_capacity(hold.hands.len());
-        for hand in &hold.hands {
+        let mut hands = Vec::with_capacity(model.hands.len());
+        for hand in &model.hands {
             let stiffness = inverse(&hand.compliance())?;
-            let map = twist_map(&(hand.grasp_point_o - hold.p_ot));
+            let map = twist_map(&(hand.grasp_point_o - model.p_ot));
             stiffness_t += map.transpose() * stiffness * map;
             hands.push((stiffness, map));
         }
-        Some(Self { p_ot: hold.p_ot, stiffness_t, factor: stiffness_t.cholesky()?, hands })
+        Some(Self { p_ot: model.p_ot, stiffness_t, factor: stiffness_t.cholesky()?, hands })
     }
 
     /// K_O about the tool tip in O axes, 6 x 6 (N/m, N, N m/rad).

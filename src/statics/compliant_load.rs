@@ -2,9 +2,9 @@
 
 use super::{
     StabilityWorkspace,
-    compliance::WeldedHold,
+    compliance::WeldedStiffness,
+    contact_model::ContactModel,
     equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome},
-    hold::Hold,
     load_factor::LoadFactorOutcome,
     program::{HandEnergy, MAX_LOAD_FACTOR},
     workspace::hand_energies,
@@ -19,7 +19,7 @@ const MAX_SOLVES: usize = 60;
 
 /// The first thing that goes wrong as the load grows.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Crossing {
+pub enum LimitCrossing {
     /// No forces within the pads' limits balance the object any more.
     NoEquilibrium {
         /// The pads' limits that bind, strongest first; empty when the weight alone cannot be held.
@@ -49,7 +49,7 @@ pub enum Crossing {
     },
 }
 
-impl std::fmt::Display for Crossing {
+impl std::fmt::Display for LimitCrossing {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NoEquilibrium { binding } if binding.is_empty() => f.write_str("weight: no equilibrium"),
@@ -69,7 +69,7 @@ pub struct CompliantLoadFactor {
     /// The load factor, 0 to 100: every limit is kept there.
     pub load_factor: f64,
     /// What is crossed within a thousandth above it; none when the cap of 100 was reached.
-    pub first_limit: Option<Crossing>,
+    pub first_limit: Option<LimitCrossing>,
     /// How many equilibria were solved for.
     pub equilibria: usize,
 }
@@ -77,32 +77,32 @@ pub struct CompliantLoadFactor {
 impl CompliantResponse {
     /// The limit that is exceeded most, relative to its size; none when all are kept. Creep needs time and is no part
     /// of this.
-    pub fn crossing(&self, hold: &Hold, limits: &Limits) -> Option<Crossing> {
-        let (ratio, crossing) = self.worst(hold, limits);
+    pub fn crossing(&self, model: &ContactModel, limits: &Limits) -> Option<LimitCrossing> {
+        let (ratio, crossing) = self.worst(model, limits);
         (ratio > 1.0).then_some(crossing)
     }
 
     /// The largest ratio of a torque, deflection or slip to its limit.
-    pub fn utilisation(&self, hold: &Hold, limits: &Limits) -> f64 {
-        self.worst(hold, limits).0
+    pub fn utilisation(&self, model: &ContactModel, limits: &Limits) -> f64 {
+        self.worst(model, limits).0
     }
 
     /// The largest ratio of a value to its limit, and the crossing that it would be.
-    fn worst(&self, hold: &Hold, limits: &Limits) -> (f64, Crossing) {
-        let (hand, joint, torque) = self.equilibrium.largest_torque_ratio(hold);
-        let joint = hold.hands[hand].joints.get(joint).cloned().unwrap_or_default();
-        let mut worst = (torque / limits.torque_ratio, Crossing::Torque { joint });
-        let mut consider = |ratio: f64, crossing: &dyn Fn() -> Crossing| {
+    fn worst(&self, model: &ContactModel, limits: &Limits) -> (f64, LimitCrossing) {
+        let (hand, joint, torque) = self.equilibrium.largest_torque_ratio(model);
+        let joint = model.hands[hand].joints.get(joint).cloned().unwrap_or_default();
+        let mut worst = (torque / limits.torque_ratio, LimitCrossing::Torque { joint });
+        let mut consider = |ratio: f64, crossing: &dyn Fn() -> LimitCrossing| {
             if ratio > worst.0 {
                 worst = (ratio, crossing());
             }
         };
-        consider(self.deflection_mm() / limits.deflection_mm, &|| Crossing::Deflection);
-        for (hand, slip) in hold.hands.iter().zip(&self.slip) {
+        consider(self.deflection_mm() / limits.deflection_mm, &|| LimitCrossing::Deflection);
+        for (hand, slip) in model.hands.iter().zip(&self.slip) {
             let name = || hand.name.clone();
-            consider(slip.linear.norm() * 1e3 / limits.slip_mm, &|| Crossing::Slip { hand: name() });
+            consider(slip.linear.norm() * 1e3 / limits.slip_mm, &|| LimitCrossing::Slip { hand: name() });
             let turned = slip.angular.norm().to_degrees() / limits.slip_deg;
-            consider(turned, &|| Crossing::SlipRotation { hand: name() });
+            consider(turned, &|| LimitCrossing::SlipRotation { hand: name() });
         }
         worst
     }
@@ -113,7 +113,7 @@ impl CompliantResponse {
 struct Probe {
     load_factor: f64,
     ratio: f64,
-    crossing: Crossing,
+    crossing: LimitCrossing,
 }
 
 impl Probe {
@@ -130,7 +130,7 @@ impl Probe {
 /// The search's state.
 struct Search<'a> {
     workspace: &'a mut StabilityWorkspace,
-    hold: &'a Hold,
+    model: &'a ContactModel,
     limits: &'a Limits,
     energies: Vec<HandEnergy>,
     solves: usize,
@@ -143,9 +143,9 @@ struct Search<'a> {
 /// slips that is exact, and two solves there end the search. Otherwise the bracket is closed by the Illinois method. The
 /// work done by the load grows with it, since the complementary energy is convex; that each limit's own measure grows as
 /// well is taken for granted.
-pub(super) fn search(workspace: &mut StabilityWorkspace, hold: &Hold, limits: &Limits) -> CompliantLoadFactor {
-    let energies = hand_energies(hold);
-    let mut search = Search { workspace, hold, limits, energies, solves: 0 };
+pub(super) fn search(workspace: &mut StabilityWorkspace, model: &ContactModel, limits: &Limits) -> CompliantLoadFactor {
+    let energies = hand_energies(model);
+    let mut search = Search { workspace, model, limits, energies, solves: 0 };
     match search.run() {
         Ok((load_factor, first_limit)) => CompliantLoadFactor { load_factor, first_limit, equilibria: search.solves },
         Err(crossing) => {
@@ -156,11 +156,11 @@ pub(super) fn search(workspace: &mut StabilityWorkspace, hold: &Hold, limits: &L
 
 impl Search<'_> {
     /// The load factor and what ends it; `Err` when something is crossed already under the weight alone.
-    fn run(&mut self) -> Result<(f64, Option<Crossing>), Crossing> {
+    fn run(&mut self) -> Result<(f64, Option<LimitCrossing>), LimitCrossing> {
         let unloaded = self.unloaded()?;
         let (last, binding) = self.last_equilibrium()?;
-        let at_rest = CompliantResponse::between(self.hold, &unloaded, unloaded.clone());
-        let (ratio, crossing) = at_rest.worst(self.hold, self.limits);
+        let at_rest = CompliantResponse::between(self.model, &unloaded, unloaded.clone());
+        let (ratio, crossing) = at_rest.worst(self.model, self.limits);
         let mut low = Probe { load_factor: 0.0, ratio, crossing };
         if !low.is_kept() {
             return Err(low.crossing);
@@ -168,7 +168,7 @@ impl Search<'_> {
         // A little inside: at the very end the feasible set has no interior and the solver no solution to trust.
         let end = if last < MAX_LOAD_FACTOR { last - TOLERANCE / 2.0 * last.max(1.0) } else { last };
         let mut high = None;
-        let guess = welded_crossing(self.hold, self.limits, &unloaded);
+        let guess = welded_crossing(self.model, self.limits, &unloaded);
         for load_factor in [guess - self.tolerance(guess) / 3.0, guess + self.tolerance(guess) / 3.0, end] {
             // Written so that a guess that is not a number is passed over.
             if !(load_factor > low.load_factor && load_factor <= end) {
@@ -185,7 +185,7 @@ impl Search<'_> {
         match high {
             Some(high) => Ok(self.close(&unloaded, low, high)),
             None if last >= MAX_LOAD_FACTOR => Ok((MAX_LOAD_FACTOR, None)),
-            None => Ok((low.load_factor, Some(Crossing::NoEquilibrium { binding }))),
+            None => Ok((low.load_factor, Some(LimitCrossing::NoEquilibrium { binding }))),
         }
     }
 
@@ -193,41 +193,41 @@ impl Search<'_> {
         TOLERANCE * load_factor.max(1.0)
     }
 
-    fn unloaded(&mut self) -> Result<Equilibrium, Crossing> {
+    fn unloaded(&mut self) -> Result<Equilibrium, LimitCrossing> {
         self.solves += 1;
-        match self.workspace.solve_equilibrium(self.hold, &self.energies, 0.0) {
+        match self.workspace.solve_equilibrium(self.model, &self.energies, 0.0) {
             EquilibriumOutcome::Found(unloaded) => Ok(unloaded),
-            EquilibriumOutcome::None => Err(Crossing::NoEquilibrium { binding: Vec::new() }),
-            EquilibriumOutcome::Unknown { status } => Err(Crossing::Unknown { status }),
+            EquilibriumOutcome::NoEquilibrium => Err(LimitCrossing::NoEquilibrium { binding: Vec::new() }),
+            EquilibriumOutcome::Unknown { status } => Err(LimitCrossing::Unknown { status }),
         }
     }
 
     /// The load factor up to which equilibria exist, and the pads' limits that end them.
-    fn last_equilibrium(&mut self) -> Result<(f64, Vec<String>), Crossing> {
-        match self.workspace.solve_friction(self.hold) {
+    fn last_equilibrium(&mut self) -> Result<(f64, Vec<String>), LimitCrossing> {
+        match self.workspace.solve_friction(self.model) {
             LoadFactorOutcome::Solved(solved) => Ok((solved.load_factor, solved.binding)),
-            LoadFactorOutcome::GravityInfeasible { .. } => Err(Crossing::NoEquilibrium { binding: Vec::new() }),
-            LoadFactorOutcome::Unknown { status } => Err(Crossing::Unknown { status }),
+            LoadFactorOutcome::GravityInfeasible { .. } => Err(LimitCrossing::NoEquilibrium { binding: Vec::new() }),
+            LoadFactorOutcome::Unknown { status } => Err(LimitCrossing::Unknown { status }),
         }
     }
 
     fn probe(&mut self, unloaded: &Equilibrium, load_factor: f64) -> Probe {
         self.solves += 1;
         let failed = |crossing| Probe { load_factor, ratio: f64::INFINITY, crossing };
-        match self.workspace.solve_equilibrium(self.hold, &self.energies, load_factor) {
+        match self.workspace.solve_equilibrium(self.model, &self.energies, load_factor) {
             EquilibriumOutcome::Found(loaded) => {
-                let response = CompliantResponse::between(self.hold, unloaded, loaded);
-                let (ratio, crossing) = response.worst(self.hold, self.limits);
+                let response = CompliantResponse::between(self.model, unloaded, loaded);
+                let (ratio, crossing) = response.worst(self.model, self.limits);
                 Probe { load_factor, ratio, crossing }
             }
-            EquilibriumOutcome::None => failed(Crossing::NoEquilibrium { binding: Vec::new() }),
-            EquilibriumOutcome::Unknown { status } => failed(Crossing::Unknown { status }),
+            EquilibriumOutcome::NoEquilibrium => failed(LimitCrossing::NoEquilibrium { binding: Vec::new() }),
+            EquilibriumOutcome::Unknown { status } => failed(LimitCrossing::Unknown { status }),
         }
     }
 
     /// Closes the bracket to the tolerance: regula falsi, the weight of an end that stays twice halved (Illinois), and
     /// never closer to an end than a third of the tolerance.
-    fn close(&mut self, unloaded: &Equilibrium, mut low: Probe, mut high: Probe) -> (f64, Option<Crossing>) {
+    fn close(&mut self, unloaded: &Equilibrium, mut low: Probe, mut high: Probe) -> (f64, Option<LimitCrossing>) {
         let (mut low_weight, mut high_weight) = (low.residual(), high.residual());
         let mut last_was_kept = None;
         while high.load_factor - low.load_factor > self.tolerance(high.load_factor) && self.solves < MAX_SOLVES {
@@ -254,12 +254,12 @@ impl Search<'_> {
 }
 
 /// Where the welded hold crosses its first limit of torque or deflection; not a number when it cannot be said.
-fn welded_crossing(hold: &Hold, limits: &Limits, unloaded: &Equilibrium) -> f64 {
-    let Some(welded) = WeldedHold::new(hold) else { return f64::NAN };
-    let deflection_mm = welded.twist_at_tip(&hold.load).linear.norm() * 1e3;
+fn welded_crossing(model: &ContactModel, limits: &Limits, unloaded: &Equilibrium) -> f64 {
+    let Some(welded) = WeldedStiffness::new(model) else { return f64::NAN };
+    let deflection_mm = welded.twist_at_tip(&model.load).linear.norm() * 1e3;
     let mut first = limits.deflection_mm / deflection_mm;
     for ((hand, wrench), torque) in
-        hold.hands.iter().zip(welded.hand_wrenches(&hold.load)).zip(&unloaded.joint_torque_nm)
+        model.hands.iter().zip(welded.hand_wrenches(&model.load)).zip(&unloaded.joint_torque_nm)
     {
         let growth = hand.jacobian_o.tr_mul(&wrench.to_vector());
         for joint in 0..hand.dof() {

@@ -8,10 +8,10 @@
 use nalgebra::Vector3;
 
 use super::{
-    compliance::{Twist, WeldedHold},
+    compliance::{Twist, WeldedStiffness},
     contact::PadKind,
+    contact_model::{ContactModel, HandModel},
     equilibrium::Equilibrium,
-    hold::{HandModel, Hold},
 };
 use crate::model::wrench::Wrench;
 
@@ -21,34 +21,34 @@ const SURE: f64 = 0.99;
 const OPPOSITE: f64 = 1e-9;
 
 /// The equilibrium at a load factor when it is that of the welded hold and this can be shown cheaply.
-pub(super) fn equilibrium(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Equilibrium> {
-    let pads = shared(hold, welded, load_factor)?;
-    hold.hands.iter().zip(&pads).all(|(hand, pads)| is_kept(hand, pads)).then(|| {
-        let board = board(hold, welded, load_factor);
-        Equilibrium::of_pads(hold, load_factor, pads, board)
+pub(super) fn equilibrium(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
+    let pads = shared(model, welded, load_factor)?;
+    model.hands.iter().zip(&pads).all(|(hand, pads)| is_kept(hand, pads)).then(|| {
+        let board = board(model, welded, load_factor);
+        Equilibrium::of_pads(model, load_factor, pads, board)
     })
 }
 
 /// The equilibrium of a hold that differs a little from one whose equilibrium is that of the welded hold: its pads are
 /// below their limits too, or by a hair beyond.
-pub(super) fn of_neighbour(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Equilibrium> {
-    let pads = shared(hold, welded, load_factor)?;
-    Some(Equilibrium::of_pads(hold, load_factor, pads, board(hold, welded, load_factor)))
+pub(super) fn first_order(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
+    let pads = shared(model, welded, load_factor)?;
+    Some(Equilibrium::of_pads(model, load_factor, pads, board(model, welded, load_factor)))
 }
 
-fn board(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Twist {
-    welded.twist_at_tip(&outer(hold, load_factor)).at(&-hold.p_ot)
+fn board(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Twist {
+    welded.twist_at_tip(&outer(model, load_factor)).at(&-model.p_ot)
 }
 
-fn outer(hold: &Hold, load_factor: f64) -> Wrench {
-    hold.weight + hold.load.scaled(load_factor)
+fn outer(model: &ContactModel, load_factor: f64) -> Wrench {
+    model.weight + model.load.scaled(load_factor)
 }
 
 /// The hands' wrenches when all are welded to the board, shared between their pads: each about its centre in pad axes. None
 /// where a hand has no such pads.
-fn shared(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Vec<[Wrench; 2]>> {
-    let wrenches = welded.hand_wrenches(&outer(hold, load_factor));
-    hold.hands.iter().zip(&wrenches).map(|(hand, wrench)| shared_by_pads(hand, wrench)).collect()
+fn shared(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Vec<[Wrench; 2]>> {
+    let wrenches = welded.hand_wrenches(&outer(model, load_factor));
+    model.hands.iter().zip(&wrenches).map(|(hand, wrench)| shared_by_pads(hand, wrench)).collect()
 }
 
 /// A hand's wrench about its grasp point, shared between its pads: `fn_1 + fn_2 = 2 F`, what is tangential by halves.

@@ -28,7 +28,7 @@ use nalgebra::{DVector, Vector3};
 
 use super::{
     compliance::Twist,
-    hold::{HandModel, Hold},
+    contact_model::{ContactModel, HandModel},
     layout::Layout,
     load_factor::{balance_twist, joint_torque},
     program::{DISPLACEMENT_UNIT_M, FORCE_UNIT_N, HandEnergy, RawSolution, pad_wrenches, wrench_units},
@@ -58,28 +58,33 @@ pub struct Equilibrium {
 
 impl Equilibrium {
     /// The equilibrium with these pads' wrenches and displacement of the board; the rest follows.
-    pub(super) fn of_pads(hold: &Hold, load_factor: f64, pad_wrenches_p: Vec<[Wrench; 2]>, board: Twist) -> Self {
-        let mut joint_torque_nm = Vec::with_capacity(hold.hands.len());
-        let mut hands = Vec::with_capacity(hold.hands.len());
-        for (hand, pads) in hold.hands.iter().zip(&pad_wrenches_p) {
+    pub(super) fn of_pads(
+        model: &ContactModel,
+        load_factor: f64,
+        pad_wrenches_p: Vec<[Wrench; 2]>,
+        board: Twist,
+    ) -> Self {
+        let mut joint_torque_nm = Vec::with_capacity(model.hands.len());
+        let mut hands = Vec::with_capacity(model.hands.len());
+        for (hand, pads) in model.hands.iter().zip(&pad_wrenches_p) {
             let torque = joint_torque(hand, pads);
-            let give_rad = hand.joint_give_rad(&(&torque - &hand.gravity_torque_nm));
-            let moved = &hand.jacobian_o * &give_rad;
+            let deflection_rad = hand.joint_deflection_rad(&(&torque - &hand.gravity_torque_nm));
+            let moved = &hand.jacobian_o * &deflection_rad;
             hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
-            joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * give_rad);
+            joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * deflection_rad);
         }
         Self { load_factor, pad_wrenches_p, joint_torque_nm, board, hands }
     }
 
     /// Displacement of the board relative to a hand, stated for the grasp point: `Ad d + C w`.
-    fn slip(&self, hold: &Hold, hand: usize) -> Twist {
-        self.board.at(&hold.hands[hand].grasp_point_o) - self.hands[hand]
+    fn slip(&self, model: &ContactModel, hand: usize) -> Twist {
+        self.board.at(&model.hands[hand].grasp_point_o) - self.hands[hand]
     }
 
     /// The largest joint torque over its limit: hand, joint, ratio.
-    pub fn largest_torque_ratio(&self, hold: &Hold) -> (usize, usize, f64) {
+    pub fn largest_torque_ratio(&self, model: &ContactModel) -> (usize, usize, f64) {
         let mut largest = (0, 0, 0.0);
-        for (number, (hand, torque)) in hold.hands.iter().zip(&self.joint_torque_nm).enumerate() {
+        for (number, (hand, torque)) in model.hands.iter().zip(&self.joint_torque_nm).enumerate() {
             for joint in 0..hand.dof() {
                 let ratio = torque[joint].abs() / hand.effort_nm[joint];
                 if ratio > largest.2 {
@@ -97,7 +102,7 @@ pub enum EquilibriumOutcome {
     /// The equilibrium.
     Found(Equilibrium),
     /// No forces within the pads' limits balance the object.
-    None,
+    NoEquilibrium,
     /// The solver stopped early.
     Unknown {
         /// The solver's own word.
@@ -117,9 +122,9 @@ pub struct CompliantResponse {
 }
 
 impl CompliantResponse {
-    pub(super) fn between(hold: &Hold, unloaded: &Equilibrium, loaded: Equilibrium) -> Self {
-        let deflection_m = (loaded.board - unloaded.board).at(&hold.p_ot).linear;
-        let slip = (0..hold.hands.len()).map(|hand| loaded.slip(hold, hand) - unloaded.slip(hold, hand)).collect();
+    pub(super) fn between(model: &ContactModel, unloaded: &Equilibrium, loaded: Equilibrium) -> Self {
+        let deflection_m = (loaded.board - unloaded.board).at(&model.p_ot).linear;
+        let slip = (0..model.hands.len()).map(|hand| loaded.slip(model, hand) - unloaded.slip(model, hand)).collect();
         Self { equilibrium: loaded, deflection_m, slip }
     }
 
@@ -156,15 +161,22 @@ pub(super) fn hand_energy(hand: &HandModel) -> HandEnergy {
 }
 
 /// Reads clarabel's answer to an equilibrium program.
-pub(super) fn interpret(hold: &Hold, layout: &Layout, load_factor: f64, raw: &RawSolution<'_>) -> EquilibriumOutcome {
+pub(super) fn interpret(
+    model: &ContactModel,
+    layout: &Layout,
+    load_factor: f64,
+    raw: &RawSolution<'_>,
+) -> EquilibriumOutcome {
     match raw.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => {}
-        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => return EquilibriumOutcome::None,
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            return EquilibriumOutcome::NoEquilibrium;
+        }
         status => return EquilibriumOutcome::Unknown { status: format!("{status:?}") },
     }
     let places = layout.hands();
     let pad_wrenches_p: Vec<_> =
-        hold.hands.iter().zip(places).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
+        model.hands.iter().zip(places).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
     let board = balance_twist(raw.z, FORCE_UNIT_N * DISPLACEMENT_UNIT_M);
-    EquilibriumOutcome::Found(Equilibrium::of_pads(hold, load_factor, pad_wrenches_p, board))
+    EquilibriumOutcome::Found(Equilibrium::of_pads(model, load_factor, pad_wrenches_p, board))
 }

@@ -1,10 +1,10 @@
-//! A [`Hold`] from a plan: the one place of this module that knows what a robot is.
+//! A [`ContactModel`] from a plan: the one place of this module that knows what a robot is.
 
 use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 use super::{
     contact::PadKind,
-    hold::{HandModel, Hold, HoldError, PadModel},
+    contact_model::{ContactModel, ContactModelError, HandModel, PadModel},
     patch::clip_to_rectangle,
 };
 use crate::{
@@ -25,7 +25,7 @@ use crate::{
 /// for more describes another contact than ours.
 const MAX_FINGER_LEAN_DEG: f64 = 2.0;
 
-impl Hold {
+impl ContactModel {
     /// The hold that a plan describes. Board, pads and arms are taken at the plan's poses and angles; pads lie flat on
     /// the two faces, and only their part on the face counts (see [`clip_to_rectangle`]).
     ///
@@ -38,12 +38,13 @@ impl Hold {
         object: &PlacedObject,
         operation: &Operation,
         friction: f64,
-    ) -> Result<Self, HoldError> {
+    ) -> Result<Self, ContactModelError> {
         let hands: Result<Vec<_>, _> = plan_arms
             .iter()
             .map(|plan_arm| {
-                let index =
-                    robot.arm_index(&plan_arm.name).ok_or_else(|| HoldError::UnknownArm(plan_arm.name.clone()))?;
+                let index = robot
+                    .arm_index(&plan_arm.name)
+                    .ok_or_else(|| ContactModelError::UnknownArm(plan_arm.name.clone()))?;
                 let travel_m = robot.arms[index].gripper.travel_for_gap_m(0, object.size_m[2]);
                 HandModel::from_plan(robot, &Chain::new(robot, index, travel_m), plan_arm, object, friction)
             })
@@ -68,24 +69,28 @@ impl HandModel {
     /// plan, its fingers at the board's thickness.
     ///
     /// # Errors
-    /// See [`Hold::from_plan`].
+    /// See [`ContactModel::from_plan`].
     pub fn from_plan(
         robot: &Robot,
         chain: &Chain,
         plan_arm: &ArmHold,
         object: &PlacedObject,
         friction: f64,
-    ) -> Result<Self, HoldError> {
+    ) -> Result<Self, ContactModelError> {
         let name = &plan_arm.name;
-        let arm = robot.arms.iter().find(|arm| arm.name == *name).ok_or_else(|| HoldError::UnknownArm(name.clone()))?;
+        let arm = robot
+            .arms
+            .iter()
+            .find(|arm| arm.name == *name)
+            .ok_or_else(|| ContactModelError::UnknownArm(name.clone()))?;
         if plan_arm.q_rad.len() != chain.dof() {
             let (found, expected) = (plan_arm.q_rad.len(), chain.dof());
-            return Err(HoldError::JointCount { hand: name.clone(), what: "q_rad", found, expected });
+            return Err(ContactModelError::JointCount { hand: name.clone(), what: "q_rad", found, expected });
         }
         let joints: Vec<String> = arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect();
         if plan_arm.joints != joints {
             let found = plan_arm.joints.clone();
-            return Err(HoldError::JointNames { hand: name.clone(), found, expected: joints });
+            return Err(ContactModelError::JointNames { hand: name.clone(), found, expected: joints });
         }
         let pads = [0, 1].map(|finger| pad_model(&arm.gripper, finger, plan_arm, object, friction));
         let [first, second] = pads;
@@ -133,14 +138,14 @@ fn pad_model(
     plan_arm: &ArmHold,
     object: &PlacedObject,
     friction: f64,
-) -> Result<PadModel, HoldError> {
+) -> Result<PadModel, ContactModelError> {
     let name = gripper.pad_name(finger, &plan_arm.x_og);
     let is_upper = name == "upper";
     let finger_axis_o = plan_arm.x_og.rotation * Vector3::y();
     let angle_deg = finger_axis_o.z.abs().min(1.0).acos().to_degrees();
     if angle_deg > MAX_FINGER_LEAN_DEG {
         let (hand, limit_deg) = (plan_arm.name.clone(), MAX_FINGER_LEAN_DEG);
-        return Err(HoldError::FingersNotAcross { hand, angle_deg, limit_deg });
+        return Err(ContactModelError::FingersNotAcross { hand, angle_deg, limit_deg });
     }
     let pad = &gripper.fingers[finger].pad;
     let normal_o = if is_upper { -Vector3::z() } else { Vector3::z() };
@@ -151,7 +156,7 @@ fn pad_model(
     let [width, height, thickness] = object.size_m;
     let half_sides = pad.size_m.map(|side| side / 2.0);
     let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
-        .ok_or_else(|| HoldError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
+        .ok_or_else(|| ContactModelError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
     let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
     Ok(PadModel {
         name: name.into(),

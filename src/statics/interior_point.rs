@@ -16,8 +16,8 @@ use nalgebra::{Cholesky, Const, SMatrix, SVector, Vector6};
 
 use super::{
     contact::PadKind,
+    contact_model::{ContactModel, HandModel, MAX_HANDS},
     equilibrium::Equilibrium,
-    hold::{HandModel, Hold, MAX_HANDS},
     load_factor::balance_twist,
     pad_cone::{self, Scaling, Slack},
     program::{self, DISPLACEMENT_UNIT_M, FORCE_UNIT_N, HandEnergy},
@@ -62,12 +62,12 @@ struct HoldProgram {
 
 impl HoldProgram {
     /// None when a hand is not held by soft fingers with friction.
-    fn new(hold: &Hold, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
-        let outer = program::scaled(&(hold.weight + hold.load.scaled(load_factor)));
+    fn new(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
+        let outer = program::scaled(&(model.weight + model.load.scaled(load_factor)));
         let mut wanted = Rows::zeros();
         wanted.fixed_rows_mut::<6>(0).copy_from(&-outer);
-        let mut hands = Vec::with_capacity(hold.hands.len());
-        for (number, (hand, energy)) in hold.hands.iter().zip(energies).enumerate() {
+        let mut hands = Vec::with_capacity(model.hands.len());
+        for (number, (hand, energy)) in model.hands.iter().zip(energies).enumerate() {
             let soft = |pad: &super::PadModel| pad.kind == PadKind::SoftFinger && pad.friction > 0.0;
             if hand.wrench_limits.is_some() || !hand.pads.iter().all(soft) {
                 return None;
@@ -171,8 +171,8 @@ pub(super) struct InteriorPoint {
 
 impl InteriorPoint {
     /// Solves; none when the hold is not of this kind, or when no end is in sight.
-    pub(super) fn solve(hold: &Hold, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
-        let program = HoldProgram::new(hold, energies, load_factor)?;
+    pub(super) fn solve(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
+        let program = HoldProgram::new(model, energies, load_factor)?;
         let starts = program.hands.iter().enumerate();
         let mut hands: Vec<_> =
             starts.map(|(number, hand)| HandPoint::start(hand, program.wanted[6 + number] / 2.0)).collect();
@@ -203,32 +203,42 @@ impl InteriorPoint {
 
     /// The equilibrium of a near hold with as many hands, to first order in what it differs by; none when it is not of this
     /// kind.
-    pub(super) fn of_neighbour(&self, hold: &Hold, energies: &[HandEnergy], load_factor: f64) -> Option<Equilibrium> {
-        let program = HoldProgram::new(hold, energies, load_factor).filter(|it| it.hands.len() == self.hands.len())?;
+    pub(super) fn first_order(
+        &self,
+        model: &ContactModel,
+        energies: &[HandEnergy],
+        load_factor: f64,
+    ) -> Option<Equilibrium> {
+        let program = HoldProgram::new(model, energies, load_factor).filter(|it| it.hands.len() == self.hands.len())?;
         let residual = residuals(&program, &self.hands, &self.y);
         // The products of slack and multiplier stay as they are.
         let unchanged = vec![[Slack::zeros(); 2]; self.hands.len()];
         let step = newton_step(&program, &self.factor, &residual, &unchanged);
         let moved = self.hands.iter().zip(&step.hands).map(|(point, change)| point.x + change.x);
-        Some(equilibrium(hold, load_factor, moved, &(self.y + step.y)))
+        Some(equilibrium(model, load_factor, moved, &(self.y + step.y)))
     }
 
     /// The equilibrium itself.
-    pub(super) fn equilibrium(&self, hold: &Hold, load_factor: f64) -> Equilibrium {
-        equilibrium(hold, load_factor, self.hands.iter().map(|point| point.x), &self.y)
+    pub(super) fn equilibrium(&self, model: &ContactModel, load_factor: f64) -> Equilibrium {
+        equilibrium(model, load_factor, self.hands.iter().map(|point| point.x), &self.y)
     }
 }
 
 /// The equilibrium with these variables and multipliers.
-fn equilibrium(hold: &Hold, load_factor: f64, hands: impl Iterator<Item = Variables>, y: &Rows) -> Equilibrium {
-    let wrenches_p = hold.hands.iter().zip(hands).map(|(hand, x)| {
+fn equilibrium(
+    model: &ContactModel,
+    load_factor: f64,
+    hands: impl Iterator<Item = Variables>,
+    y: &Rows,
+) -> Equilibrium {
+    let wrenches_p = model.hands.iter().zip(hands).map(|(hand, x)| {
         [0, 1].map(|pad: usize| {
             let [fx, fy, fz, mx, my, mz] = pad_part(&x, pad).component_mul(&program::pad_units(&hand.pads[pad])).into();
             Wrench::from([fx, fy, fz, mx, my, mz])
         })
     });
     let board = balance_twist(y.as_slice(), FORCE_UNIT_N * DISPLACEMENT_UNIT_M);
-    Equilibrium::of_pads(hold, load_factor, wrenches_p.collect(), board)
+    Equilibrium::of_pads(model, load_factor, wrenches_p.collect(), board)
 }
 
 /// What an iterate leaves of the conditions: of the energy's gradient, one entry a hand, and of balance and grips.
@@ -398,27 +408,27 @@ mod tests {
     const FRICTION: f64 = 0.6;
 
     /// The ten holds of `tests/data/holds`.
-    fn holds() -> Vec<Hold> {
+    fn models() -> Vec<ContactModel> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/holds");
         let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
         paths.sort();
         let (_, robot) = read_plan(&paths[0], None).unwrap();
-        let hold = |path: &std::path::PathBuf| {
+        let model = |path: &std::path::PathBuf| {
             let (plan, _) = read_plan(path, Some(&robot)).unwrap();
-            Hold::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap()
+            ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap()
         };
-        paths.iter().map(hold).collect()
+        paths.iter().map(model).collect()
     }
 
     /// By clarabel.
-    fn by_program(hold: &Hold, load_factor: f64) -> EquilibriumOutcome {
-        let program = Program::equilibrium(hold, &hand_energies(hold), load_factor);
+    fn by_program(model: &ContactModel, load_factor: f64) -> EquilibriumOutcome {
+        let program = Program::equilibrium(model, &hand_energies(model), load_factor);
         let mut solver = ReusedSolver::default();
-        equilibrium::interpret(hold, &program.layout, load_factor, &solver.solve(&program).unwrap())
+        equilibrium::interpret(model, &program.layout, load_factor, &solver.solve(&program).unwrap())
     }
 
-    fn apart(one: &Equilibrium, other: &Equilibrium, hold: &Hold) -> (f64, f64) {
-        let tip = |found: &Equilibrium| found.board.at(&hold.p_ot).linear;
+    fn apart(one: &Equilibrium, other: &Equilibrium, model: &ContactModel) -> (f64, f64) {
+        let tip = |found: &Equilibrium| found.board.at(&model.p_ot).linear;
         let torque = one.joint_torque_nm.iter().zip(&other.joint_torque_nm).map(|(one, other)| (one - other).amax());
         ((tip(one) - tip(other)).norm(), torque.fold(0.0, f64::max))
     }
@@ -426,11 +436,11 @@ mod tests {
     #[test]
     fn it_finds_what_the_cone_program_finds() {
         let mut found = 0;
-        for hold in holds() {
+        for model in models() {
             for load_factor in [0.0, 0.5, 1.0, 1.1] {
-                let EquilibriumOutcome::Found(expected) = by_program(&hold, load_factor) else { continue };
-                let point = InteriorPoint::solve(&hold, &hand_energies(&hold), load_factor).unwrap();
-                let (tip_m, torque_nm) = apart(&point.equilibrium(&hold, load_factor), &expected, &hold);
+                let EquilibriumOutcome::Found(expected) = by_program(&model, load_factor) else { continue };
+                let point = InteriorPoint::solve(&model, &hand_energies(&model), load_factor).unwrap();
+                let (tip_m, torque_nm) = apart(&point.equilibrium(&model, load_factor), &expected, &model);
                 // Clarabel stops at 1e-7 of a unit, where the flattest directions of the energy are known to 1e-4 of it.
                 assert!(tip_m < 1e-6 && torque_nm < 1e-3, "at {load_factor}: {tip_m:e} m, {torque_nm:e} N m");
                 found += 1;
@@ -441,33 +451,33 @@ mod tests {
 
     #[test]
     fn it_says_nothing_of_a_load_that_no_equilibrium_holds() {
-        for hold in holds() {
-            assert!(InteriorPoint::solve(&hold, &hand_energies(&hold), 50.0).is_none());
-            assert_eq!(by_program(&hold, 50.0), EquilibriumOutcome::None);
+        for model in models() {
+            assert!(InteriorPoint::solve(&model, &hand_energies(&model), 50.0).is_none());
+            assert_eq!(by_program(&model, 50.0), EquilibriumOutcome::NoEquilibrium);
         }
     }
 
     #[test]
     fn a_neighbours_equilibrium_is_exact_to_first_order() {
         // The tool's force a little further along the board and a little turned.
-        let moved = |hold: &Hold, step: f64| {
-            let mut moved = hold.clone();
+        let moved = |model: &ContactModel, step: f64| {
+            let mut moved = model.clone();
             moved.load.force_n += Vector3::new(0.4, -0.3, 0.5) * step;
             moved.load.moment_nm += Vector3::new(0.02, 0.05, -0.04) * step;
             moved.hands[0].grasp_point_o.x += 1e-3 * step;
             moved.hands[0].pads.iter_mut().for_each(|pad| pad.x_op.translation.vector.x += 1e-3 * step);
             moved
         };
-        for hold in holds() {
-            let energies = hand_energies(&hold);
-            let point = InteriorPoint::solve(&hold, &energies, 1.0).unwrap();
+        for model in models() {
+            let energies = hand_energies(&model);
+            let point = InteriorPoint::solve(&model, &energies, 1.0).unwrap();
             let error = |step: f64| {
-                let there = moved(&hold, step);
+                let there = moved(&model, step);
                 let energies = hand_energies(&there);
                 let exact = InteriorPoint::solve(&there, &energies, 1.0).unwrap().equilibrium(&there, 1.0);
-                let guess = point.of_neighbour(&there, &energies, 1.0).unwrap();
-                let moved_m = apart(&exact, &point.equilibrium(&hold, 1.0), &hold).0;
-                (apart(&guess, &exact, &hold).0, moved_m)
+                let guess = point.first_order(&there, &energies, 1.0).unwrap();
+                let moved_m = apart(&exact, &point.equilibrium(&model, 1.0), &model).0;
+                (apart(&guess, &exact, &model).0, moved_m)
             };
             let (error_m, moved_m) = error(0.01);
             // What is left goes with the square of the step, a hundredth of the motion here; a pad that reaches or leaves

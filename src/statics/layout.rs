@@ -4,7 +4,7 @@ use clarabel::solver::SupportedConeT::{self, NonnegativeConeT, SecondOrderConeT,
 
 use super::{
     contact::{LimitShape, PadKind},
-    hold::{HandModel, Hold, PadModel},
+    contact_model::{ContactModel, HandModel, PadModel},
     program::{PAD_VARIABLES, POINT_VARIABLES, ProgramKind},
 };
 
@@ -99,18 +99,18 @@ impl Counter {
 }
 
 impl Layout {
-    pub(super) fn new(hold: &Hold, kind: ProgramKind) -> Self {
+    pub(super) fn new(model: &ContactModel, kind: ProgramKind) -> Self {
         let mut layout = Self { kind, hands: Vec::new(), variables: 0, load_rows: 0, first_cone: 0, rows: 0 };
-        layout.place_variables(hold);
+        layout.place_variables(model);
         layout.place_equalities();
         layout.place_inequalities();
         layout.place_cones();
         layout
     }
 
-    fn place_variables(&mut self, hold: &Hold) {
+    fn place_variables(&mut self, model: &ContactModel) {
         let mut next = Counter(0);
-        self.hands = hold.hands.iter().map(|hand| place_hand(hand, &mut next)).collect();
+        self.hands = model.hands.iter().map(|hand| place_hand(hand, &mut next)).collect();
         for points in self.hands.iter_mut().flat_map(HandLayout::pads_mut).filter_map(|pad| pad.points.as_mut()) {
             points.variables = next.take(POINT_VARIABLES * points.count);
         }

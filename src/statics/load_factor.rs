@@ -6,7 +6,7 @@ use nalgebra::{DVector, Vector3};
 use super::{
     certificate::DualVector,
     compliance::Twist,
-    hold::{HandModel, Hold, PadModel},
+    contact_model::{ContactModel, HandModel, PadModel},
     layout::{Contact, HandLayout, MEASURED_CONE, PadLayout, PointLayout},
     program::{FORCE_UNIT_N, LENGTH_UNIT_M, POINT_VARIABLES, Program, RawSolution, pad_wrenches},
     sensitivity::{self, Sensitivity},
@@ -105,14 +105,14 @@ impl PadLimit {
 }
 
 /// Reads clarabel's answer to a load program.
-pub(super) fn interpret(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> LoadFactorOutcome {
+pub(super) fn interpret(model: &ContactModel, program: &Program, raw: &RawSolution<'_>) -> LoadFactorOutcome {
     let margin = match raw.status {
         SolverStatus::Solved => 0.0,
         SolverStatus::AlmostSolved => ALMOST_SOLVED_MARGIN,
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
             let certificate = DualVector::new(program, raw.z);
             // The solver's word is not enough: the proof must be one.
-            return if certificate.refutes(hold, program) {
+            return if certificate.refutes(model, program) {
                 LoadFactorOutcome::GravityInfeasible { certificate }
             } else {
                 LoadFactorOutcome::Unknown { status: format!("{:?}", raw.status) }
@@ -122,12 +122,13 @@ pub(super) fn interpret(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -
     };
     let lambda = raw.x[raw.x.len() - 1] / program.load_scale;
     let pad_wrenches_p: Vec<_> =
-        hold.hands.iter().zip(program.layout.hands()).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
-    let joint_torque_nm = hold.hands.iter().zip(&pad_wrenches_p).map(|(hand, pads)| joint_torque(hand, pads)).collect();
+        model.hands.iter().zip(program.layout.hands()).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
+    let joint_torque_nm =
+        model.hands.iter().zip(&pad_wrenches_p).map(|(hand, pads)| joint_torque(hand, pads)).collect();
     LoadFactorOutcome::Solved(LoadFactor {
         load_factor: (lambda - margin).clamp(0.0, super::MAX_LOAD_FACTOR),
-        binding: binding(hold, program, raw),
-        sensitivity: sensitivity::of(hold, program, raw),
+        binding: binding(model, program, raw),
+        sensitivity: sensitivity::of(model, program, raw),
         pad_wrenches_p,
         joint_torque_nm,
         dual_twist: balance_twist(raw.z, 1.0),
@@ -148,11 +149,11 @@ pub(super) fn balance_twist(z: &[f64], objective_unit: f64) -> Twist {
 }
 
 /// The names of the limits that bind, strongest first.
-fn binding(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Vec<String> {
+fn binding(model: &ContactModel, program: &Program, raw: &RawSolution<'_>) -> Vec<String> {
     let layout = &program.layout;
     let cap = raw.z[layout.load_rows() + 1];
     let mut terms: Vec<(f64, String)> = Vec::new();
-    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+    for (hand, place) in model.hands.iter().zip(layout.hands()) {
         for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
             let of_pad = pad_terms(hand, pad, pad_place, raw);
             terms.extend(

@@ -10,8 +10,8 @@
 //!
 //! Both are cone programs, and clarabel is used here alone; equilibria that are asked for by the thousand have a quicker
 //! solver of their own (`interior_point`), held to clarabel by a test. What a small change of a hold does to them is
-//! [`NearbyResponse`]. The module must never know how a hold was found, nor what a
-//! simulation made of it. Its input, a [`Hold`], is plain geometry: the robot is met in `from_plan` only.
+//! [`LocalEquilibrium`]. The module must never know how a hold was found, nor what a
+//! simulation made of it. Its input, a [`ContactModel`], is plain geometry: the robot is met in `from_plan` only.
 //!
 //! # Accuracy
 //! Ten plans of `benchdog plan` for the foam board of METHOD section 2, against the simulation (`tests/prediction.rs`):
@@ -46,19 +46,19 @@
 //! Wrenches are those of the hands on the object unless said otherwise; axes and origin are O's. A twist is the pair of
 //! the translation of O's origin (m) and the rotation vector (rad), in O axes, small.
 
-mod bound;
 mod certificate;
 mod compliance;
 mod compliant_load;
 mod contact;
+mod contact_model;
 mod elastic;
 mod equilibrium;
 mod from_plan;
-mod hold;
+mod infeasibility;
 mod interior_point;
 mod layout;
 mod load_factor;
-mod nearby;
+mod local_equilibrium;
 mod pad_cone;
 mod patch;
 mod prediction;
@@ -67,15 +67,15 @@ mod robust;
 mod sensitivity;
 mod workspace;
 
-pub use bound::{CannotHold, LostMotion};
 pub use certificate::DualVector;
-pub use compliance::{Twist, WeldedHold};
-pub use compliant_load::{CompliantLoadFactor, Crossing};
+pub use compliance::{Twist, WeldedStiffness};
+pub use compliant_load::{CompliantLoadFactor, LimitCrossing};
 pub use contact::{LimitShape, PadKind, WrenchLimits};
+pub use contact_model::{ContactModel, ContactModelError, HandModel, PadModel};
 pub use equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome};
-pub use hold::{HandModel, Hold, HoldError, PadModel};
+pub use infeasibility::{Infeasibility, Mechanism};
 pub use load_factor::{LoadFactor, LoadFactorOutcome};
-pub use nearby::NearbyResponse;
+pub use local_equilibrium::LocalEquilibrium;
 pub use patch::{clip_to_rectangle, mean_distance_from_centre_m};
 pub use program::MAX_LOAD_FACTOR;
 pub use robust::{InternalForces, RobustLoadFactor, RobustOutcome, Variation};

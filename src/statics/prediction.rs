@@ -1,6 +1,6 @@
 //! The stability that a plan carries, from the solvers of this module.
 
-use super::{Hold, HoldError, LoadFactorOutcome, ResponseOutcome, StabilityWorkspace};
+use super::{ContactModel, ContactModelError, LoadFactorOutcome, ResponseOutcome, StabilityWorkspace};
 use crate::model::{
     plan::Stability,
     scenario::{Limits, StabilityKind},
@@ -11,8 +11,13 @@ impl StabilityWorkspace {
     ///
     /// # Errors
     /// When the hold is broken.
-    pub fn stands(&mut self, hold: &Hold, limits: &Limits, kind: StabilityKind) -> Result<bool, HoldError> {
-        Ok(self.utilisation(hold, limits, kind)? <= 1.0)
+    pub fn is_stable(
+        &mut self,
+        model: &ContactModel,
+        limits: &Limits,
+        kind: StabilityKind,
+    ) -> Result<bool, ContactModelError> {
+        Ok(self.utilisation(model, limits, kind)? <= 1.0)
     }
 
     /// The share that a hold uses of what `limits` allow it in the sense of `kind` (METHOD section 3), at most 1 when it
@@ -25,23 +30,28 @@ impl StabilityWorkspace {
     ///
     /// # Errors
     /// When the hold is broken.
-    pub fn utilisation(&mut self, hold: &Hold, limits: &Limits, kind: StabilityKind) -> Result<f64, HoldError> {
+    pub fn utilisation(
+        &mut self,
+        model: &ContactModel,
+        limits: &Limits,
+        kind: StabilityKind,
+    ) -> Result<f64, ContactModelError> {
         let least = limits.load_factor;
-        if hold.cannot_hold(least).is_some() {
+        if model.infeasibility(least).is_some() {
             return Ok(f64::INFINITY);
         }
         let mut utilisation = 0.0;
         if kind == StabilityKind::Paper || limits.torque_ratio > 1.0 {
-            let Some(load_factor) = self.load_factor(hold)?.load_factor() else { return Ok(f64::INFINITY) };
+            let Some(load_factor) = self.load_factor(model)?.load_factor() else { return Ok(f64::INFINITY) };
             utilisation = if least == 0.0 { 0.0 } else { least / load_factor };
         }
         if kind == StabilityKind::Paper {
             return Ok(utilisation);
         }
-        let ResponseOutcome::Found(response) = self.response(hold, least)? else { return Ok(f64::INFINITY) };
-        utilisation = response.utilisation(hold, limits).max(utilisation);
+        let ResponseOutcome::Found(response) = self.response(model, least)? else { return Ok(f64::INFINITY) };
+        utilisation = response.utilisation(model, limits).max(utilisation);
         if least < 1.0 {
-            let ResponseOutcome::Found(response) = self.response(hold, 1.0)? else { return Ok(f64::INFINITY) };
+            let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(f64::INFINITY) };
             utilisation = utilisation.max(response.deflection_mm() / limits.deflection_mm);
         }
         Ok(utilisation)
@@ -51,13 +61,13 @@ impl StabilityWorkspace {
     ///
     /// # Errors
     /// When the hold is broken.
-    pub fn predict(&mut self, hold: &Hold, limits: &Limits) -> Result<Option<Stability>, HoldError> {
-        let LoadFactorOutcome::Solved(best_case) = self.load_factor(hold)? else { return Ok(None) };
-        let ResponseOutcome::Found(response) = self.response(hold, 1.0)? else { return Ok(None) };
-        let torques = hold.hands.iter().zip(&response.equilibrium.joint_torque_nm);
+    pub fn predict(&mut self, model: &ContactModel, limits: &Limits) -> Result<Option<Stability>, ContactModelError> {
+        let LoadFactorOutcome::Solved(best_case) = self.load_factor(model)? else { return Ok(None) };
+        let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(None) };
+        let torques = model.hands.iter().zip(&response.equilibrium.joint_torque_nm);
         Ok(Some(Stability {
             load_factor: best_case.load_factor,
-            compliant_load_factor: self.compliant_load_factor(hold, limits)?.load_factor,
+            compliant_load_factor: self.compliant_load_factor(model, limits)?.load_factor,
             binding: best_case.binding,
             joint_torque_nm: torques.map(|(hand, nm)| (hand.name.clone(), nm.as_slice().to_vec())).collect(),
             predicted_deflection_mm: response.deflection_mm(),

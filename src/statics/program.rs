@@ -34,7 +34,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::{
     contact::PadKind,
-    hold::{HandModel, Hold, PadModel},
+    contact_model::{ContactModel, HandModel, PadModel},
     layout::{Contact, HandLayout, Layout, MEASURED_CONE, PadLayout, PointLayout},
 };
 use crate::model::wrench::Wrench;
@@ -111,28 +111,28 @@ pub(super) struct Program {
 impl Program {
     /// Maximise lambda, with torque limits for [`ProgramKind::Load`], without for
     /// [`ProgramKind::Friction`].
-    pub(super) fn load(hold: &Hold, kind: ProgramKind) -> Self {
-        let layout = Layout::new(hold, kind);
-        let load = scaled(&hold.load);
+    pub(super) fn load(model: &ContactModel, kind: ProgramKind) -> Self {
+        let layout = Layout::new(model, kind);
+        let load = scaled(&model.load);
         let size = load.norm();
         // Without a load any lambda will do.
         let load_scale = if size > 0.0 { size } else { 1.0 };
-        let mut columns = hand_columns(hold, &layout);
+        let mut columns = hand_columns(model, &layout);
         columns.begin();
         (0..6).for_each(|row| columns.push(row, load[row] / load_scale));
         columns.push(layout.load_rows(), -1.0);
         columns.push(layout.load_rows() + 1, 1.0 / (MAX_LOAD_FACTOR * load_scale));
         let mut q = vec![0.0; layout.variables()];
         q[layout.variables() - 1] = -1.0 / load_scale;
-        let mut b = limits(hold, &layout, 0.0);
+        let mut b = limits(model, &layout, 0.0);
         b[layout.load_rows() + 1] = 1.0;
         let a = columns.into_matrix(layout.rows());
         Self { p: CscMatrix::zeros((q.len(), q.len())), q, a, b, layout, load_scale }
     }
 
     /// Minimise `1/2 x'Px` at the given lambda, `P` made of the energy of each hand.
-    pub(super) fn equilibrium(hold: &Hold, energies: &[HandEnergy], lambda: f64) -> Self {
-        let layout = Layout::new(hold, ProgramKind::Equilibrium);
+    pub(super) fn equilibrium(model: &ContactModel, energies: &[HandEnergy], lambda: f64) -> Self {
+        let layout = Layout::new(model, ProgramKind::Equilibrium);
         let mut p = Columns::default();
         for (hand, energy) in layout.hands().iter().zip(energies) {
             for variable in hand.first_variable..hand.wrench_variables {
@@ -150,9 +150,9 @@ impl Program {
             // A point gives way as a pad does.
             p.push(variable, energies[0].pads);
         }
-        let a = hand_columns(hold, &layout).into_matrix(layout.rows());
+        let a = hand_columns(model, &layout).into_matrix(layout.rows());
         let q = vec![0.0; layout.variables()];
-        let b = limits(hold, &layout, lambda);
+        let b = limits(model, &layout, lambda);
         Self { p: p.into_matrix(layout.variables()), q, a, b, layout, load_scale: 1.0 }
     }
 }
@@ -197,15 +197,15 @@ pub(super) fn wrench_units() -> Vector6<f64> {
 }
 
 /// The columns of all hands' variables.
-fn hand_columns(hold: &Hold, layout: &Layout) -> Columns {
+fn hand_columns(model: &ContactModel, layout: &Layout) -> Columns {
     let mut columns = Columns::default();
-    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+    for (hand, place) in model.hands.iter().zip(layout.hands()) {
         for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
             push_pad(&mut columns, hand, place, pad, pad_place);
         }
         push_wrench(&mut columns, layout, hand, place);
     }
-    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+    for (hand, place) in model.hands.iter().zip(layout.hands()) {
         for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
             if let (PadKind::Points(points), Some(point_place)) = (&pad.kind, &pad_place.points) {
                 push_points(&mut columns, pad, points, pad_place, point_place);
@@ -303,11 +303,11 @@ fn push_wrench(columns: &mut Columns, layout: &Layout, hand: &HandModel, place: 
 }
 
 /// The right-hand side, with `lambda` times the load moved to it.
-fn limits(hold: &Hold, layout: &Layout, lambda: f64) -> Vec<f64> {
+fn limits(model: &ContactModel, layout: &Layout, lambda: f64) -> Vec<f64> {
     let mut b = vec![0.0; layout.rows()];
-    let outer = scaled(&(hold.weight + hold.load.scaled(lambda)));
+    let outer = scaled(&(model.weight + model.load.scaled(lambda)));
     (0..6).for_each(|row| b[row] = -outer[row]);
-    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
+    for (hand, place) in model.hands.iter().zip(layout.hands()) {
         match place.contact {
             Contact::Pads(_) => b[place.grip_row] = 2.0 * hand.grip_force_n / FORCE_UNIT_N,
             Contact::Box { rows } => b[rows..rows + 12].fill(1.0),

@@ -22,8 +22,8 @@ use clarabel::{
 };
 
 use super::{
-    compliance::WeldedHold,
-    hold::{Hold, HoldError},
+    compliance::WeldedStiffness,
+    contact_model::{ContactModel, ContactModelError},
     load_factor::{LoadFactorOutcome, NAMED_SHARE},
     program::{Columns, MAX_LOAD_FACTOR, Program, ProgramKind, hand_wrench, new_solver, solve_with_care, wrench_units},
     workspace::StabilityWorkspace,
@@ -85,42 +85,42 @@ pub enum RobustOutcome {
 /// See [`StabilityWorkspace::robust_load_factor`].
 pub(super) fn solve(
     workspace: &mut StabilityWorkspace,
-    hold: &Hold,
+    model: &ContactModel,
     variations: &[Variation],
     internal_forces: InternalForces,
-) -> Result<RobustOutcome, HoldError> {
-    hold.check()?;
+) -> Result<RobustOutcome, ContactModelError> {
+    model.check()?;
     check(variations)?;
-    let holds: Vec<_> = variations.iter().map(|variation| varied(hold, variation)).collect();
-    if let Some(outcome) = weight_not_held(workspace, &holds, variations)? {
+    let models: Vec<_> = variations.iter().map(|variation| varied(model, variation)).collect();
+    if let Some(outcome) = weight_not_held(workspace, &models, variations)? {
         return Ok(outcome);
     }
-    let adapted = smallest(workspace, &holds)?;
+    let adapted = smallest(workspace, &models)?;
     match (&adapted, internal_forces) {
-        (RobustOutcome::Solved(_), InternalForces::Fixed) if hold.hands.len() > 1 => Ok(with_fixed(hold, &holds)),
+        (RobustOutcome::Solved(_), InternalForces::Fixed) if model.hands.len() > 1 => Ok(with_fixed(model, &models)),
         _ => Ok(adapted),
     }
 }
 
-fn check(variations: &[Variation]) -> Result<(), HoldError> {
+fn check(variations: &[Variation]) -> Result<(), ContactModelError> {
     if variations.is_empty() {
-        return Err(HoldError::NoVariations);
+        return Err(ContactModelError::NoVariations);
     }
     for (number, Variation { load, friction_ratio }) in variations.iter().enumerate() {
         let place = format!("variation {number}");
         if !load.is_finite() {
-            return Err(HoldError::NotFinite { place, what: "load" });
+            return Err(ContactModelError::NotFinite { place, what: "load" });
         }
         if !(friction_ratio.is_finite() && *friction_ratio >= 0.0) {
             let (what, found, expected) = ("friction ratio", *friction_ratio, "0 or more");
-            return Err(HoldError::Value { place, what, found, expected });
+            return Err(ContactModelError::Value { place, what, found, expected });
         }
     }
     Ok(())
 }
 
-fn varied(hold: &Hold, variation: &Variation) -> Hold {
-    let mut varied = Hold { load: variation.load, ..hold.clone() };
+fn varied(model: &ContactModel, variation: &Variation) -> ContactModel {
+    let mut varied = ContactModel { load: variation.load, ..model.clone() };
     varied.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= variation.friction_ratio);
     varied
 }
@@ -129,13 +129,13 @@ fn varied(hold: &Hold, variation: &Variation) -> Hold {
 /// less of it is not, and the load factors held are then no interval from 0.
 fn weight_not_held(
     workspace: &mut StabilityWorkspace,
-    holds: &[Hold],
+    models: &[ContactModel],
     variations: &[Variation],
-) -> Result<Option<RobustOutcome>, HoldError> {
+) -> Result<Option<RobustOutcome>, ContactModelError> {
     let friction = |variation: &usize| variations[*variation].friction_ratio;
-    let lowest = (0..holds.len()).min_by(|left, right| friction(left).total_cmp(&friction(right)));
-    let Some(variation) = lowest else { return Err(HoldError::NoVariations) };
-    let idle = Hold { load: Wrench::default(), ..holds[variation].clone() };
+    let lowest = (0..models.len()).min_by(|left, right| friction(left).total_cmp(&friction(right)));
+    let Some(variation) = lowest else { return Err(ContactModelError::NoVariations) };
+    let idle = ContactModel { load: Wrench::default(), ..models[variation].clone() };
     Ok(match workspace.load_factor(&idle)? {
         LoadFactorOutcome::Solved(_) => None,
         LoadFactorOutcome::GravityInfeasible { .. } => Some(RobustOutcome::GravityInfeasible { variation }),
@@ -144,16 +144,16 @@ fn weight_not_held(
 }
 
 /// The minimum over holds that share nothing but the load factor; the forces of each are those at its own.
-fn smallest(workspace: &mut StabilityWorkspace, holds: &[Hold]) -> Result<RobustOutcome, HoldError> {
+fn smallest(workspace: &mut StabilityWorkspace, models: &[ContactModel]) -> Result<RobustOutcome, ContactModelError> {
     let mut worst = (f64::INFINITY, 0);
-    let mut hand_wrenches = Vec::with_capacity(holds.len());
-    for (variation, hold) in holds.iter().enumerate() {
-        match workspace.load_factor(hold)? {
+    let mut hand_wrenches = Vec::with_capacity(models.len());
+    for (variation, model) in models.iter().enumerate() {
+        match workspace.load_factor(model)? {
             LoadFactorOutcome::Solved(solved) => {
                 if solved.load_factor < worst.0 {
                     worst = (solved.load_factor, variation);
                 }
-                let of_hands = hold.hands.iter().zip(&solved.pad_wrenches_p);
+                let of_hands = model.hands.iter().zip(&solved.pad_wrenches_p);
                 hand_wrenches.push(of_hands.map(|(hand, pads)| hand.wrench_about_grasp_point(pads)).collect());
             }
             LoadFactorOutcome::GravityInfeasible { .. } => return Ok(RobustOutcome::GravityInfeasible { variation }),
@@ -165,10 +165,10 @@ fn smallest(workspace: &mut StabilityWorkspace, holds: &[Hold]) -> Result<Robust
 }
 
 /// One program with the rows that fix the internal forces.
-fn with_fixed(hold: &Hold, holds: &[Hold]) -> RobustOutcome {
-    let Some(welded) = WeldedHold::new(hold) else { return RobustOutcome::Rigid };
-    let answers: Vec<_> = holds.iter().map(|varied| welded.hand_wrenches(&varied.load)).collect();
-    let blocks: Vec<_> = holds.iter().map(|varied| Program::load(varied, ProgramKind::Load)).collect();
+fn with_fixed(model: &ContactModel, models: &[ContactModel]) -> RobustOutcome {
+    let Some(welded) = WeldedStiffness::new(model) else { return RobustOutcome::Rigid };
+    let answers: Vec<_> = models.iter().map(|varied| welded.hand_wrenches(&varied.load)).collect();
+    let blocks: Vec<_> = models.iter().map(|varied| Program::load(varied, ProgramKind::Load)).collect();
     let joint = JointProgram::new(&blocks, &answers);
     let unknown = |status: String| RobustOutcome::Unknown { status };
     let Some(mut solver) =

@@ -6,7 +6,7 @@
 use nalgebra::DVector;
 
 use super::{
-    hold::{HandModel, Hold},
+    contact_model::{ContactModel, HandModel},
     layout::{HandLayout, PadLayout},
     program::{FORCE_UNIT_N, POINT_VARIABLES, Program, RawSolution},
 };
@@ -31,14 +31,14 @@ pub struct HandSensitivity {
 }
 
 /// The derivatives at a solution of the load program.
-pub(super) fn of(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Sensitivity {
+pub(super) fn of(model: &ContactModel, program: &Program, raw: &RawSolution<'_>) -> Sensitivity {
     let of_hand = |(hand, place): (&HandModel, &HandLayout)| HandSensitivity {
         // The row is fn_1 + fn_2 = 2 F.
         per_grip_force_n: place.pads().map_or(0.0, |_| 2.0 * raw.z[place.grip_row] / FORCE_UNIT_N),
         per_friction: place.pads().map_or([0.0; 2], |pads| [0, 1].map(|pad: usize| of_friction(&pads[pad], raw))),
         per_effort_nm: of_efforts(hand, place, program, raw),
     };
-    Sensitivity { hands: hold.hands.iter().zip(program.layout.hands()).map(of_hand).collect() }
+    Sensitivity { hands: model.hands.iter().zip(program.layout.hands()).map(of_hand).collect() }
 }
 
 /// mu stands before the normal force in the first row of each friction cone: `fn z_0`.

@@ -3,7 +3,7 @@
 use benchdog::{
     model::wrench::Wrench,
     statics::{
-        Hold, LimitShape, LoadFactorOutcome, PadKind, ResponseOutcome, StabilityWorkspace, WrenchLimits,
+        ContactModel, LimitShape, LoadFactorOutcome, PadKind, ResponseOutcome, StabilityWorkspace, WrenchLimits,
         mean_distance_from_centre_m,
     },
 };
@@ -16,10 +16,10 @@ use crate::fixtures::{HALF_SIDES_M, limits, moved, random_hold, solved, strong_h
 const TOLERANCE: f64 = 1e-5;
 
 /// One hand, N = 30 N a pad, mu = 0.6, pads of one kind facing +-y, 30 mm apart.
-fn one_hand(kind: &PadKind, load: Wrench) -> Hold {
+fn one_hand(kind: &PadKind, load: Wrench) -> ContactModel {
     let mut hand = strong_hand("left", Vector3::zeros(), Vector3::y(), Vector3::x(), 30.0, 0.6, 0.03);
     hand.pads.iter_mut().for_each(|pad| pad.kind = kind.clone());
-    Hold { hands: vec![hand], weight: Wrench::default(), load, p_ot: Vector3::zeros() }
+    ContactModel { hands: vec![hand], weight: Wrench::default(), load, p_ot: Vector3::zeros() }
 }
 
 fn kinds_of_points() -> [PadKind; 3] {
@@ -86,7 +86,7 @@ fn corners_hold_the_tilt_of_a_patch() {
 }
 
 /// A hand with measured limits in axes of its own.
-fn measured(shape: LimitShape, load_g: Wrench) -> Hold {
+fn measured(shape: LimitShape, load_g: Wrench) -> ContactModel {
     let rotation_og = UnitQuaternion::from_euler_angles(0.3, -0.8, 2.0);
     let load = Wrench::new(rotation_og * load_g.force_n, rotation_og * load_g.moment_nm);
     let mut hold = one_hand(&PadKind::SoftFinger, load);
@@ -127,7 +127,7 @@ fn without_slip_the_model_of_contact_does_not_matter() {
     // The pads' own compliance is a thousandth of the arms'.
     let load = Wrench::new(Vector3::new(3.0, -2.0, 4.0), Vector3::new(0.1, 0.2, -0.1));
     let reference = two_strong_hands(Wrench::from_force(Vector3::new(0.0, -2.0, 0.0)), load);
-    let deflection = |hold: &Hold| match StabilityWorkspace::new().response(hold, 1.0).unwrap() {
+    let deflection = |hold: &ContactModel| match StabilityWorkspace::new().response(hold, 1.0).unwrap() {
         ResponseOutcome::Found(response) => response.deflection_m,
         other => panic!("expected an equilibrium, found {other:?}"),
     };
@@ -147,7 +147,7 @@ fn without_slip_the_model_of_contact_does_not_matter() {
 
 #[test]
 fn broken_contacts_are_errors_that_name_the_place() {
-    let error = |change: &dyn Fn(&mut Hold)| {
+    let error = |change: &dyn Fn(&mut ContactModel)| {
         let mut hold = one_hand(&PadKind::SoftFinger, Wrench::from_force(Vector3::x()));
         change(&mut hold);
         StabilityWorkspace::new().load_factor(&hold).unwrap_err().to_string()
@@ -167,7 +167,7 @@ fn broken_contacts_are_errors_that_name_the_place() {
 }
 
 /// A random hold whose hands take turns with the models of contact.
-fn mixed_hold(seed: u64, hands: usize) -> Hold {
+fn mixed_hold(seed: u64, hands: usize) -> ContactModel {
     let mut hold = random_hold(seed, hands);
     for (number, hand) in hold.hands.iter_mut().enumerate() {
         let most = Wrench::from([36.0, 36.0, 60.0, 1.6, 1.6, 0.5]);
@@ -214,10 +214,10 @@ proptest! {
         }
         let value = found.load_factor().unwrap_or(-1.0);
         // A load that lifts a board too heavy to be held is held where less of it is not.
-        let idle = Hold { load: Wrench::default(), ..hold.clone() };
+        let idle = ContactModel { load: Wrench::default(), ..hold.clone() };
         let is_carried = workspace.load_factor(&idle).unwrap().load_factor().is_some();
         for asked in [0.0, 1.0, 3.0].into_iter().filter(|_| is_carried) {
-            if let Some(reason) = hold.cannot_hold(asked) {
+            if let Some(reason) = hold.infeasibility(asked) {
                 prop_assert!(value < asked + TOLERANCE, "{reason}, yet {value} of {asked}");
             }
         }

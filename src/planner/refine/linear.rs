@@ -16,7 +16,7 @@ use super::{
 use crate::{
     collision::{Carrier, Near},
     model::{plan::Comfort, scenario::StabilityKind},
-    statics::NearbyResponse,
+    statics::LocalEquilibrium,
 };
 
 /// Bodies farther apart than this, beyond what they must keep, are no constraint of a step, m.
@@ -136,7 +136,7 @@ impl Linear {
         let nearby = (problem.scenario.planner.stability == StabilityKind::Compliant)
             .then(|| assess::statics_hold(problem, &here.candidate, &here.configured.placed.x_wo).ok())
             .flatten()
-            .and_then(|hold| NearbyResponse::new(&hold, limits.load_factor));
+            .and_then(|hold| LocalEquilibrium::new(&hold, limits.load_factor));
         let mut gradient = DVector::zeros(count);
         for number in 0..count {
             let mut d = DVector::zeros(count);

@@ -98,7 +98,7 @@ impl HandModel {
 
 /// A board in the grip of one to four hands, under its weight and an operation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Hold {
+pub struct ContactModel {
     /// The hands.
     pub hands: Vec<HandModel>,
     /// Gravity on the object, about O's origin in O axes.
@@ -111,7 +111,7 @@ pub struct Hold {
 
 /// A hold that no figure can be computed for: broken input, unlike a hold that is too weak.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum HoldError {
+pub enum ContactModelError {
     /// Too few or too many hands.
     #[error("found {0} hands, expected 1 to {MAX_HANDS}")]
     HandCount(usize),
@@ -196,14 +196,14 @@ pub enum HoldError {
     },
 }
 
-impl Hold {
+impl ContactModel {
     /// Checks dimensions and ranges.
     ///
     /// # Errors
     /// The first thing that is wrong, with its place.
-    pub fn check(&self) -> Result<(), HoldError> {
+    pub fn check(&self) -> Result<(), ContactModelError> {
         if self.hands.is_empty() || self.hands.len() > MAX_HANDS {
-            return Err(HoldError::HandCount(self.hands.len()));
+            return Err(ContactModelError::HandCount(self.hands.len()));
         }
         let finite = [
             ("weight", self.weight.is_finite()),
@@ -211,13 +211,13 @@ impl Hold {
             ("tool tip", self.p_ot.iter().all(|v| v.is_finite())),
         ];
         if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {
-            return Err(HoldError::NotFinite { place: "object".into(), what });
+            return Err(ContactModelError::NotFinite { place: "object".into(), what });
         }
         self.hands.iter().try_for_each(check_hand)
     }
 }
 
-fn check_hand(hand: &HandModel) -> Result<(), HoldError> {
+fn check_hand(hand: &HandModel) -> Result<(), ContactModelError> {
     let expected = hand.dof();
     let lengths = [
         ("the jacobian's columns", hand.jacobian_o.ncols()),
@@ -228,7 +228,7 @@ fn check_hand(hand: &HandModel) -> Result<(), HoldError> {
         ("gravity stiffness (columns)", hand.gravity_stiffness_nm_rad.ncols()),
     ];
     if let Some((what, found)) = lengths.into_iter().find(|(_, found)| *found != expected) {
-        return Err(HoldError::JointCount { hand: hand.name.clone(), what, found, expected });
+        return Err(ContactModelError::JointCount { hand: hand.name.clone(), what, found, expected });
     }
     let place = || format!("{} hand", hand.name);
     let finite = [
@@ -238,11 +238,15 @@ fn check_hand(hand: &HandModel) -> Result<(), HoldError> {
         ("grasp point", hand.grasp_point_o.iter().all(|v| v.is_finite())),
     ];
     if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {
-        return Err(HoldError::NotFinite { place: place(), what });
+        return Err(ContactModelError::NotFinite { place: place(), what });
     }
     let positive = |what, found: f64| {
         let good = found.is_finite() && found > 0.0;
-        if good { Ok(()) } else { Err(HoldError::Value { place: place(), what, found, expected: "more than 0" }) }
+        if good {
+            Ok(())
+        } else {
+            Err(ContactModelError::Value { place: place(), what, found, expected: "more than 0" })
+        }
     };
     positive("grip force", hand.grip_force_n)?;
     hand.effort_nm.iter().try_for_each(|&effort| positive("effort", effort))?;
@@ -250,33 +254,38 @@ fn check_hand(hand: &HandModel) -> Result<(), HoldError> {
     if let Some(limits) = &hand.wrench_limits {
         limits.most.to_vector().iter().try_for_each(|&most| positive("wrench limit", most))?;
         if !limits.rotation_og.coords.iter().all(|v| v.is_finite()) {
-            return Err(HoldError::NotFinite { place: place(), what: "rotation of wrench limits" });
+            return Err(ContactModelError::NotFinite { place: place(), what: "rotation of wrench limits" });
         }
     }
     if expected > 0 && hand.spring_factor().is_none() {
-        return Err(HoldError::TooSoft(hand.name.clone()));
+        return Err(ContactModelError::TooSoft(hand.name.clone()));
     }
     hand.pads.iter().try_for_each(|pad| check_pad(hand, pad))
 }
 
-fn check_pad(hand: &HandModel, pad: &PadModel) -> Result<(), HoldError> {
+fn check_pad(hand: &HandModel, pad: &PadModel) -> Result<(), ContactModelError> {
     let place = || format!("{} {} pad", hand.name, pad.name);
     let translation = pad.x_op.translation.vector;
     if !translation.iter().chain(pad.x_op.rotation.coords.iter()).all(|v| v.is_finite()) {
-        return Err(HoldError::NotFinite { place: place(), what: "pose" });
+        return Err(ContactModelError::NotFinite { place: place(), what: "pose" });
     }
     if let Some(&found) = pad.half_sides_m.iter().find(|side| !(side.is_finite() && **side > 0.0)) {
-        return Err(HoldError::Value { place: place(), what: "half side", found, expected: "more than 0 m" });
+        return Err(ContactModelError::Value { place: place(), what: "half side", found, expected: "more than 0 m" });
     }
     if !(pad.friction.is_finite() && pad.friction >= 0.0) {
-        return Err(HoldError::Value { place: place(), what: "friction", found: pad.friction, expected: "0 or more" });
+        return Err(ContactModelError::Value {
+            place: place(),
+            what: "friction",
+            found: pad.friction,
+            expected: "0 or more",
+        });
     }
     match &pad.kind {
         PadKind::Points(points) if points.is_empty() => {
-            Err(HoldError::NoPoints { hand: hand.name.clone(), pad: pad.name.clone() })
+            Err(ContactModelError::NoPoints { hand: hand.name.clone(), pad: pad.name.clone() })
         }
         PadKind::Points(points) if !points.iter().flatten().all(|v| v.is_finite()) => {
-            Err(HoldError::NotFinite { place: place(), what: "point" })
+            Err(ContactModelError::NotFinite { place: place(), what: "point" })
         }
         _ => Ok(()),
     }

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use super::{
     compliance::Twist,
     contact::{LimitShape, PadKind, WrenchLimits},
-    hold::{HandModel, Hold, PadModel},
+    contact_model::{ContactModel, HandModel, PadModel},
 };
 use crate::model::wrench::Wrench;
 
@@ -23,9 +23,9 @@ const ROUNDING_MARGIN: f64 = 1e-9;
 
 /// Why a hold cannot stand a load factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CannotHold {
+pub struct Infeasibility {
     /// The way the board goes.
-    pub motion: LostMotion,
+    pub motion: Mechanism,
     /// Work of weight and load on that twist, J, for a twist of arbitrary size.
     pub demand_j: f64,
     /// The most that the hands can undo, J, for the same twist.
@@ -34,7 +34,7 @@ pub struct CannotHold {
 
 /// A way in which a board gets away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LostMotion {
+pub enum Mechanism {
     /// Along the force on it.
     Slide,
     /// About a grasp point.
@@ -43,52 +43,52 @@ pub enum LostMotion {
     Hinge,
 }
 
-impl std::fmt::Display for CannotHold {
+impl std::fmt::Display for Infeasibility {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let motion = match self.motion {
-            LostMotion::Slide => "slides along the force on it",
-            LostMotion::Turn => "turns about a hand",
-            LostMotion::Hinge => "turns about the line through two hands",
+            Mechanism::Slide => "slides along the force on it",
+            Mechanism::Turn => "turns about a hand",
+            Mechanism::Hinge => "turns about the line through two hands",
         };
         let percent = 100.0 * self.capacity_j / self.demand_j;
         write!(f, "the board {motion}: the hands can undo at most {percent:.0} % of weight and load")
     }
 }
 
-impl Hold {
+impl ContactModel {
     /// A reason why this hold cannot stand a load factor; none means that it may or may not. A necessary test of two
     /// microseconds: what it rejects, [`StabilityWorkspace::load_factor`](super::StabilityWorkspace::load_factor)
     /// rejects, but for a board that is too heavy by itself and held by a larger load that lifts it.
-    pub fn cannot_hold(&self, load_factor: f64) -> Option<CannotHold> {
+    pub fn infeasibility(&self, load_factor: f64) -> Option<Infeasibility> {
         let outer = self.weight + self.load.scaled(load_factor);
         // Once for all twists: most of the test's time otherwise.
         let radii_m: Vec<_> =
             self.hands.iter().map(|hand| hand.pads.each_ref().map(PadModel::torsion_radius_m)).collect();
-        let lost = |(motion, twist): (LostMotion, Twist)| {
+        let lost = |(motion, twist): (Mechanism, Twist)| {
             let back = Twist { linear: -twist.linear, angular: -twist.angular };
             let demand_j = twist.work(&outer);
             let capacity_j: f64 =
                 self.hands.iter().zip(&radii_m).map(|(hand, radii_m)| work_of_hand(hand, radii_m, &back)).sum();
             let is_lost = demand_j > capacity_j + ROUNDING_MARGIN * demand_j.abs();
-            is_lost.then_some(CannotHold { motion, demand_j, capacity_j })
+            is_lost.then_some(Infeasibility { motion, demand_j, capacity_j })
         };
         rigid_motions(self, &outer).into_iter().find_map(lost)
     }
 }
 
 /// The twists that are tried, stated for O's origin.
-fn rigid_motions(hold: &Hold, outer: &Wrench) -> Vec<(LostMotion, Twist)> {
+fn rigid_motions(model: &ContactModel, outer: &Wrench) -> Vec<(Mechanism, Twist)> {
     let turn_about = |point: &Vector3<f64>, axis: Vector3<f64>| Twist { linear: -axis.cross(point), angular: axis };
-    let mut motions = vec![(LostMotion::Slide, Twist { linear: outer.force_n, angular: Vector3::zeros() })];
-    for (number, hand) in hold.hands.iter().enumerate() {
+    let mut motions = vec![(Mechanism::Slide, Twist { linear: outer.force_n, angular: Vector3::zeros() })];
+    for (number, hand) in model.hands.iter().enumerate() {
         let point = &hand.grasp_point_o;
         let moment = outer.about(&-point).moment_nm;
-        motions.push((LostMotion::Turn, turn_about(point, moment)));
-        for other in &hold.hands[..number] {
+        motions.push((Mechanism::Turn, turn_about(point, moment)));
+        for other in &model.hands[..number] {
             let line = point - other.grasp_point_o;
             // Which way round: the way that the moment drives.
             let axis = line * line.dot(&moment).signum();
-            motions.push((LostMotion::Hinge, turn_about(point, axis)));
+            motions.push((Mechanism::Hinge, turn_about(point, axis)));
         }
     }
     motions
