@@ -9,7 +9,7 @@ use nalgebra::Vector6;
 
 use super::{
     contact_model::{ContactModel, ContactModelError, HandModel},
-    layout::{HandLayout, Layout},
+    layout::Layout,
     program::{FORCE_UNIT_N, MAX_LOAD_FACTOR, Program, ProgramKind, wrench_units},
 };
 
@@ -99,50 +99,29 @@ fn split_off<'a>(rest: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
 /// The largest size of each scaled variable at any feasible point.
 fn largest_variables(model: &ContactModel, program: &Program) -> Vec<f64> {
     let mut largest = Vec::with_capacity(program.q.len());
-    for (hand, place) in model.hands.iter().zip(program.layout.hands()) {
+    for hand in &model.hands {
         let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-        for pad in place.pads().into_iter().flat_map(|_| &hand.pads) {
+        for pad in &hand.pads {
             let friction = pad.friction * normal;
-            let [a, b] = pad.half_sides_m;
-            let [about_x, about_y, about_z] = pad.levers_m();
-            let torsion = friction * (about_z / pad.torsion_radius_m());
-            largest.extend([friction, friction, normal, normal * (about_x / b), normal * (about_y / a), torsion]);
+            largest.extend([friction, friction, normal, normal, normal, friction]);
         }
         largest.extend(largest_wrench(hand).iter());
-    }
-    for (hand, place) in model.hands.iter().zip(program.layout.hands()) {
-        largest.extend(largest_point_forces(hand, place));
     }
     largest.push(MAX_LOAD_FACTOR * program.load_scale);
     largest
 }
 
-/// A point of a pad carries no more than the whole grip.
-fn largest_point_forces(hand: &HandModel, place: &HandLayout) -> impl Iterator<Item = f64> {
-    let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-    let pads = hand.pads.iter().zip(place.pads().into_iter().flatten());
-    pads.flat_map(move |(pad, place)| {
-        let friction = pad.friction * normal;
-        let count = place.points.map_or(0, |points| points.count);
-        std::iter::repeat_n([friction, friction, normal], count).flatten()
-    })
-}
-
 /// Bounds of the components of a hand's scaled wrench: each pad's force is at most `(1 + mu) 2 F`, and its moment about
-/// the grasp point that times the distance, plus its own; measured limits bound what they limit.
+/// the grasp point that times the distance, plus its own.
 fn largest_wrench(hand: &HandModel) -> Vector6<f64> {
     let (mut force_n, mut moment_nm) = (0.0, 0.0);
-    if let Some(limits) = &hand.wrench_limits {
-        (force_n, moment_nm) = (limits.most.force_n.norm(), limits.most.moment_nm.norm());
-    } else {
-        let normal_n = 2.0 * hand.grip_force_n;
-        for pad in &hand.pads {
-            let pad_force_n = normal_n * (1.0 + pad.friction);
-            let [about_x, about_y, about_z] = pad.levers_m();
-            let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
-            force_n += pad_force_n;
-            moment_nm += pad_force_n * lever_m + normal_n * (about_x + about_y + pad.friction * about_z);
-        }
+    let normal_n = 2.0 * hand.grip_force_n;
+    for pad in &hand.pads {
+        let pad_force_n = normal_n * (1.0 + pad.friction);
+        let [a, b] = pad.half_sides_m;
+        let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
+        force_n += pad_force_n;
+        moment_nm += pad_force_n * lever_m + normal_n * (b + a + pad.friction * pad.torsion_radius_m());
     }
     Vector6::new(force_n, force_n, force_n, moment_nm, moment_nm, moment_nm).component_div(&wrench_units())
 }

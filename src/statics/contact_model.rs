@@ -2,16 +2,13 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Vector3};
 
-use super::{
-    contact::{PadKind, WrenchLimits},
-    patch::mean_distance_from_centre_m,
-};
+use super::patch::mean_distance_from_centre_m;
 use crate::model::{frames::Pose, wrench::Wrench};
 
 /// The most hands that a hold may have.
 pub(super) const MAX_HANDS: usize = 4;
 
-/// One pad on the object, by default a soft finger with a rectangular patch (METHOD section 6).
+/// One pad on the object, a soft finger with a rectangular patch (METHOD section 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PadModel {
     /// Which of the hand's pads it is, such as `upper`.
@@ -22,24 +19,12 @@ pub struct PadModel {
     pub half_sides_m: [f64; 2],
     /// Coulomb friction between pad and object.
     pub friction: f64,
-    /// How friction and pressure are limited.
-    pub kind: PadKind,
 }
 
 impl PadModel {
     /// The lever arm of the patch's torsional friction, m: the mean distance of the patch from its centre.
     pub fn torsion_radius_m(&self) -> f64 {
         mean_distance_from_centre_m(self.half_sides_m)
-    }
-
-    /// The largest lever of a normal force about x_P and y_P, and of a tangential one about z_P, m.
-    pub(super) fn levers_m(&self) -> [f64; 3] {
-        match &self.kind {
-            PadKind::SoftFinger => [self.half_sides_m[1], self.half_sides_m[0], self.torsion_radius_m()],
-            PadKind::Points(points) => points.iter().fold([0.0; 3], |[about_x, about_y, about_z], [x, y]| {
-                [f64::max(about_x, y.abs()), f64::max(about_y, x.abs()), f64::max(about_z, x.hypot(*y))]
-            }),
-        }
     }
 
     /// R_OP.
@@ -62,8 +47,6 @@ pub struct HandModel {
     pub joints: Vec<String>,
     /// Its two pads.
     pub pads: [PadModel; 2],
-    /// What the gripper was measured to hold; when given, the pads' own limits and the grip force do not count.
-    pub wrench_limits: Option<WrenchLimits>,
     /// Force F with which each finger is pushed, N; the fingers are coupled, so the two normal forces add up to 2 F.
     pub grip_force_n: f64,
     /// The point between the pads about which the hand's wrench is taken, in O, m.
@@ -160,14 +143,6 @@ pub enum ContactModelError {
         /// The robot's.
         expected: Vec<String>,
     },
-    /// A pad without a point to touch with.
-    #[error("{hand} {pad} pad: found no points, expected at least one")]
-    NoPoints {
-        /// The hand.
-        hand: String,
-        /// The pad.
-        pad: String,
-    },
     /// No variations of a load to stand.
     #[error("found no variations, expected at least one")]
     NoVariations,
@@ -251,12 +226,6 @@ fn check_hand(hand: &HandModel) -> Result<(), ContactModelError> {
     positive("grip force", hand.grip_force_n)?;
     hand.effort_nm.iter().try_for_each(|&effort| positive("effort", effort))?;
     hand.stiffness_nm_rad.iter().try_for_each(|&stiffness| positive("stiffness", stiffness))?;
-    if let Some(limits) = &hand.wrench_limits {
-        limits.most.to_vector().iter().try_for_each(|&most| positive("wrench limit", most))?;
-        if !limits.rotation_og.coords.iter().all(|v| v.is_finite()) {
-            return Err(ContactModelError::NotFinite { place: place(), what: "rotation of wrench limits" });
-        }
-    }
     if expected > 0 && hand.spring_factor().is_none() {
         return Err(ContactModelError::TooSoft(hand.name.clone()));
     }
@@ -280,13 +249,5 @@ fn check_pad(hand: &HandModel, pad: &PadModel) -> Result<(), ContactModelError> 
             expected: "0 or more",
         });
     }
-    match &pad.kind {
-        PadKind::Points(points) if points.is_empty() => {
-            Err(ContactModelError::NoPoints { hand: hand.name.clone(), pad: pad.name.clone() })
-        }
-        PadKind::Points(points) if !points.iter().flatten().all(|v| v.is_finite()) => {
-            Err(ContactModelError::NotFinite { place: place(), what: "point" })
-        }
-        _ => Ok(()),
-    }
+    Ok(())
 }

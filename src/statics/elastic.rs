@@ -9,7 +9,6 @@ use nalgebra::Vector3;
 
 use super::{
     compliance::{Twist, WeldedStiffness},
-    contact::PadKind,
     contact_model::{ContactModel, HandModel},
     equilibrium::Equilibrium,
 };
@@ -53,9 +52,6 @@ fn shared(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> O
 
 /// A hand's wrench about its grasp point, shared between its pads: `fn_1 + fn_2 = 2 F`, what is tangential by halves.
 fn shared_by_pads(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
-    if hand.wrench_limits.is_some() {
-        return None;
-    }
     let normals = hand.pads.each_ref().map(|pad| pad.x_op.rotation * Vector3::z());
     if (normals[0] + normals[1]).norm() > OPPOSITE {
         return None;
@@ -80,8 +76,7 @@ fn is_kept(hand: &HandModel, pads: &[Wrench; 2]) -> bool {
     hand.pads.iter().zip(pads).all(|(pad, Wrench { force_n, moment_nm })| {
         let [a, b] = pad.half_sides_m;
         let tangential_n = force_n.x.hypot(force_n.y).hypot(moment_nm.z / pad.torsion_radius_m());
-        pad.kind == PadKind::SoftFinger
-            && tangential_n <= SURE * pad.friction * force_n.z
+        tangential_n <= SURE * pad.friction * force_n.z
             && moment_nm.x.abs() <= SURE * b * force_n.z
             && moment_nm.y.abs() <= SURE * a * force_n.z
     })

@@ -3,7 +3,6 @@
 use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 use super::{
-    contact::PadKind,
     contact_model::{ContactModel, ContactModelError, HandModel, PadModel},
     patch::clip_to_rectangle,
 };
@@ -99,7 +98,6 @@ impl HandModel {
             name: name.clone(),
             joints,
             pads: [first?, second?],
-            wrench_limits: None,
             grip_force_n: plan_arm.grip_force_n,
             grasp_point_o: (plan_arm.x_og * nalgebra::Point3::from(grasp_point_g)).coords,
             jacobian_o: jacobian_o(chain, plan_arm, object, &grasp_point_g),
@@ -158,13 +156,7 @@ fn pad_model(
     let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
         .ok_or_else(|| ContactModelError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
     let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
-    Ok(PadModel {
-        name: name.into(),
-        x_op: Pose::from_parts(place_o.into(), rotation),
-        half_sides_m,
-        friction,
-        kind: PadKind::SoftFinger,
-    })
+    Ok(PadModel { name: name.into(), x_op: Pose::from_parts(place_o.into(), rotation), half_sides_m, friction })
 }
 
 /// R_OP: z_P the normal into the board, x_P along x_G as far as it lies in the face.

@@ -5,15 +5,13 @@
 //! duality of the load program with a dual vector made from `y`; a few twists that loads tend to drive are tried.
 //!
 //! Only the pads are asked: the largest work of a hand is `2 F max_c (v_n + mu |(v_t1, v_t2, e w_n)| + b |w_t1| +
-//! a |w_t2|)`, with `(v, w)` the twist at pad c in pad axes; of a pad of points the largest `v_n + mu |v_t|` of its
-//! points, of measured limits `sum D_i |y_i|` or `|D y|`. Torque limits are left to the program: twists that they
+//! a |w_t2|)`, with `(v, w)` the twist at pad c in pad axes. Torque limits are left to the program: twists that they
 //! reject and the pads do not are too rare to look for here.
 
 use nalgebra::Vector3;
 
 use super::{
     compliance::Twist,
-    contact::{LimitShape, PadKind, WrenchLimits},
     contact_model::{ContactModel, HandModel, PadModel},
 };
 use crate::model::wrench::Wrench;
@@ -95,9 +93,6 @@ fn rigid_motions(model: &ContactModel, outer: &Wrench) -> Vec<(Mechanism, Twist)
 }
 
 fn work_of_hand(hand: &HandModel, radii_m: &[f64; 2], twist: &Twist) -> f64 {
-    if let Some(limits) = &hand.wrench_limits {
-        return work_of_measured(limits, &twist.at(&hand.grasp_point_o));
-    }
     let largest = hand
         .pads
         .iter()
@@ -112,29 +107,7 @@ fn work_per_normal_force(pad: &PadModel, radius_m: f64, twist: &Twist) -> f64 {
     let at_pad = twist.at(&pad.x_op.translation.vector);
     let v = pad.x_op.rotation.inverse() * at_pad.linear;
     let w = pad.x_op.rotation.inverse() * at_pad.angular;
-    match &pad.kind {
-        PadKind::SoftFinger => {
-            let [a, b] = pad.half_sides_m;
-            let friction = v.x.hypot(v.y).hypot(radius_m * w.z);
-            v.z + pad.friction * friction + b * w.x.abs() + a * w.y.abs()
-        }
-        PadKind::Points(points) => {
-            let of_point = |&[x, y]: &[f64; 2]| {
-                let at_point = v + w.cross(&Vector3::new(x, y, 0.0));
-                at_point.z + pad.friction * at_point.x.hypot(at_point.y)
-            };
-            points.iter().map(of_point).fold(f64::NEG_INFINITY, f64::max)
-        }
-    }
-}
-
-/// The most work of measured limits on a twist of the grasp point, J.
-fn work_of_measured(limits: &WrenchLimits, twist: &Twist) -> f64 {
-    let back = limits.rotation_og.inverse();
-    let twist_g = Twist { linear: back * twist.linear, angular: back * twist.angular };
-    let work = twist_g.to_vector().component_mul(&limits.most.to_vector());
-    match limits.shape {
-        LimitShape::Box => work.abs().sum(),
-        LimitShape::Ellipsoid => work.norm(),
-    }
+    let [a, b] = pad.half_sides_m;
+    let friction = v.x.hypot(v.y).hypot(radius_m * w.z);
+    v.z + pad.friction * friction + b * w.x.abs() + a * w.y.abs()
 }

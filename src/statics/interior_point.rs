@@ -1,4 +1,4 @@
-//! The compliant equilibrium by an interior-point method of its own, for hands whose pads are soft fingers.
+//! The compliant equilibrium by an interior-point method of its own.
 //!
 //! Planners ask for thousands of equilibria of the same small shape, and for how they change from one hold to a near one.
 //! This is the same program that [`super::program`] writes for clarabel, in the same scaled variables, but dense and of
@@ -15,7 +15,6 @@
 use nalgebra::{Cholesky, Const, SMatrix, SVector, Vector6};
 
 use super::{
-    contact::PadKind,
     contact_model::{ContactModel, HandModel, MAX_HANDS},
     equilibrium::Equilibrium,
     load_factor::balance_twist,
@@ -61,15 +60,14 @@ struct HoldProgram {
 }
 
 impl HoldProgram {
-    /// None when a hand is not held by soft fingers with friction.
+    /// `None` if a pad has no friction.
     fn new(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
         let outer = program::scaled(&(model.weight + model.load.scaled(load_factor)));
         let mut wanted = Rows::zeros();
         wanted.fixed_rows_mut::<6>(0).copy_from(&-outer);
         let mut hands = Vec::with_capacity(model.hands.len());
         for (number, (hand, energy)) in model.hands.iter().zip(energies).enumerate() {
-            let soft = |pad: &super::PadModel| pad.kind == PadKind::SoftFinger && pad.friction > 0.0;
-            if hand.wrench_limits.is_some() || !hand.pads.iter().all(soft) {
+            if !hand.pads.iter().all(|pad| pad.friction > 0.0) {
                 return None;
             }
             wanted[6 + number] = 2.0 * hand.grip_force_n / FORCE_UNIT_N;

@@ -7,8 +7,8 @@ use super::{
     certificate::DualVector,
     compliance::Twist,
     contact_model::{ContactModel, HandModel, PadModel},
-    layout::{Contact, HandLayout, MEASURED_CONE, PadLayout, PointLayout},
-    program::{FORCE_UNIT_N, LENGTH_UNIT_M, POINT_VARIABLES, Program, RawSolution, pad_wrenches},
+    layout::PadLayout,
+    program::{FORCE_UNIT_N, LENGTH_UNIT_M, Program, RawSolution, pad_wrenches},
     sensitivity::{self, Sensitivity},
 };
 use crate::model::wrench::Wrench;
@@ -34,14 +34,12 @@ pub struct LoadFactor {
     ///
     /// Each limit's term is `d lambda* / d ln(limit)`, what a relative increase of the limit brings: for the sliding,
     /// torsion and tilt parts of a pad's limits their share of `z's`, for a joint `tau_max (z+ + z-)`. A pad that is
-    /// left with less than 5 % of its grip force is limited by the grip. For measured limits, such as
-    /// `left hand: measured limits`, it is what larger limits would bring. Named are the terms of at least a twentieth
+    /// left with less than 5 % of its grip force is limited by the grip. Named are the terms of at least a twentieth
     /// of the largest.
     pub binding: Vec<String>,
     /// What a stronger grip, rougher pads or stronger joints would bring.
     pub sensitivity: Sensitivity,
-    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes; halves of the hand's wrench when
-    /// it has measured limits.
+    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes.
     pub pad_wrenches_p: Vec<[Wrench; 2]>,
     /// Torques of each arm's joints, `g + J' w`, N m.
     pub joint_torque_nm: Vec<DVector<f64>>,
@@ -154,13 +152,12 @@ fn binding(model: &ContactModel, program: &Program, raw: &RawSolution<'_>) -> Ve
     let cap = raw.z[layout.load_rows() + 1];
     let mut terms: Vec<(f64, String)> = Vec::new();
     for (hand, place) in model.hands.iter().zip(layout.hands()) {
-        for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
+        for (pad, pad_place) in hand.pads.iter().zip(&place.pads) {
             let of_pad = pad_terms(hand, pad, pad_place, raw);
             terms.extend(
                 of_pad.map(|(term, limit)| (term, format!("{} {} pad: {}", hand.name, pad.name, limit.name()))),
             );
         }
-        terms.extend(measured_term(place, raw).map(|term| (term, format!("{} hand: measured limits", hand.name))));
         if layout.has_torque_rows() {
             let row = place.torque_rows;
             // The rows are divided by the limit, so the multipliers are the terms.
@@ -181,18 +178,6 @@ fn binding(model: &ContactModel, program: &Program, raw: &RawSolution<'_>) -> Ve
     terms.into_iter().map(|(_, name)| name).collect()
 }
 
-/// `d lambda* / d ln(D)` of a hand's measured limits: `b'z` of their rows, which are divided by D.
-fn measured_term(place: &HandLayout, raw: &RawSolution<'_>) -> Option<f64> {
-    match place.contact {
-        Contact::Pads(_) => None,
-        Contact::Box { rows } => Some(raw.z[rows..rows + 12].iter().sum()),
-        Contact::Ellipsoid { rows } => {
-            let cone = rows..rows + MEASURED_CONE;
-            Some(-raw.z[cone.clone()].iter().zip(&raw.s[cone]).skip(1).map(|(z, s)| z * s).sum::<f64>())
-        }
-    }
-}
-
 /// `d lambda* / d ln(limit)` of a pad's four limits.
 fn pad_terms(hand: &HandModel, pad: &PadModel, place: &PadLayout, raw: &RawSolution<'_>) -> [(f64, PadLimit); 4] {
     let normal = raw.x[place.variables + 2];
@@ -201,16 +186,14 @@ fn pad_terms(hand: &HandModel, pad: &PadModel, place: &PadLayout, raw: &RawSolut
         let pull = grip * pull_multiplier(pad, place, raw);
         return [(pull, PadLimit::Grip), (0.0, PadLimit::Friction), (0.0, PadLimit::Torsion), (0.0, PadLimit::Tilt)];
     }
-    let [friction, torsion, tilt] =
-        place.points.map_or_else(|| soft_terms(place, raw), |points| point_terms(pad, place, &points, raw));
+    let [friction, torsion, tilt] = soft_terms(place, raw);
     [(friction, PadLimit::Friction), (torsion, PadLimit::Torsion), (tilt, PadLimit::Tilt), (0.0, PadLimit::Grip)]
 }
 
 /// What a pad that is pulled off would gain from each unit of normal force.
 fn pull_multiplier(pad: &PadModel, place: &PadLayout, raw: &RawSolution<'_>) -> f64 {
-    let (count, cone_rows) = place.points.map_or((1, 0), |points| (points.count, POINT_VARIABLES));
-    let friction = (0..count).map(|cone| raw.z[place.friction_rows + cone * cone_rows]).fold(0.0, f64::max);
-    let pressure = &raw.z[place.pressure_rows..place.pressure_rows + place.points.map_or(4, |points| points.count)];
+    let friction = f64::max(0.0, raw.z[place.friction_rows]);
+    let pressure = &raw.z[place.pressure_rows..place.pressure_rows + 4];
     pad.friction * friction + pressure.iter().sum::<f64>()
 }
 
@@ -220,18 +203,4 @@ fn soft_terms(place: &PadLayout, raw: &RawSolution<'_>) -> [f64; 3] {
     let share = |row: usize| -raw.z[place.friction_rows + row] * raw.s[place.friction_rows + row];
     let tilt: f64 = raw.z[place.pressure_rows..place.pressure_rows + 4].iter().sum();
     [share(1) + share(2), share(3), raw.x[place.variables + 2] * tilt]
-}
-
-/// The same of a pad of points. The multipliers of the rows that sum up its moments are the pad's virtual rotation, and
-/// rotation times moment is what a larger pattern of points would bring: about the normal by its levers of friction,
-/// which the friction cones' terms contain, about the other axes by those of pressure.
-fn point_terms(pad: &PadModel, place: &PadLayout, points: &PointLayout, raw: &RawSolution<'_>) -> [f64; 3] {
-    let of_point = |point: usize| {
-        let normal = raw.x[points.variables + POINT_VARIABLES * point + 2];
-        pad.friction * normal * raw.z[place.friction_rows + POINT_VARIABLES * point]
-    };
-    let friction: f64 = (0..points.count).map(of_point).sum();
-    let of_moment = |row: usize| raw.z[points.sum_rows + row] * raw.x[place.variables + row];
-    let torsion = of_moment(5).clamp(0.0, friction);
-    [friction - torsion, torsion, (of_moment(3) + of_moment(4)).max(0.0)]
 }

@@ -31,7 +31,7 @@ enum Base {
 }
 
 impl LocalEquilibrium {
-    /// None without a response, or when the hold's pads are not soft fingers.
+    /// `None` without a response, or if a pad has no friction.
     pub fn new(model: &ContactModel, load_factor: f64) -> Option<Self> {
         let welded = WeldedStiffness::new(model);
         let energies = hand_energies(model);

@@ -5,8 +5,7 @@
 //! case), and which multiple the arms hold with the forces that their joints' springs lead to
 //! ([`StabilityWorkspace::compliant_load_factor`]). The first comes with what limits it, what would help
 //! ([`Sensitivity`]) and a proof ([`DualVector`]), and can be asked for of several loads and frictions at once
-//! ([`StabilityWorkspace::robust_load_factor`]). Pads are soft fingers unless a [`PadKind`] or [`WrenchLimits`] says
-//! otherwise.
+//! ([`StabilityWorkspace::robust_load_factor`]).
 //!
 //! Both are cone programs, and clarabel is used here alone; equilibria that are asked for by the thousand have a quicker
 //! solver of their own (`interior_point`), held to clarabel by a test. What a small change of a hold does to them is
@@ -49,7 +48,6 @@
 mod certificate;
 mod compliance;
 mod compliant_load;
-mod contact;
 mod contact_model;
 mod elastic;
 mod equilibrium;
@@ -70,7 +68,6 @@ mod workspace;
 pub use certificate::DualVector;
 pub use compliance::{Twist, WeldedStiffness};
 pub use compliant_load::{CompliantLoadFactor, LimitCrossing};
-pub use contact::{LimitShape, PadKind, WrenchLimits};
 pub use contact_model::{ContactModel, ContactModelError, HandModel, PadModel};
 pub use equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome};
 pub use infeasibility::{Infeasibility, Mechanism};

@@ -2,24 +2,17 @@
 //!
 //! Variables: for each hand, for each of its pads, `(ft1, ft2, fn, mt1, mt2, mn)` in pad axes about the pad's centre;
 //! then the hand's wrench about its grasp point, which torque rows and energy are written in, half as wide as they
-//! would be in the pads' variables; then the forces `(ft1, ft2, fn)` at the points of pads of that kind; last, in the
-//! load program, the load factor. A hand with measured limits has no variables but its wrench. Rows, in the order of
-//! the cones:
+//! would be in the pads' variables; last, in the load program, the load factor. Rows, in the order of the cones:
 //!
 //! | rows | cone | what |
 //! |---|---|---|
 //! | 6 | zero | balance of the object: sum of the hands' wrenches + lambda load = -weight |
 //! | 6 a hand | zero | the hand's wrench is the sum of its pads' |
 //! | 1 a hand | zero | `fn_1 + fn_2 = 2 F` |
-//! | 6 a pad of points | zero | the pad's wrench is the sum of its points' forces |
 //! | 2 (load program) | nonnegative | `0 <= lambda <= 100` |
 //! | 4 a pad | nonnegative | centre of pressure: `|mt1| <= b fn`, `|mt2| <= a fn`; `fn >= 0` follows |
-//! | 1 a point | nonnegative | its normal force, for a pad of points in place of the centre of pressure |
-//! | 12 a hand with a measured box | nonnegative | `|w_i| <= D_i` in place of everything of its pads and its grip |
 //! | 2 n a hand (with torque limits) | nonnegative | `J' w <= tau_max - tau_g`, `-J' w <= tau_max + tau_g` |
 //! | 4 a pad | second order | friction: `(mu fn, ft1, ft2, mn / e)` |
-//! | 3 a point | second order | friction: `(mu fn, ft1, ft2)`, in its place |
-//! | 7 a hand with a measured ellipsoid | second order | `(1, D^-1 w)` in place of everything of its pads and its grip |
 //!
 //! Scales: forces in units of 10 N, moments of 10 N x 0.2 m in hands' wrenches and balance; a pad's own moments by its half sides
 //! and torsion radius, so that every pad's rows look alike; torque rows by the joint's limit; lambda by the load's size.
@@ -33,9 +26,8 @@ use clarabel::{
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::{
-    contact::PadKind,
     contact_model::{ContactModel, HandModel, PadModel},
-    layout::{Contact, HandLayout, Layout, MEASURED_CONE, PadLayout, PointLayout},
+    layout::{HandLayout, Layout, PadLayout},
 };
 use crate::model::wrench::Wrench;
 
@@ -56,9 +48,6 @@ const SOLVER_TOLERANCE: f64 = 1e-7;
 
 /// Variables of one pad.
 pub(super) const PAD_VARIABLES: usize = 6;
-
-/// Variables of one point of a pad, and rows of its cone.
-pub(super) const POINT_VARIABLES: usize = 3;
 
 /// What a program contains beside the balance, the grip and the pads' limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,12 +133,6 @@ impl Program {
                 (0..=column).for_each(|row| p.push(hand.wrench_variables + row, energy.arm[(row, column)]));
             }
         }
-        let wrench_variables = layout.hands().last().map_or(0, |hand| hand.wrench_variables + 6);
-        for variable in wrench_variables..layout.variables() {
-            p.begin();
-            // A point gives way as a pad does.
-            p.push(variable, energies[0].pads);
-        }
         let a = hand_columns(model, &layout).into_matrix(layout.rows());
         let q = vec![0.0; layout.variables()];
         let b = limits(model, &layout, lambda);
@@ -200,17 +183,10 @@ pub(super) fn wrench_units() -> Vector6<f64> {
 fn hand_columns(model: &ContactModel, layout: &Layout) -> Columns {
     let mut columns = Columns::default();
     for (hand, place) in model.hands.iter().zip(layout.hands()) {
-        for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
+        for (pad, pad_place) in hand.pads.iter().zip(&place.pads) {
             push_pad(&mut columns, hand, place, pad, pad_place);
         }
         push_wrench(&mut columns, layout, hand, place);
-    }
-    for (hand, place) in model.hands.iter().zip(layout.hands()) {
-        for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
-            if let (PadKind::Points(points), Some(point_place)) = (&pad.kind, &pad_place.points) {
-                push_points(&mut columns, pad, points, pad_place, point_place);
-            }
-        }
     }
     columns
 }
@@ -227,10 +203,6 @@ fn push_pad(columns: &mut Columns, hand: &HandModel, hand_place: &HandLayout, pa
         if variable == 2 {
             columns.push(hand_place.grip_row, 1.0);
         }
-        if let Some(points) = &place.points {
-            columns.push(points.sum_rows + variable, 1.0);
-            continue;
-        }
         match variable {
             0 | 1 => columns.push(friction + 1 + variable, -1.0),
             2 => {
@@ -246,29 +218,6 @@ fn push_pad(columns: &mut Columns, hand: &HandModel, hand_place: &HandLayout, pa
     }
 }
 
-/// The forces at a pad's points: their part of the pad's wrench, their sign and their friction.
-fn push_points(columns: &mut Columns, pad: &PadModel, points: &[[f64; 2]], place: &PadLayout, sums: &PointLayout) {
-    let [a, b] = pad.half_sides_m;
-    let sum = sums.sum_rows;
-    for (number, [x, y]) in points.iter().enumerate() {
-        let cone = place.friction_rows + POINT_VARIABLES * number;
-        columns.begin();
-        columns.push(sum, -1.0);
-        columns.push(sum + 5, y / pad.torsion_radius_m());
-        columns.push(cone + 1, -1.0);
-        columns.begin();
-        columns.push(sum + 1, -1.0);
-        columns.push(sum + 5, -x / pad.torsion_radius_m());
-        columns.push(cone + 2, -1.0);
-        columns.begin();
-        columns.push(sum + 2, -1.0);
-        columns.push(sum + 3, -y / b);
-        columns.push(sum + 4, x / a);
-        columns.push(place.pressure_rows + number, -1.0);
-        columns.push(cone, -pad.friction);
-    }
-}
-
 fn push_wrench(columns: &mut Columns, layout: &Layout, hand: &HandModel, place: &HandLayout) {
     let units = wrench_units();
     // The wrench about O: the moment gains p x f.
@@ -279,25 +228,12 @@ fn push_wrench(columns: &mut Columns, layout: &Layout, hand: &HandModel, place: 
         if component < 3 {
             (0..3).filter(|&row| row != component).for_each(|row| columns.push(3 + row, lever[(row, component)]));
         }
-        let mut unit = Vector6::zeros();
-        unit[component] = units[component];
-        let ratios = hand.wrench_limits.as_ref().map(|limits| limits.ratios(&Wrench::from(<[f64; 6]>::from(unit))));
-        match place.contact {
-            Contact::Pads(_) => columns.push(place.wrench_rows + component, -1.0),
-            Contact::Box { rows } => ratios.iter().for_each(|ratios| {
-                (0..6).for_each(|row| columns.push(rows + row, ratios[row]));
-                (0..6).for_each(|row| columns.push(rows + 6 + row, -ratios[row]));
-            }),
-            Contact::Ellipsoid { .. } => {}
-        }
+        columns.push(place.wrench_rows + component, -1.0);
         if layout.has_torque_rows() {
             let (first, dof) = (place.torque_rows, hand.dof());
             let torque = |joint: usize| hand.jacobian_o[(component, joint)] * units[component] / hand.effort_nm[joint];
             (0..dof).for_each(|joint| columns.push(first + joint, torque(joint)));
             (0..dof).for_each(|joint| columns.push(first + dof + joint, -torque(joint)));
-        }
-        if let (Contact::Ellipsoid { rows }, Some(ratios)) = (place.contact, ratios) {
-            (1..MEASURED_CONE).for_each(|row| columns.push(rows + row, -ratios[row - 1]));
         }
     }
 }
@@ -308,11 +244,7 @@ fn limits(model: &ContactModel, layout: &Layout, lambda: f64) -> Vec<f64> {
     let outer = scaled(&(model.weight + model.load.scaled(lambda)));
     (0..6).for_each(|row| b[row] = -outer[row]);
     for (hand, place) in model.hands.iter().zip(layout.hands()) {
-        match place.contact {
-            Contact::Pads(_) => b[place.grip_row] = 2.0 * hand.grip_force_n / FORCE_UNIT_N,
-            Contact::Box { rows } => b[rows..rows + 12].fill(1.0),
-            Contact::Ellipsoid { rows } => b[rows] = 1.0,
-        }
+        b[place.grip_row] = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
         if layout.has_torque_rows() {
             let row = place.torque_rows;
             for joint in 0..hand.dof() {
@@ -325,20 +257,10 @@ fn limits(model: &ContactModel, layout: &Layout, lambda: f64) -> Vec<f64> {
     b
 }
 
-/// The pads' wrenches of one hand, each about its centre in pad axes, from the variables. A hand with measured limits
-/// does not know its pads: each is given half of its wrench.
+/// The pads' wrenches of one hand, each about its centre in pad axes, from the variables.
 pub(super) fn pad_wrenches(hand: &HandModel, place: &HandLayout, x: &[f64]) -> [Wrench; 2] {
-    let Some(pads) = place.pads() else {
-        let whole = hand_wrench(place, x);
-        return [0, 1].map(|pad: usize| {
-            let x_op = &hand.pads[pad].x_op;
-            let Wrench { force_n, moment_nm } =
-                whole.scaled(0.5).about(&(hand.grasp_point_o - x_op.translation.vector));
-            Wrench::new(x_op.rotation.inverse() * force_n, x_op.rotation.inverse() * moment_nm)
-        });
-    };
     [0, 1].map(|pad: usize| {
-        let first = pads[pad].variables;
+        let first = place.pads[pad].variables;
         let values = Vector6::from_column_slice(&x[first..first + PAD_VARIABLES]);
         let [fx, fy, fz, mx, my, mz] = values.component_mul(&pad_units(&hand.pads[pad])).into();
         Wrench::from([fx, fy, fz, mx, my, mz])

@@ -38,7 +38,7 @@ const CAP_MARGIN: f64 = 1e-3;
 pub struct Variation {
     /// The operation's wrench at load factor 1, about O's origin in O axes.
     pub load: Wrench,
-    /// Friction of every pad, as a multiple of its own; of no effect on measured limits.
+    /// Friction of every pad, as a multiple of its own.
     pub friction_ratio: f64,
 }
 

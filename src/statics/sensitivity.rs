@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use super::{
     contact_model::{ContactModel, HandModel},
     layout::{HandLayout, PadLayout},
-    program::{FORCE_UNIT_N, POINT_VARIABLES, Program, RawSolution},
+    program::{FORCE_UNIT_N, Program, RawSolution},
 };
 
 /// Derivatives of the load factor lambda*. Where limits meet, lambda* has a kink and the figure is one of the
@@ -22,9 +22,9 @@ pub struct Sensitivity {
 /// Derivatives of the load factor by the limits of one hand; none is negative but for the solver's tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandSensitivity {
-    /// `d lambda*/d F` by the force with which each finger is pushed, 1/N; 0 for a hand with measured limits.
+    /// `d lambda*/d F` by the force with which each finger is pushed, 1/N.
     pub per_grip_force_n: f64,
-    /// `d lambda*/d mu` by the friction of each pad; 0 for a hand with measured limits.
+    /// `d lambda*/d mu` by the friction of each pad.
     pub per_friction: [f64; 2],
     /// `d lambda*/d tau_max` by the torque limit of each joint, n, 1/(N m).
     pub per_effort_nm: DVector<f64>,
@@ -34,8 +34,8 @@ pub struct HandSensitivity {
 pub(super) fn of(model: &ContactModel, program: &Program, raw: &RawSolution<'_>) -> Sensitivity {
     let of_hand = |(hand, place): (&HandModel, &HandLayout)| HandSensitivity {
         // The row is fn_1 + fn_2 = 2 F.
-        per_grip_force_n: place.pads().map_or(0.0, |_| 2.0 * raw.z[place.grip_row] / FORCE_UNIT_N),
-        per_friction: place.pads().map_or([0.0; 2], |pads| [0, 1].map(|pad: usize| of_friction(&pads[pad], raw))),
+        per_grip_force_n: 2.0 * raw.z[place.grip_row] / FORCE_UNIT_N,
+        per_friction: place.pads.each_ref().map(|pad| of_friction(pad, raw)),
         per_effort_nm: of_efforts(hand, place, program, raw),
     };
     Sensitivity { hands: model.hands.iter().zip(program.layout.hands()).map(of_hand).collect() }
@@ -43,13 +43,7 @@ pub(super) fn of(model: &ContactModel, program: &Program, raw: &RawSolution<'_>)
 
 /// mu stands before the normal force in the first row of each friction cone: `fn z_0`.
 fn of_friction(place: &PadLayout, raw: &RawSolution<'_>) -> f64 {
-    match place.points {
-        None => raw.x[place.variables + 2] * raw.z[place.friction_rows],
-        Some(points) => (0..points.count)
-            .map(|point| POINT_VARIABLES * point)
-            .map(|first| raw.x[points.variables + first + 2] * raw.z[place.friction_rows + first])
-            .sum(),
-    }
+    raw.x[place.variables + 2] * raw.z[place.friction_rows]
 }
 
 /// The torque rows are divided by tau_max: `(z+ + z-) / tau_max` where they bind.

@@ -216,6 +216,8 @@ fn broken_holds_are_errors_that_name_the_place() {
         message(&|hold| hold.hands[0].effort_nm = DVector::zeros(3)),
         "left hand: found 3 entries of effort, expected one for each of 6 joints"
     );
+    let soft = message(&|hold| hold.hands[0].gravity_stiffness_nm_rad[(2, 2)] = -1e3);
+    assert_eq!(soft, "left hand: the joints' springs are too soft for the arm's own weight");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::{Chain, InverseKinematics, Robot},
-    statics::{ContactModel, HandModel, LoadFactor, LoadFactorOutcome, PadKind, PadModel, StabilityWorkspace},
+    statics::{ContactModel, HandModel, LoadFactor, LoadFactorOutcome, PadModel, StabilityWorkspace},
 };
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -46,13 +46,11 @@ pub fn strong_hand(
         x_op: facing(p + axis * (side * thickness_m / 2.0), -axis * side, x),
         half_sides_m: HALF_SIDES_M,
         friction,
-        kind: PadKind::SoftFinger,
     };
     HandModel {
         name: name.into(),
         joints: (0..6).map(|joint| format!("{name}_{joint}")).collect(),
         pads: [pad("upper", 1.0), pad("lower", -1.0)],
-        wrench_limits: None,
         grip_force_n: grip_n,
         grasp_point_o: p,
         jacobian_o: Matrix6xX::identity(6),
@@ -132,9 +130,6 @@ pub fn moved(hold: &ContactModel, x: &Pose) -> ContactModel {
             let angular = x.rotation * Vector3::new(column[3], column[4], column[5]);
             column.fixed_rows_mut::<3>(0).copy_from(&linear);
             column.fixed_rows_mut::<3>(3).copy_from(&angular);
-        }
-        if let Some(limits) = &mut hand.wrench_limits {
-            limits.rotation_og = x.rotation * limits.rotation_og;
         }
     }
     moved.weight = hold.weight.moved(x);
