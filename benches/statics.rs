@@ -5,7 +5,7 @@ use std::{hint::black_box, path::Path};
 use benchdog::{
     model::scenario::Limits,
     scenario::read_plan,
-    statics::{ContactModel, StabilityWorkspace},
+    statics::{ContactModel, EquilibriumSolver, StabilityWorkspace},
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -35,7 +35,9 @@ fn statics(criterion: &mut Criterion) {
         };
         bench("necessary test", &mut || _ = black_box(black_box(&hold).infeasibility(1.0)));
         bench("load factor", &mut || _ = black_box(workspace.load_factor(black_box(&hold))));
-        bench("compliant equilibrium", &mut || _ = black_box(workspace.equilibrium(black_box(&hold), 0.5)));
+        bench("compliant equilibrium", &mut || {
+            _ = black_box(workspace.equilibrium(black_box(&hold), 0.5, EquilibriumSolver::InteriorPoint))
+        });
         bench("compliant load factor", &mut || {
             _ = black_box(workspace.compliant_load_factor(black_box(&hold), &LIMITS))
         });

@@ -1,99 +1,30 @@
-//! A hold as plain geometry: what the programs of this module are built from.
+//! The contact model of a grasp: hands, pads, weight and load as plain geometry, the input of every solver of this
+//! module.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Vector3};
+use nalgebra::Vector3;
 
-use super::patch::mean_distance_from_centre_m;
-use crate::model::{frames::Pose, wrench::Wrench};
+use super::hand::{HandModel, PadModel};
+use crate::model::wrench::Wrench;
 
-/// The most hands that a hold may have.
+/// The largest number of hands.
 pub(super) const MAX_HANDS: usize = 4;
 
-/// One pad on the object, a soft finger with a rectangular patch (METHOD section 6).
-#[derive(Clone, Debug, PartialEq)]
-pub struct PadModel {
-    /// Which of the hand's pads it is, such as `upper`.
-    pub name: String,
-    /// Pose in O of the centre of the part of the pad that lies on the face; z_P is the normal INTO the object.
-    pub x_op: Pose,
-    /// Half sides of that part along x_P and y_P, m.
-    pub half_sides_m: [f64; 2],
-    /// Coulomb friction between pad and object.
-    pub friction: f64,
-}
-
-impl PadModel {
-    /// The lever arm of the patch's torsional friction, m: the mean distance of the patch from its centre.
-    pub fn torsion_radius_m(&self) -> f64 {
-        mean_distance_from_centre_m(self.half_sides_m)
-    }
-
-    /// R_OP.
-    pub(super) fn rotation(&self) -> Matrix3<f64> {
-        self.x_op.rotation.to_rotation_matrix().into_inner()
-    }
-
-    /// The wrench of the pad on the object about O's origin in O axes, for that about the pad's centre in pad axes.
-    pub fn wrench_about_object(&self, wrench_p: &Wrench) -> Wrench {
-        wrench_p.moved(&self.x_op)
-    }
-}
-
-/// One hand of a hold; everything in O axes unless said otherwise.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HandModel {
-    /// The arm's name, such as `left`.
-    pub name: String,
-    /// The names of the arm's n joints, from the base outward.
-    pub joints: Vec<String>,
-    /// Its two pads.
-    pub pads: [PadModel; 2],
-    /// Force F with which each finger is pushed, N; the fingers are coupled, so the two normal forces add up to 2 F.
-    pub grip_force_n: f64,
-    /// The point between the pads about which the hand's wrench is taken, in O, m.
-    pub grasp_point_o: Vector3<f64>,
-    /// 6 x n: rows 0 to 2 the velocity of the grasp point (m/s), rows 3 to 5 the angular velocity (rad/s), O axes, for
-    /// joint rates in rad/s.
-    pub jacobian_o: Matrix6xX<f64>,
-    /// Torque that holds the arm, gripper included, against gravity, n, N m.
-    pub gravity_torque_nm: DVector<f64>,
-    /// Largest torque of each joint, n, N m.
-    pub effort_nm: DVector<f64>,
-    /// Stiffness of each joint's position control, n, N m/rad.
-    pub stiffness_nm_rad: DVector<f64>,
-    /// `dg/dq`, n x n, N m/rad: how the torque that gravity asks for changes with the angles. The control compensates
-    /// gravity at the planned angles, so this adds to its stiffness, or takes from it.
-    pub gravity_stiffness_nm_rad: DMatrix<f64>,
-}
-
-impl HandModel {
-    /// The number of joints.
-    pub fn dof(&self) -> usize {
-        self.joints.len()
-    }
-
-    /// The wrench of the hand on the object about the grasp point in O axes, for its pads' wrenches, each about the
-    /// pad's centre in pad axes.
-    pub fn wrench_about_grasp_point(&self, pads_p: &[Wrench; 2]) -> Wrench {
-        let about_object = |index: usize| self.pads[index].wrench_about_object(&pads_p[index]);
-        (about_object(0) + about_object(1)).about(&-self.grasp_point_o)
-    }
-}
-
-/// A board in the grip of one to four hands, under its weight and an operation.
+/// A board held by one to four hands under its weight and an operation (docs/method.md#61-contact-model).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactModel {
     /// The hands.
     pub hands: Vec<HandModel>,
-    /// Gravity on the object, about O's origin in O axes.
+    /// The object's weight, about O's origin in O axes.
     pub weight: Wrench,
     /// The operation's wrench at load factor 1, about O's origin in O axes.
     pub load: Wrench,
-    /// The tool tip in O, m: deflection is measured there.
+    /// The tool tip in O, m. Deflection is measured there.
     pub p_ot: Vector3<f64>,
 }
 
-/// A hold that no figure can be computed for: broken input, unlike a hold that is too weak.
+/// Why a contact model is invalid. A grasp that is too weak is not an error.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ContactModelError {
     /// Too few or too many hands.
     #[error("found {0} hands, expected 1 to {MAX_HANDS}")]
@@ -110,7 +41,7 @@ pub enum ContactModelError {
         /// The number of joints.
         expected: usize,
     },
-    /// A figure outside its range, or not finite.
+    /// A value outside its range, or not finite.
     #[error("{place}: found {what} {found}, expected {expected}")]
     Value {
         /// The hand or pad.
@@ -133,23 +64,23 @@ pub enum ContactModelError {
     /// An arm that the robot does not have.
     #[error("found arm \"{0}\", which the robot does not have")]
     UnknownArm(String),
-    /// Joints that are not the arm's, or in another order.
+    /// The joints are not the arm's, or not in its order.
     #[error("{hand} hand: found the joints {found:?}, expected {expected:?}")]
     JointNames {
         /// The hand.
         hand: String,
         /// The plan's joints.
         found: Vec<String>,
-        /// The robot's.
+        /// The robot's joints.
         expected: Vec<String>,
     },
-    /// No variations of a load to stand.
+    /// No variation of load and friction to evaluate.
     #[error("found no variations, expected at least one")]
     NoVariations,
-    /// Springs that give way under the arm's own weight without end.
+    /// `K_q + dg/dq` is not positive definite: the joints cannot hold the arm's own weight.
     #[error("{0} hand: the joints' springs are too soft for the arm's own weight")]
     TooSoft(String),
-    /// A pad that does not touch the object's face.
+    /// No part of a pad lies on the board's face.
     #[error("{hand} {pad} pad: no part of it lies on the board")]
     PadOffBoard {
         /// The hand.
@@ -157,16 +88,16 @@ pub enum ContactModelError {
         /// The pad.
         pad: String,
     },
-    /// A gripper that does not straddle the board's faces.
+    /// The finger axis is not along the board's normal.
     #[error(
-        "{hand} hand: found the finger axis {angle_deg:.3} degrees from the board's normal, expected less than {limit_deg}"
+        "{hand} hand: found the finger axis {angle_deg:.3} degrees from the board's normal, expected at most {limit_deg}"
     )]
     FingersNotAcross {
         /// The hand.
         hand: String,
         /// Angle between finger axis and normal, degrees.
         angle_deg: f64,
-        /// The largest angle that is accepted, degrees.
+        /// The largest allowed angle, degrees.
         limit_deg: f64,
     },
 }
@@ -175,7 +106,7 @@ impl ContactModel {
     /// Checks dimensions and ranges.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its place.
+    /// The first invalid value, and where it is.
     pub fn check(&self) -> Result<(), ContactModelError> {
         if self.hands.is_empty() || self.hands.len() > MAX_HANDS {
             return Err(ContactModelError::HandCount(self.hands.len()));
@@ -226,7 +157,7 @@ fn check_hand(hand: &HandModel) -> Result<(), ContactModelError> {
     positive("grip force", hand.grip_force_n)?;
     hand.effort_nm.iter().try_for_each(|&effort| positive("effort", effort))?;
     hand.stiffness_nm_rad.iter().try_for_each(|&stiffness| positive("stiffness", stiffness))?;
-    if expected > 0 && hand.spring_factor().is_none() {
+    if expected > 0 && hand.stiffness_factor().is_none() {
         return Err(ContactModelError::TooSoft(hand.name.clone()));
     }
     hand.pads.iter().try_for_each(|pad| check_pad(hand, pad))

@@ -1,21 +1,19 @@
-//! What a small change of a hold does to its response, without solving anew.
+//! First-order response of a contact model to small changes of it, without a new solve.
 //!
-//! A search that climbs asks how the response changes along each of some twenty moves. Around a hold whose pads are all
-//! below their limits the closed form of [`super::elastic`] says so at once; elsewhere one Newton step with the system that
-//! solved the hold's own equilibrium does, exact to first order ([`super::interior_point`]).
+//! The planner's refinement differentiates the response by some twenty variables. If all pads are below their limits,
+//! [`super::elastic`] gives the changed response in closed form; otherwise one Newton step with the factorised system
+//! of the equilibrium, exact to first order ([`super::solvers::interior_point`]).
 
 use super::{
-    compliance::WeldedStiffness,
     contact_model::ContactModel,
     elastic,
     equilibrium::{CompliantResponse, Equilibrium},
-    interior_point::InteriorPoint,
-    program::HandEnergy,
-    workspace::hand_energies,
+    solvers::{energy::HandEnergy, interior_point::InteriorPoint},
+    welded::WeldedStiffness,
 };
 use crate::model::scenario::Limits;
 
-/// A hold's response to a load factor, ready to be asked about holds that differ from it a little.
+/// The equilibria of a contact model with and without its load, ready for evaluation of slightly different models.
 #[derive(Clone, Debug)]
 pub struct LocalEquilibrium {
     load_factor: f64,
@@ -23,29 +21,30 @@ pub struct LocalEquilibrium {
     loaded: Base,
 }
 
-/// How the equilibrium was found.
+/// An equilibrium by the method that found it.
 #[derive(Clone, Debug)]
 enum Base {
     Welded,
-    Yielding(Box<InteriorPoint>),
+    InteriorPoint(Box<InteriorPoint>),
 }
 
 impl LocalEquilibrium {
-    /// `None` without a response, or if a pad has no friction.
+    /// `None` without an equilibrium under the weight alone or at the load factor, or if a pad has no friction.
     pub fn new(model: &ContactModel, load_factor: f64) -> Option<Self> {
         let welded = WeldedStiffness::new(model);
-        let energies = hand_energies(model);
+        let energies = HandEnergy::of_hands(model);
         let base = |load_factor: f64| {
             if welded.as_ref().is_some_and(|welded| elastic::equilibrium(model, welded, load_factor).is_some()) {
                 return Some(Base::Welded);
             }
-            InteriorPoint::solve(model, &energies, load_factor).map(|point| Base::Yielding(Box::new(point)))
+            InteriorPoint::solve(model, &energies, load_factor).map(|point| Base::InteriorPoint(Box::new(point)))
         };
         Some(Self { load_factor, unloaded: base(0.0)?, loaded: base(load_factor)? })
     }
 
-    /// The response of a hold that differs a little, to first order in what it differs by; none when it is no such hold.
-    pub fn of(&self, model: &ContactModel) -> Option<CompliantResponse> {
+    /// The response of a slightly different model, to first order in the difference; `None` if it has another number of
+    /// hands, a pad without friction or pads that are not opposite.
+    fn response(&self, model: &ContactModel) -> Option<CompliantResponse> {
         let mut energies = None;
         let mut welded = None;
         let mut equilibrium = |base: &Base, load_factor: f64| -> Option<Equilibrium> {
@@ -54,9 +53,10 @@ impl LocalEquilibrium {
                     let welded = welded.get_or_insert_with(|| WeldedStiffness::new(model)).as_ref()?;
                     elastic::first_order(model, welded, load_factor)
                 }
-                Base::Yielding(point) => {
-                    let energies: &Vec<HandEnergy> = energies.get_or_insert_with(|| hand_energies(model));
-                    point.first_order(model, energies, load_factor)
+                Base::InteriorPoint(point) => {
+                    let energies: &Vec<HandEnergy> = energies.get_or_insert_with(|| HandEnergy::of_hands(model));
+                    let found = point.first_order(model, energies, load_factor)?;
+                    Some(Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board))
                 }
             }
         };
@@ -65,8 +65,10 @@ impl LocalEquilibrium {
         Some(CompliantResponse::between(model, &unloaded, loaded))
     }
 
-    /// The largest ratio of torque, deflection and slip to their limits in that response.
+    /// The largest ratio of torque, deflection and slip to their limits in the first-order response of a slightly
+    /// different model.
+    #[must_use]
     pub fn utilisation(&self, model: &ContactModel, limits: &Limits) -> Option<f64> {
-        self.of(model).map(|response| response.utilisation(model, limits))
+        self.response(model).map(|response| response.utilisation(model, limits))
     }
 }

@@ -1,35 +1,28 @@
-//! The stability that a plan carries, from the solvers of this module.
+//! The stability figures of a plan.
 
-use super::{ContactModel, ContactModelError, LoadFactorOutcome, ResponseOutcome, StabilityWorkspace};
+use super::{
+    contact_model::{ContactModel, ContactModelError},
+    equilibrium::ResponseOutcome,
+    load_factor::LoadFactorOutcome,
+    workspace::StabilityWorkspace,
+};
 use crate::model::{
     plan::Stability,
     scenario::{Limits, StabilityKind},
 };
 
 impl StabilityWorkspace {
-    /// True when a hold keeps `limits` in the sense of `kind`: its [`StabilityWorkspace::utilisation`] is at most 1.
+    /// Utilisation of `limits` under the stability criterion `kind` (docs/method.md#34-constraints): at most 1 if the
+    /// grasp is stable, infinite if no equilibrium exists.
     ///
-    /// # Errors
-    /// When the hold is broken.
-    pub fn is_stable(
-        &mut self,
-        model: &ContactModel,
-        limits: &Limits,
-        kind: StabilityKind,
-    ) -> Result<bool, ContactModelError> {
-        Ok(self.utilisation(model, limits, kind)? <= 1.0)
-    }
-
-    /// The share that a hold uses of what `limits` allow it in the sense of `kind` (METHOD section 3), at most 1 when it
-    /// stands and infinite when no equilibrium exists:
-    ///
-    /// - paper: `limits.load_factor` over the load factor of the cone program;
+    /// - paper: `limits.load_factor` over the load factor lambda*;
     /// - compliant: the largest ratio of torque, deflection and slip to their limits in the equilibrium at that load
-    ///   factor, and of the deflection at load 1. An equilibrium within the torque limits is a point of the cone program,
-    ///   whose load factor is therefore no less; only where `limits.torque_ratio` allows more than those it is asked too.
+    ///   factor, and of the deflection at load 1. An equilibrium within the torque limits is feasible for the load
+    ///   program, so lambda* is at least as large; lambda* is computed only if `limits.torque_ratio` allows more than
+    ///   the torque limits.
     ///
     /// # Errors
-    /// When the hold is broken.
+    /// If the contact model is invalid.
     pub fn utilisation(
         &mut self,
         model: &ContactModel,
@@ -57,10 +50,10 @@ impl StabilityWorkspace {
         Ok(utilisation)
     }
 
-    /// The figures of a plan; none when the hold has no load factor or no compliant equilibrium at load 1.
+    /// The stability figures of a plan; `None` without a load factor or without a compliant equilibrium at load 1.
     ///
     /// # Errors
-    /// When the hold is broken.
+    /// If the contact model is invalid.
     pub fn predict(&mut self, model: &ContactModel, limits: &Limits) -> Result<Option<Stability>, ContactModelError> {
         let LoadFactorOutcome::Solved(best_case) = self.load_factor(model)? else { return Ok(None) };
         let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(None) };

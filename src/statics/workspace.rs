@@ -1,20 +1,19 @@
-//! Solvers that are kept between holds.
+//! Solvers that are kept between contact models.
 
 use super::{
-    compliance::WeldedStiffness,
-    compliant_load::{self, CompliantLoadFactor},
     contact_model::{ContactModel, ContactModelError},
     elastic,
-    equilibrium::{self, CompliantResponse, EquilibriumOutcome, ResponseOutcome, hand_energy},
-    interior_point::InteriorPoint,
+    equilibrium::{self, CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome},
     load_factor::{self, LoadFactorOutcome},
-    program::{HandEnergy, Program, ProgramKind, ReusedSolver},
-    robust::{self, InternalForces, RobustOutcome, Variation},
+    solvers::{
+        clarabel::ReusedSolver, cone_program::ConeProgram, energy::HandEnergy, interior_point::InteriorPoint,
+        layout::ProgramKind,
+    },
+    welded::WeldedStiffness,
 };
-use crate::model::scenario::Limits;
 
-/// The solvers of a thread that asks about many holds. Holds with the same numbers of hands and joints share memory and
-/// symbolic factorisation; the answer for a hold does not depend on what was asked before, bit by bit.
+/// The solvers of one thread, for many contact models. Models with the same numbers of hands and joints share memory
+/// and symbolic factorisation; results do not depend on earlier calls, bit for bit.
 #[derive(Default)]
 pub struct StabilityWorkspace {
     load: ReusedSolver,
@@ -22,48 +21,67 @@ pub struct StabilityWorkspace {
     equilibrium: ReusedSolver,
 }
 
+/// A solver of the equilibrium program. Both find the same equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EquilibriumSolver {
+    /// Dense and of fixed size, the faster one. Cannot prove that there is no equilibrium: its outcome is then
+    /// [`EquilibriumOutcome::Unknown`].
+    InteriorPoint,
+    /// Sparse, with a proof if there is no equilibrium.
+    Clarabel,
+}
+
 impl StabilityWorkspace {
-    /// A workspace that knows no hold yet.
+    /// A new workspace.
+    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The load factor lambda* (METHOD section 6): the largest multiple of the load, from 0 to 100, that some
-    /// distribution of forces holds within friction, centre of pressure, grip and torque limits.
+    /// The load factor lambda* (docs/method.md#65-load-factor): the largest multiple of the load, from 0 to 100, that
+    /// some distribution of forces balances within friction, centre of pressure, grip and torque limits.
     ///
     /// # Errors
-    /// When the hold is broken.
+    /// If the contact model is invalid.
     pub fn load_factor(&mut self, model: &ContactModel) -> Result<LoadFactorOutcome, ContactModelError> {
         model.check()?;
         Ok(solve_load(&mut self.load, model, ProgramKind::Load))
     }
 
-    /// The load factor without torque limits: up to there a compliant equilibrium exists.
+    /// The load factor without torque limits: a compliant equilibrium exists up to there.
     ///
     /// # Errors
-    /// When the hold is broken.
+    /// If the contact model is invalid.
     pub fn friction_load_factor(&mut self, model: &ContactModel) -> Result<LoadFactorOutcome, ContactModelError> {
         model.check()?;
-        Ok(solve_load(&mut self.friction, model, ProgramKind::Friction))
+        Ok(self.solve_friction(model))
     }
 
-    /// The compliant equilibrium at a load factor. Torque limits are no part of it.
+    /// The compliant equilibrium at a load factor by one of the two solvers. Torque limits are not part of it.
     ///
     /// # Errors
-    /// When the hold is broken.
+    /// If the contact model is invalid.
     pub fn equilibrium(
         &mut self,
         model: &ContactModel,
         load_factor: f64,
+        solver: EquilibriumSolver,
     ) -> Result<EquilibriumOutcome, ContactModelError> {
         model.check()?;
-        Ok(self.solve_equilibrium(model, &hand_energies(model), load_factor))
+        let energies = HandEnergy::of_hands(model);
+        Ok(match solver {
+            EquilibriumSolver::InteriorPoint => by_interior_point(model, &energies, load_factor).map_or_else(
+                || EquilibriumOutcome::Unknown { status: "not converged".into() },
+                EquilibriumOutcome::Found,
+            ),
+            EquilibriumSolver::Clarabel => self.by_clarabel(model, &energies, load_factor),
+        })
     }
 
-    /// What the load at a load factor does to the hold: the compliant equilibrium against that under the weight alone.
+    /// The effect of the load at a load factor: the compliant equilibrium relative to that under the weight alone.
     ///
     /// # Errors
-    /// When the hold is broken.
+    /// If the contact model is invalid.
     pub fn response(&mut self, model: &ContactModel, load_factor: f64) -> Result<ResponseOutcome, ContactModelError> {
         model.check()?;
         let welded = WeldedStiffness::new(model);
@@ -72,7 +90,7 @@ impl StabilityWorkspace {
             if let Some(found) = welded.as_ref().and_then(|welded| elastic::equilibrium(model, welded, lambda)) {
                 return EquilibriumOutcome::Found(found);
             }
-            let energies = energies.get_or_insert_with(|| hand_energies(model));
+            let energies = energies.get_or_insert_with(|| HandEnergy::of_hands(model));
             self.solve_equilibrium(model, energies, lambda)
         };
         let mut equilibria = Vec::with_capacity(2);
@@ -87,45 +105,21 @@ impl StabilityWorkspace {
         Ok(ResponseOutcome::Found(CompliantResponse::between(model, &equilibria[0], loaded)))
     }
 
-    /// The compliant load factor (METHOD section 6): the smallest load factor at which no compliant equilibrium exists
-    /// or a limit of torque ratio, deflection or slip is crossed, at most 100; found to a thousandth, from below.
-    ///
-    /// # Errors
-    /// When the hold is broken.
-    pub fn compliant_load_factor(
-        &mut self,
-        model: &ContactModel,
-        limits: &Limits,
-    ) -> Result<CompliantLoadFactor, ContactModelError> {
-        model.check()?;
-        Ok(compliant_load::search(self, model, limits))
-    }
-
-    /// The load factor that stands every one of several variations of load and friction; see [`RobustOutcome`].
-    ///
-    /// # Errors
-    /// When the hold or a variation is broken, or there is none.
-    pub fn robust_load_factor(
-        &mut self,
-        model: &ContactModel,
-        variations: &[Variation],
-        internal_forces: InternalForces,
-    ) -> Result<RobustOutcome, ContactModelError> {
-        robust::solve(self, model, variations, internal_forces)
-    }
-
+    /// The equilibrium by the interior point, or by clarabel if that does not converge.
     pub(super) fn solve_equilibrium(
         &mut self,
         model: &ContactModel,
         energies: &[HandEnergy],
         load_factor: f64,
     ) -> EquilibriumOutcome {
-        if let Some(found) = InteriorPoint::solve(model, energies, load_factor) {
-            return EquilibriumOutcome::Found(found.equilibrium(model, load_factor));
-        }
-        let program = Program::equilibrium(model, energies, load_factor);
+        by_interior_point(model, energies, load_factor)
+            .map_or_else(|| self.by_clarabel(model, energies, load_factor), EquilibriumOutcome::Found)
+    }
+
+    fn by_clarabel(&mut self, model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> EquilibriumOutcome {
+        let program = ConeProgram::equilibrium(model, energies, load_factor);
         match self.equilibrium.solve(&program) {
-            Some(raw) => equilibrium::interpret(model, &program.layout, load_factor, &raw),
+            Some(raw) => equilibrium::interpret(model, &program, load_factor, &raw),
             None => EquilibriumOutcome::Unknown { status: "data refused".into() },
         }
     }
@@ -135,15 +129,15 @@ impl StabilityWorkspace {
     }
 }
 
+fn by_interior_point(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Equilibrium> {
+    let found = InteriorPoint::solve(model, energies, load_factor)?.solution(model);
+    Some(Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board))
+}
+
 fn solve_load(solver: &mut ReusedSolver, model: &ContactModel, kind: ProgramKind) -> LoadFactorOutcome {
-    let program = Program::load(model, kind);
+    let program = ConeProgram::load(model, kind);
     match solver.solve(&program) {
         Some(raw) => load_factor::interpret(model, &program, &raw),
         None => LoadFactorOutcome::Unknown { status: "data refused".into() },
     }
-}
-
-/// The energy of each hand.
-pub(super) fn hand_energies(model: &ContactModel) -> Vec<HandEnergy> {
-    model.hands.iter().map(hand_energy).collect()
 }

@@ -43,8 +43,6 @@ fn two_grippers_carry_a_board_under_a_downward_load() {
         "right upper pad: friction",
     ];
     assert_eq!(binding, expected);
-    // The board slides down: 1/30 m/N.
-    approx::assert_abs_diff_eq!(found.dual_twist.linear, Vector3::new(0.0, 0.0, -1.0 / 30.0), epsilon = TOLERANCE);
 }
 
 #[test]

@@ -82,8 +82,6 @@ proptest! {
                 prop_assert!(bound <= solved.load_factor + 10.0 * TOLERANCE * solved.load_factor.max(1.0), "{bound} far above {}", solved.load_factor);
                 check_primal(&hold, &solved)?;
                 if solved.load_factor < 99.9 && solved.load_factor > 0.1 {
-                    let work = solved.dual_twist.work(&hold.load);
-                    prop_assert!((work - 1.0).abs() < 10.0 * TOLERANCE, "the dual twist's work is {work}");
                     prop_assert!(!solved.binding.is_empty());
                 }
             }

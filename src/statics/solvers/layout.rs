@@ -1,42 +1,53 @@
-//! Where the variables and rows of a hold's programs are.
+//! Positions of the variables and rows in the cone programs of a contact model.
 
 use clarabel::solver::SupportedConeT::{self, NonnegativeConeT, SecondOrderConeT, ZeroConeT};
 
-use super::{
-    contact_model::{ContactModel, HandModel},
-    program::{PAD_VARIABLES, ProgramKind},
-};
+use crate::statics::{contact_model::ContactModel, hand::HandModel};
+
+/// Variables of one pad.
+pub const PAD_VARIABLES: usize = 6;
 
 /// Rows of a pad's friction cone.
-pub(super) const FRICTION_CONE: usize = 4;
+pub const FRICTION_CONE: usize = 4;
 
-/// One pad's variables and rows; each the first of its kind.
+/// Which program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct PadLayout {
-    pub(super) variables: usize,
+pub enum ProgramKind {
+    /// Maximise lambda within friction and torque limits.
+    Load,
+    /// Maximise lambda within friction limits alone: a compliant equilibrium exists up to there.
+    Friction,
+    /// Minimise the complementary energy at a given lambda.
+    Equilibrium,
+}
+
+/// First indices of one pad's variables and rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PadLayout {
+    pub variables: usize,
     /// Centre of pressure, `+mt1, -mt1, +mt2, -mt2`.
-    pub(super) pressure_rows: usize,
+    pub pressure_rows: usize,
     /// The friction cone.
-    pub(super) friction_rows: usize,
+    pub friction_rows: usize,
 }
 
-/// One hand's variables and rows; each the first of its kind.
+/// First indices of one hand's variables and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct HandLayout {
-    pub(super) dof: usize,
-    pub(super) first_variable: usize,
-    pub(super) wrench_variables: usize,
+pub struct HandLayout {
+    pub dof: usize,
+    pub first_variable: usize,
+    pub wrench_variables: usize,
     /// The rows that define the hand's wrench.
-    pub(super) wrench_rows: usize,
-    pub(super) grip_row: usize,
-    /// n of `+J'w`, then n of `-J'w`.
-    pub(super) torque_rows: usize,
-    pub(super) pads: [PadLayout; 2],
+    pub wrench_rows: usize,
+    pub grip_row: usize,
+    /// n rows of `+J'w`, then n of `-J'w`.
+    pub torque_rows: usize,
+    pub pads: [PadLayout; 2],
 }
 
-/// Where which variable and row is; see the table of `program`.
+/// Positions of all variables and rows; see the table of [`super::cone_program`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Layout {
+pub struct Layout {
     kind: ProgramKind,
     hands: Vec<HandLayout>,
     variables: usize,
@@ -45,7 +56,7 @@ pub(super) struct Layout {
     rows: usize,
 }
 
-/// Counts places.
+/// Allocates consecutive indices.
 struct Counter(usize);
 
 impl Counter {
@@ -57,7 +68,7 @@ impl Counter {
 }
 
 impl Layout {
-    pub(super) fn new(model: &ContactModel, kind: ProgramKind) -> Self {
+    pub fn new(model: &ContactModel, kind: ProgramKind) -> Self {
         let mut layout = Self { kind, hands: Vec::new(), variables: 0, load_rows: 0, first_cone: 0, rows: 0 };
         layout.place_variables(model);
         layout.place_equalities();
@@ -101,43 +112,43 @@ impl Layout {
         self.rows = next.0;
     }
 
-    pub(super) fn kind(&self) -> ProgramKind {
+    pub fn kind(&self) -> ProgramKind {
         self.kind
     }
 
-    pub(super) fn hands(&self) -> &[HandLayout] {
+    pub fn hands(&self) -> &[HandLayout] {
         &self.hands
     }
 
-    pub(super) fn has_load_factor(&self) -> bool {
+    pub fn has_load_factor(&self) -> bool {
         self.kind != ProgramKind::Equilibrium
     }
 
-    pub(super) fn has_torque_rows(&self) -> bool {
+    pub fn has_torque_rows(&self) -> bool {
         self.kind == ProgramKind::Load
     }
 
-    pub(super) fn variables(&self) -> usize {
+    pub fn variables(&self) -> usize {
         self.variables
     }
 
     /// The row `-lambda <= 0`; the next one is `lambda <= 100`. Also the number of equalities.
-    pub(super) fn load_rows(&self) -> usize {
+    pub fn load_rows(&self) -> usize {
         self.load_rows
     }
 
-    pub(super) fn rows(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.rows
     }
 
-    pub(super) fn cones(&self) -> Vec<SupportedConeT<f64>> {
+    pub fn cones(&self) -> Vec<SupportedConeT<f64>> {
         let mut cones = vec![ZeroConeT(self.load_rows), NonnegativeConeT(self.first_cone - self.load_rows)];
         cones.extend(vec![SecondOrderConeT(FRICTION_CONE); 2 * self.hands.len()]);
         cones
     }
 }
 
-/// A hand's variables; its rows are placed later.
+/// Allocates a hand's variables; its rows follow later.
 fn place_hand(hand: &HandModel, next: &mut Counter) -> HandLayout {
     let first_variable = next.0;
     let place_pad =
