@@ -17,7 +17,7 @@ use crate::{
     },
     robot::{BUILTIN, Robot},
     scenario, sim,
-    statics::{Hold, StabilityWorkspace},
+    statics::{ContactModel, StabilityWorkspace},
 };
 
 /// The plan of the solver and physics checks: Baxter holds a foam board with both hands.
@@ -97,7 +97,7 @@ fn loaded(plan: &Plan) -> Result<Robot, String> {
 fn solver() -> CheckResult {
     let plan = plan()?;
     let robot = loaded(&plan)?;
-    let mut hold = Hold::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION)
+    let mut hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION)
         .map_err(|error| error.to_string())?;
     let middle = hold.hands.iter().map(|hand| hand.grasp_point_o).sum::<nalgebra::Vector3<f64>>() / 2.0;
     hold.weight = Wrench::default();

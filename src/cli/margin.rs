@@ -19,7 +19,7 @@ use crate::{
     robot::Robot,
     scenario,
     sim::{self, Conditions},
-    statics::{Hold, HoldError, StabilityWorkspace},
+    statics::{ContactModel, ContactModelError, StabilityWorkspace},
 };
 
 /// The load factors of a plan by simulation and by both predictions.
@@ -130,8 +130,8 @@ fn judge_at(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Res
 }
 
 /// The predictions for a plan, with the scenario's nominal friction.
-fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, HoldError> {
-    let hold = Hold::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
+fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, ContactModelError> {
+    let hold = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
     let mut workspace = StabilityWorkspace::new();
     let crate::statics::LoadFactorOutcome::Solved(best_case) = workspace.load_factor(&hold)? else { return Ok(None) };
     let compliant = workspace.compliant_load_factor(&hold, &scenario.limits)?;

@@ -19,7 +19,7 @@ use crate::{
         plan::{ArmHold, Comfort, MeanComfort, PlacedObject, Stability},
         scenario::{Scenario, StabilityKind},
     },
-    statics::{HandModel, Hold, HoldError, NearbyResponse, StabilityWorkspace},
+    statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
@@ -132,18 +132,18 @@ impl<'a> Evaluator<'a> {
 
     /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
     /// equilibrium.
-    pub fn nearby_response(&self, candidate: &Candidate, x_wo: &Pose) -> Option<NearbyResponse> {
+    pub fn local_equilibrium(&self, candidate: &Candidate, x_wo: &Pose) -> Option<LocalEquilibrium> {
         if self.problem.scenario.planner.stability != StabilityKind::Compliant {
             return None;
         }
         let model = contact_model(&self.problem, candidate, x_wo).ok()?;
-        NearbyResponse::new(&model, self.problem.stability_limits().load_factor)
+        LocalEquilibrium::new(&model, self.problem.stability_limits().load_factor)
     }
 
     /// The predicted stability of a plan's grasp; `None` if there is no equilibrium.
     pub fn predict(&mut self, arms: &[ArmHold], object: &PlacedObject, operation: &Operation) -> Option<Stability> {
         let Problem { scenario, robot, .. } = &self.problem;
-        let model = Hold::from_plan(&robot.robot, arms, object, operation, scenario.grip.friction).ok()?;
+        let model = ContactModel::from_plan(&robot.robot, arms, object, operation, scenario.grip.friction).ok()?;
         self.stability.predict(&model, &scenario.limits).ok()?
     }
 }
@@ -223,7 +223,11 @@ pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
 }
 
 /// The contact model of a candidate's grasp.
-pub fn contact_model(problem: &Problem<'_>, candidate: &Candidate, x_wo: &Pose) -> Result<Hold, HoldError> {
+pub fn contact_model(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+) -> Result<ContactModel, ContactModelError> {
     let Scenario { operation, grip, .. } = problem.scenario;
     let object = placed_object(problem.scenario, *x_wo);
     let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
@@ -231,5 +235,5 @@ pub fn contact_model(problem: &Problem<'_>, candidate: &Candidate, x_wo: &Pose) 
         .zip(&problem.robot.arms)
         .map(|(own, arm)| HandModel::from_plan(&problem.robot.robot, &arm.chain, own, &object, grip.friction))
         .collect();
-    Ok(Hold::from_hands(hands?, &object, &operation.rolled(candidate.work.roll_rad)))
+    Ok(ContactModel::from_hands(hands?, &object, &operation.rolled(candidate.work.roll_rad)))
 }

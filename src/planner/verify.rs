@@ -16,7 +16,7 @@ use crate::{
         scenario::{ResponseKind, Scenario, StabilityKind, Tool},
     },
     robot::{Chain, Robot},
-    statics::{Hold, StabilityWorkspace},
+    statics::{ContactModel, StabilityWorkspace},
 };
 
 /// How exact inverse kinematics must be, m and rad (docs/method.md#34-constraints).
@@ -179,7 +179,7 @@ pub fn first_touch(plan: &Plan, tool: &Tool, robot: &Robot) -> Result<Option<Str
 }
 
 fn stability(plan: &Plan, scenario: &Scenario, robot: &Robot, flaws: &mut Vec<Flaw>) {
-    let found = Hold::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)
+    let found = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)
         .and_then(|hold| StabilityWorkspace::new().predict(&hold, &scenario.limits));
     let (found, written) = match (found, &plan.stability) {
         (Ok(Some(found)), Some(written)) => (found, written),

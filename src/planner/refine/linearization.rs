@@ -128,7 +128,7 @@ impl Linearization {
         }
         let count = self.variables.count();
         // Around a compliant equilibrium a whole gradient costs less than one equilibrium.
-        let nearby = evaluator.nearby_response(&here.candidate, &here.configuration.placement.x_wo);
+        let local = evaluator.local_equilibrium(&here.candidate, &here.configuration.placement.x_wo);
         let limits = evaluator.problem.stability_limits();
         let mut gradient = DVector::zeros(count);
         for number in 0..count {
@@ -136,11 +136,11 @@ impl Linearization {
             d[number] = STABILITY_DIFFERENCE;
             let candidate = self.variables.apply_linear(&here.candidate, &d);
             let x_wo = candidate.x_wo(&evaluator.problem);
-            let there = nearby
+            let there = local
                 .as_ref()
-                .and_then(|nearby| {
+                .and_then(|local| {
                     let model = evaluate::contact_model(&evaluator.problem, &candidate, &x_wo).ok()?;
-                    nearby.utilisation(&model, &limits)
+                    local.utilisation(&model, &limits)
                 })
                 .unwrap_or_else(|| evaluator.utilisation(&candidate, &x_wo));
             // Where there is no equilibrium the difference says nothing: a positive entry keeps the step away.

@@ -27,7 +27,7 @@ const NEAR_M: f64 = 0.01;
 const SLACK_M: f64 = 0.02;
 
 /// The person of a plan.
-pub(super) struct Bystander<'a> {
+pub(super) struct PersonMonitor<'a> {
     robot: &'a Robot,
     model: CollisionModel,
     person: StandingPerson,
@@ -41,7 +41,7 @@ pub(super) struct Bystander<'a> {
     pub touch: Option<PersonTouch>,
 }
 
-impl<'a> Bystander<'a> {
+impl<'a> PersonMonitor<'a> {
     /// The person of a plan; none when the plan has none.
     ///
     /// # Errors

@@ -55,7 +55,7 @@ fn created_j(samples: &[Sample]) -> f64 {
 }
 
 /// Why a trace with these checks cannot be believed, if so.
-pub(super) fn distrust(self_checks: &[Check]) -> Option<String> {
+pub(super) fn failed_self_checks(self_checks: &[Check]) -> Option<String> {
     let mut reason = String::new();
     for check in self_checks.iter().filter(|check| !check.passed) {
         let separator = if reason.is_empty() { "the simulation cannot be believed: " } else { ", " };

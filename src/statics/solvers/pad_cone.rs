@@ -1,39 +1,39 @@
-//! The limits of a soft finger as a symmetric cone, and the arithmetic that an interior-point method asks of it.
+//! The limits of a soft finger as a symmetric cone, with the operations that an interior-point method needs.
 //!
-//! In a pad's scaled variables `x = (ft1, ft2, fn, mt1, mt2, mn)`, each moment over the lever at which the pad takes it up,
-//! the limits are `s = K x` in a cone of eight numbers: four that must not be negative, `fn -+ mt1` and `fn -+ mt2` (the
-//! centre of pressure inside the patch), and `(mu fn, ft1, ft2, mn)` in a second-order cone (friction).
+//! In a pad's scaled variables `x = (ft1, ft2, fn, mt1, mt2, mn)`, each moment divided by the lever at which the pad
+//! resists it, the limits are `s = K x` in a cone of dimension 8: four nonnegative components `fn -+ mt1`, `fn -+ mt2`
+//! (centre of pressure inside the patch) and `(mu fn, ft1, ft2, mn)` in a second-order cone (friction).
 //!
-//! The scaling is that of Nesterov and Todd: the symmetric `W` with `W z = W^-1 s = l`, see Vandenberghe, *The CVXOPT linear
+//! The scaling is Nesterov and Todd's: the symmetric `W` with `W z = W^-1 s = l`; see Vandenberghe, *The CVXOPT linear
 //! and quadratic cone program solvers* (2010), section 4.
 
 use nalgebra::{Matrix6, SVector, Vector4, Vector6};
 
-/// A slack or a multiplier of a pad's limits: pressure first, friction last.
-pub(super) type Slack = SVector<f64, 8>;
+/// Slacks or multipliers of a pad's limits: four of the pressure, then four of the friction cone.
+pub type Slack = SVector<f64, 8>;
 
-/// How many products `s_i z_i` the complementarity of a pad has: one a pressure row, one for the friction cone.
-pub(super) const DEGREE: f64 = 5.0;
+/// Degree of a pad's cone: 1 for each pressure row, 1 for the friction cone.
+pub const DEGREE: f64 = 5.0;
 
 /// `K x`.
-pub(super) fn slack(x: &Vector6<f64>, friction: f64) -> Slack {
+pub fn slack(x: &Vector6<f64>, friction: f64) -> Slack {
     let [ft1, ft2, normal, mt1, mt2, mn] = (*x).into();
     Slack::from([normal - mt1, normal + mt1, normal - mt2, normal + mt2, friction * normal, ft1, ft2, mn])
 }
 
 /// `K' z`.
-pub(super) fn gradient(z: &Slack, friction: f64) -> Vector6<f64> {
+pub fn gradient(z: &Slack, friction: f64) -> Vector6<f64> {
     let normal = z[0] + z[1] + z[2] + z[3] + friction * z[4];
     Vector6::new(z[5], z[6], normal, z[1] - z[0], z[3] - z[2], z[7])
 }
 
-/// The unit of the cone's product.
-pub(super) fn unit() -> Slack {
+/// The identity element of the cone's product.
+pub fn unit() -> Slack {
     Slack::from([1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 }
 
 /// The cone's product: componentwise for pressure, `(a'b, a0 b1 + b0 a1)` for friction.
-pub(super) fn product(a: &Slack, b: &Slack) -> Slack {
+pub fn product(a: &Slack, b: &Slack) -> Slack {
     let mut product = a.component_mul(b);
     let (a, b) = (friction_part(a), friction_part(b));
     let vector = b.fixed_rows::<3>(1) * a[0] + a.fixed_rows::<3>(1) * b[0];
@@ -43,7 +43,7 @@ pub(super) fn product(a: &Slack, b: &Slack) -> Slack {
 }
 
 /// The `u` with `l o u = r`.
-pub(super) fn quotient(r: &Slack, l: &Slack) -> Slack {
+pub fn quotient(r: &Slack, l: &Slack) -> Slack {
     let mut quotient = r.component_div(l);
     let (r, l) = (friction_part(r), friction_part(l));
     let (r1, l1) = (r.fixed_rows::<3>(1), l.fixed_rows::<3>(1));
@@ -53,34 +53,34 @@ pub(super) fn quotient(r: &Slack, l: &Slack) -> Slack {
     quotient
 }
 
-/// The largest multiple of a step that stays in the cone from a point inside it; infinite when every one does.
-pub(super) fn longest_step(from: &Slack, step: &Slack) -> f64 {
+/// The largest multiple of a step that stays in the cone from a point inside it; infinite if there is no limit.
+pub fn longest_step(from: &Slack, step: &Slack) -> f64 {
     let pressure =
         (0..4).filter(|&row| step[row] < 0.0).map(|row| -from[row] / step[row]).fold(f64::INFINITY, f64::min);
     let (from, step) = (friction_part(from), friction_part(step));
-    // Where `c + 2 b t + a t^2`, the Minkowski square, first vanishes; c > 0.
+    // The first root of the Minkowski square `c + 2 b t + a t^2`, c > 0.
     let (a, b, c) = (minkowski(&step, &step), minkowski(&from, &step), minkowski(&from, &from));
     let root = (b * b - a * c).sqrt() - b;
-    // Not a number without a root: then the comparison fails as it should.
+    // NaN without a root, and then the comparison is false.
     let friction = if root > 0.0 { c / root } else { f64::INFINITY };
     pressure.min(friction)
 }
 
-/// The scaling of a pad's limits at a slack and a multiplier inside the cone.
+/// The Nesterov-Todd scaling of a pad's limits at a slack and a multiplier inside the cone.
 #[derive(Clone, Debug)]
-pub(super) struct Scaling {
+pub struct Scaling {
     /// `sqrt(s / z)` of the pressure rows.
     pressure: Vector4<f64>,
-    /// `W = beta (2 v v' - J)` of the friction cone is written with `w = (w0, w1)`, `w'J w = 1`:
-    /// `W = beta [w0, w1'; w1, 1 + w1 w1' / (1 + w0)]`.
+    /// `W = beta (2 v v' - J)` of the friction cone is written with `w = (w0, w1)`, `w'J w = 1`: `W = beta [w0, w1';
+    /// w1, 1 + w1 w1' / (1 + w0)]`.
     beta: f64,
     w: Vector4<f64>,
     /// `l = W z = W^-1 s`.
-    pub(super) scaled: Slack,
+    pub scaled: Slack,
 }
 
 impl Scaling {
-    pub(super) fn new(s: &Slack, z: &Slack) -> Self {
+    pub fn new(s: &Slack, z: &Slack) -> Self {
         let mut scaled = s.component_mul(z).map(f64::sqrt);
         let pressure = Vector4::from_fn(|row, _| (s[row] / z[row]).sqrt());
         let (s, z) = (friction_part(s), friction_part(z));
@@ -94,14 +94,14 @@ impl Scaling {
     }
 
     /// `W u`.
-    pub(super) fn apply(&self, u: &Slack) -> Slack {
+    pub fn apply(&self, u: &Slack) -> Slack {
         let friction = self.apply_friction(&friction_part(u));
         let pressure = self.pressure.component_mul(&u.fixed_rows::<4>(0));
         joined(&pressure, &friction)
     }
 
     /// `W^-1 u`: `W^-1 = J W J / beta^2`.
-    pub(super) fn apply_inverse(&self, u: &Slack) -> Slack {
+    pub fn apply_inverse(&self, u: &Slack) -> Slack {
         let back = reflected(&self.apply_friction(&reflected(&friction_part(u))));
         let pressure = u.fixed_rows::<4>(0).component_div(&self.pressure);
         joined(&pressure, &(back / (self.beta * self.beta)))
@@ -115,8 +115,8 @@ impl Scaling {
         Vector4::new(w0 * u0 + along, rest[0], rest[1], rest[2]) * self.beta
     }
 
-    /// `K' W^-2 K`, the curvature that the limits add: `W^-2 = (2 (J w)(J w)' - J) / beta^2` for friction.
-    pub(super) fn curvature(&self, friction: f64) -> Matrix6<f64> {
+    /// `K' W^-2 K`, the curvature that the barrier adds: `W^-2 = (2 (J w)(J w)' - J) / beta^2` for friction.
+    pub fn curvature(&self, friction: f64) -> Matrix6<f64> {
         let [d0, d1, d2, d3] = self.pressure.map(|w| 1.0 / (w * w)).into();
         let mut curvature = Matrix6::zeros();
         curvature[(2, 2)] = d0 + d1 + d2 + d3;
@@ -124,7 +124,7 @@ impl Scaling {
         curvature[(4, 4)] = d2 + d3;
         curvature[(2, 3)] = d1 - d0;
         curvature[(2, 4)] = d3 - d2;
-        // The variables in the order of the cone's components, and what each is multiplied by there.
+        // The variables of the friction cone's components, and their factors.
         let places = [2, 0, 1, 5];
         let factors = Vector4::new(friction, 1.0, 1.0, 1.0);
         let back = reflected(&self.w);
@@ -189,7 +189,7 @@ mod tests {
         fn the_scaling_takes_slack_and_multiplier_to_one_point(s in numbers(8), z in numbers(8), u in numbers(8)) {
             let (s, z, u) = (inside(&s), inside(&z), Slack::from_column_slice(&u));
             let scaling = Scaling::new(&s, &z);
-            // A few roundings of numbers of order one, magnified by the cone's narrowest angle, some 0.1.
+            // A few roundings of numbers of order one, magnified by the narrowest angle of the cone, about 0.1.
             prop_assert!((scaling.apply(&z) - scaling.scaled).amax() < 1e-12);
             prop_assert!((scaling.apply_inverse(&s) - scaling.scaled).amax() < 1e-12);
             prop_assert!((scaling.apply_inverse(&scaling.apply(&u)) - u).amax() < 1e-11);

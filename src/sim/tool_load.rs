@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::{Conditions, SimError, load::LoadProfile};
+use super::{Conditions, SimError, phases::PhaseSchedule};
 use crate::model::{
     frames::Pose,
     load::{BREAKTHROUGH_S, ForceFrame, ForceProfile},
@@ -27,7 +27,7 @@ pub(super) struct ToolState {
 
 /// The tool's wrench over the steps of a simulation.
 pub(super) struct ToolLoad<'a> {
-    phases: LoadProfile,
+    phases: PhaseSchedule,
     profile: &'a ForceProfile,
     operation: &'a Operation,
     scale: f64,
@@ -55,7 +55,7 @@ impl<'a> ToolLoad<'a> {
             _ => 1.0,
         };
         Ok(Self {
-            phases: LoadProfile::new(&conditions.settings)?,
+            phases: PhaseSchedule::new(&conditions.settings)?,
             profile,
             operation: &plan.operation,
             scale: conditions.load_scale,

@@ -6,14 +6,14 @@ use crate::model::{scenario::SimulationSettings, trace::Phase};
 /// The load over the steps of a simulation: none while settling, growing evenly in the ramp, whole in the hold, none
 /// after the release.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LoadProfile {
+pub(super) struct PhaseSchedule {
     settle: usize,
     ramp: usize,
     hold: usize,
     release: usize,
 }
 
-impl LoadProfile {
+impl PhaseSchedule {
     /// The profile of these settings, each phase rounded to whole steps.
     ///
     /// # Errors
@@ -81,8 +81,8 @@ impl LoadProfile {
 mod tests {
     use super::*;
 
-    fn profile(settle_s: f64, ramp_s: f64) -> LoadProfile {
-        LoadProfile::new(&SimulationSettings { settle_s, ramp_s, hold_s: 1.0, release_s: 0.5, timestep_s: 0.002 })
+    fn profile(settle_s: f64, ramp_s: f64) -> PhaseSchedule {
+        PhaseSchedule::new(&SimulationSettings { settle_s, ramp_s, hold_s: 1.0, release_s: 0.5, timestep_s: 0.002 })
             .unwrap()
     }
 
@@ -106,11 +106,11 @@ mod tests {
     fn settings_that_make_no_sense_are_refused() {
         for timestep_s in [0.0, -0.002, 0.005, f64::NAN, f64::INFINITY] {
             let settings = SimulationSettings { timestep_s, ..SimulationSettings::default() };
-            assert!(matches!(LoadProfile::new(&settings), Err(SimError::Settings { key: "timestep_s", .. })));
+            assert!(matches!(PhaseSchedule::new(&settings), Err(SimError::Settings { key: "timestep_s", .. })));
         }
         let settings = SimulationSettings { hold_s: -1.0, ..SimulationSettings::default() };
-        assert!(matches!(LoadProfile::new(&settings), Err(SimError::Settings { key: "hold_s", .. })));
+        assert!(matches!(PhaseSchedule::new(&settings), Err(SimError::Settings { key: "hold_s", .. })));
         let settings = SimulationSettings { hold_s: 1e300, ..SimulationSettings::default() };
-        assert!(matches!(LoadProfile::new(&settings), Err(SimError::Settings { key: "duration in s", .. })));
+        assert!(matches!(PhaseSchedule::new(&settings), Err(SimError::Settings { key: "duration in s", .. })));
     }
 }
