@@ -1,10 +1,12 @@
 //! `benchdog circle`: plans the cut of a whole circle with three strategies and compares them.
 
+use std::path::{Path, PathBuf};
+
 use super::{
     args::CircleArgs,
     curve::circle_radius_m,
     exit::{CliError, Exit},
-    interrupt,
+    inputs, interrupt,
     maps::Maps,
     output,
     plan::{infeasible, load_for_planning, stop_on_interrupt},
@@ -22,6 +24,9 @@ use crate::{
     report,
 };
 
+/// The strategies, in the order of tables.
+const STRATEGIES: [&str; 3] = ["hold", "sequence", "separate"];
+
 /// Plans with the three strategies and writes plans and tables.
 pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     let mut loaded = load_for_planning(&args.scenario)?;
@@ -29,6 +34,10 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     args.search.apply(&mut loaded.scenario.planner);
     // The strategies are compared by the person's best response: the mean response would take minutes per grasp.
     loaded.scenario.comfort.person = ResponseKind::Best;
+    let [circle_csv, motion_csv] = ["circle.csv", "motion.csv"].map(|name| args.out.join(name));
+    let plans =
+        STRATEGIES.iter().flat_map(|strategy| (1..=circle::POINTS).map(|point| plan_path(&args.out, strategy, point)));
+    inputs::protect(&loaded.inputs, plans.chain([circle_csv.clone(), motion_csv.clone()]))?;
     report::file::check_folder(&args.out)?;
     interrupt::listen("what was found is written")?;
     let size_m = loaded.scenario.object.size_m;
@@ -39,7 +48,7 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     };
     for (name, plans) in &strategies {
         for (index, plan) in plans.iter().enumerate() {
-            let path = args.out.join(format!("{name}-{}.json", index + 1));
+            let path = plan_path(&args.out, name, index + 1);
             match plan {
                 Some(plan) => report::file::write_whole(&path, report::json::plan(plan).as_bytes())?,
                 None => report::file::remove(&path)?,
@@ -49,9 +58,9 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     let joints = strategies.iter().flat_map(|(_, plans)| plans).flatten().next().map_or_else(Vec::new, joints);
     let step = |step: &MotionStep| report::circle::Step { x_wo: step.x_wo, q_rad: step.q_rad.concat() };
     let motions: Vec<Vec<_>> = motions.iter().map(|motion| motion.iter().map(step).collect()).collect();
-    report::file::write_whole(&args.out.join("motion.csv"), report::circle::motion_csv(&joints, &motions).as_bytes())?;
+    report::file::write_whole(&motion_csv, report::circle::motion_csv(&joints, &motions).as_bytes())?;
     let strategies: Vec<_> = strategies.iter().map(|(name, plans)| (*name, plans.as_slice())).collect();
-    report::file::write_whole(&args.out.join("circle.csv"), report::circle::csv(&strategies).as_bytes())?;
+    report::file::write_whole(&circle_csv, report::circle::csv(&strategies).as_bytes())?;
     output::print(&report::circle::table(&strategies))?;
     Ok(if interrupt::requested() {
         Exit::Interrupted
@@ -60,6 +69,11 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     } else {
         Exit::Infeasible
     })
+}
+
+/// The file of a strategy's plan for a point, from 1.
+fn plan_path(folder: &Path, strategy: &str, point: usize) -> PathBuf {
+    folder.join(format!("{strategy}-{point}.json"))
 }
 
 /// The names of all joints of a plan's arms, arm after arm.
@@ -78,5 +92,5 @@ fn solve_all(scenario: &Scenario, map: &RobotMap) -> Result<Result<(Strategies, 
     };
     let Continuous { hold, sequence, motions } = circle::continuous(&points, map, &mut stop_on_interrupt)?;
     let separate = circle::separate(&points, map, &mut stop_on_interrupt)?;
-    Ok(Ok((vec![("hold", hold), ("sequence", sequence), ("separate", separate)], motions)))
+    Ok(Ok((STRATEGIES.into_iter().zip([hold, sequence, separate]).collect(), motions)))
 }
