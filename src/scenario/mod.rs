@@ -28,6 +28,7 @@ use crate::{
 
 /// A resolved scenario with its robot and, if the file names one, its plan.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LoadedScenario {
     /// The file that it was read from.
     pub path: PathBuf,
@@ -50,6 +51,7 @@ impl LoadedScenario {
 
 /// A plan with its robot and the scenario to judge it by.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LoadedPlan {
     /// The file that the plan was read from.
     pub path: PathBuf,
@@ -119,6 +121,7 @@ fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
 }
 
 /// The parameters of a robot that results depend on.
+#[must_use]
 pub fn robot_parameters(robot: &Robot) -> RobotParameters {
     let arms = robot
         .arms
@@ -169,6 +172,7 @@ pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, Inp
 }
 
 /// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
+#[must_use]
 pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
     resolve::default_for_plan(plan, robot)
 }
