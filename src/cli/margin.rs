@@ -17,7 +17,7 @@ use crate::{
     },
     planner,
     robot::Robot,
-    scenario,
+    scenario::{self, LoadedPlan},
     sim::{self, Conditions},
     statics::{ContactModel, ContactModelError, StabilityWorkspace},
 };
@@ -63,7 +63,7 @@ struct Predicted {
 
 /// Finds and reports the margin of a plan.
 pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
-    let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
+    let LoadedPlan { plan, robot, scenario, .. } = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
     let margin = margin_of(&plan, &robot, &scenario)?;
     match args.format {
         Format::Human => output::print(&text(&margin))?,
