@@ -9,7 +9,7 @@ use benchdog::{
     collision::{CollisionModel, PersonPart, Scene},
     human::Human,
     model::frames::Pose,
-    planner::{self, PlanOutcome},
+    planner::{Outcome, Planner},
     robot::{
         ArmState, Chain, InverseKinematics, Robot,
         inverse::{Branch, ClosedForm, General},
@@ -198,7 +198,7 @@ fn time_collisions(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/quickstart.toml");
     let loaded = scenario::load(&path).unwrap();
     let (scenario, robot) = (loaded.scenario, loaded.robot);
-    let PlanOutcome::Found(plan) = planner::plan(&scenario, &robot).unwrap() else { panic!("no plan") };
+    let Outcome::Found(plan) = Planner::new(&robot).plan(&scenario).unwrap() else { panic!("no plan") };
     let posture = plan.human.as_ref().unwrap();
     let human = Human::new(&scenario.human, &scenario.tool).unwrap();
     let person = human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from);

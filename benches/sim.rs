@@ -7,7 +7,7 @@ use benchdog::{
     judge::judge,
     model::scenario::{Limits, SimulationSettings},
     scenario::read_plan,
-    sim::{Conditions, Scene, blank_sample, simulate},
+    sim::{Conditions, SimScene, blank_sample, simulate},
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -24,7 +24,7 @@ fn sim(criterion: &mut Criterion) {
     one_arm.arms.truncate(1);
     let conditions = Conditions::new(FRICTION, SimulationSettings::default());
     for (name, plan) in [("two arms", &two_arms), ("one arm", &one_arm)] {
-        let mut scene = Scene::new(&robot, plan, &conditions).expect("the repository's plans are holds");
+        let mut scene = SimScene::new(&robot, plan, &conditions).expect("the repository's plans are holds");
         let mut sample = blank_sample(plan);
         criterion.bench_function(&format!("100 steps/{name}"), |bencher| {
             bencher.iter(|| {

@@ -1,31 +1,59 @@
-//! Benchdog plans how a two-armed robot holds a board that a person drills or cuts, and proves by simulation that the
-//! hold stands.
+//! Benchdog plans and verifies the cooperative manipulation of a board: a robot with one or more arms holds the board while
+//! a person drills or cuts it.
 //!
-//! The way of the data, one direction and no way back:
+//! # Problem
+//!
+//! A forceful operation is a wrench `w` that the person's tool exerts on the board at the tool's pose `X_OT`. Benchdog
+//! searches for the board's pose `X_WO`, a grasp `X_OG` and joint angles `q_r` for each arm, and the person's pose `X_WB` and
+//! arm angles `q_h`, that solve
+//!
+//! ```text
+//! maximise    w_M muscular(q_h) + w_P peripersonal(q_h, X_WB, q_r)
+//! subject to  inverse kinematics and joint limits of the robot and the person
+//!             clearances between robot, board and person
+//!             load factor of the grasp under w >= the required one, with and without compliance of the arms
+//! ```
+//!
+//! where the two comforts are those of Chen, Figueredo and Dogar, *Planning for Muscular and Peripersonal-Space Comfort during
+//! Human-Robot Forceful Collaboration* (Humanoids 2018). It then simulates the plan, or any other plan, as rigid bodies with
+//! contacts, and judges slip, deflection, creep and joint torques against limits. The method is described in
+//! `docs/method.md`.
+//!
+//! # Data flow
 //!
 //! ```text
 //! scenario.toml -> Operation -> planner -> Plan -> simulation -> Trace -> judge -> Verdict -> report, recording
-//!                                  ^ or a plan.json written by anyone
+//!                                  ^ or a plan.json from another planner
 //! ```
 //!
-//! | module | what it does |
+//! | module | contents |
 //! |---|---|
-//! | [`model`] | the vocabulary that all others share |
-//! | [`scenario`] | scenario and plan files: read, checked, completed |
-//! | [`robot`] | a URDF and a description: kinematics, dynamics, inverse kinematics |
-//! | [`human`] | the person: body, arm, strength, both comfort metrics |
-//! | [`statics`] | how much load a hold stands: the stability program and the compliant equilibrium |
-//! | [`collision`] | robot, board, tool and person: who touches whom |
-//! | [`comfort`] | how comfortable a hold is: over all of the person's answers to it |
-//! | [`planner`] | the search for a comfortable and stable hold |
-//! | [`sim`] | the rapier simulation of a hold |
-//! | [`judge`] | a trace against its limits |
-//! | `record` | the rerun recording of a run (feature `recording`) |
-//! | [`report`] | tables, a page with plots, JSON, CSV, JUnit |
-//! | [`cli`] | the commands: they compose all of the above |
+//! | [`model`] | types that the other modules exchange |
+//! | [`scenario`] | scenario and plan files: reading, checks, defaults |
+//! | [`robot`] | the robot from a URDF and a description file: kinematics, dynamics, inverse kinematics |
+//! | [`human`] | the person: body, arm, strength, muscular and peripersonal comfort |
+//! | [`statics`] | load factors of a grasp, with rigid and with compliant arms |
+//! | [`collision`] | distances and overlaps of robot, board, tool and person |
+//! | [`comfort`] | comfort of a grasp over the person's feasible responses |
+//! | [`planner`] | search for comfortable and stable grasps |
+//! | [`sim`] | rigid-body simulation of a plan |
+//! | [`judge`] | verdict on a trace |
+//! | `record` | rerun recordings (feature `recording`) |
+//! | [`report`] | tables, HTML, JSON, CSV, JUnit |
+//! | `cli` | the commands (feature `cli`) |
 //!
-//! # From a program
-//! A plan of another planner, simulated and judged under a scenario's limits:
+//! Linear algebra types are those of [`nalgebra`], which is re-exported.
+//!
+//! # Features
+//!
+//! - `cli` (default): the command line, the binary `benchdog` and JUnit reports.
+//! - `recording` (default): recordings for the rerun viewer. It is most of a cold build.
+//!
+//! `default-features = false` gives the library alone.
+//!
+//! # Examples
+//!
+//! Simulate a plan and judge it by the default limits for its operation:
 //!
 //! ```
 //! use std::path::Path;
@@ -34,7 +62,7 @@
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (plan, robot) = scenario::read_plan(Path::new("scenarios/plans/cut-rim-weak-grip.json"), None)?;
-//! let scenario = scenario::for_plan(&plan, &robot);
+//! let scenario = scenario::default_for_plan(&plan, &robot);
 //! let trace = sim::simulate(&robot, &plan, &sim::Conditions::of(&scenario))?;
 //! let judgement = judge::judge(&trace, &scenario.limits);
 //! assert_eq!(judgement.verdict, VerdictKind::Slips);
@@ -45,24 +73,24 @@
 //! # }
 //! ```
 //!
-//! A scenario, planned here (some seconds):
+//! Plan a scenario, which takes some seconds:
 //!
 //! ```no_run
 //! use std::path::Path;
 //!
-//! use benchdog::{planner, planner::PlanOutcome, report, scenario};
+//! use benchdog::{planner::{Outcome, Planner}, report, scenario};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let loaded = scenario::load(Path::new("scenarios/quickstart.toml"))?;
-//! match planner::plan(&loaded.scenario, &loaded.robot)? {
-//!     PlanOutcome::Found(plan) => report::file::write_whole(Path::new("plan.json"), report::json::plan(&plan).as_bytes())?,
-//!     PlanOutcome::Infeasible(why) => println!("no plan: {why}"),
+//! match Planner::new(&loaded.robot).plan(&loaded.scenario)? {
+//!     Outcome::Found(plan) => report::file::write_whole(Path::new("plan.json"), report::json::plan(&plan).as_bytes())?,
+//!     Outcome::Infeasible(why) => println!("no plan: {why}"),
 //! }
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! Input that cannot be used is an error with the file, the line and the key:
+//! An error of an input file names the file, the line and the key:
 //!
 //! ```
 //! use std::path::Path;
@@ -75,6 +103,7 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod collision;
 pub mod comfort;
@@ -89,3 +118,5 @@ pub mod robot;
 pub mod scenario;
 pub mod sim;
 pub mod statics;
+
+pub use nalgebra;

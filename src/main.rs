@@ -1,4 +1,4 @@
-//! The `benchdog` command: parse, dispatch, exit code.
+//! The program `benchdog`.
 
 use std::process::ExitCode;
 

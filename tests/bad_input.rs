@@ -1,4 +1,5 @@
-//! Bad input: exit code 2, one message with file, line, key, what was found and what was expected, and no file written.
+//! Invalid input: exit code 2, one message with file, line, key, the value found and the value expected, and no file
+//! written.
 
 use std::{
     fs,
@@ -22,7 +23,7 @@ force_n = 30.0
 friction = 0.6
 ";
 
-/// Runs benchdog in a folder that holds one input file.
+/// Runs benchdog in a folder with one input file; returns its output and the names of all files afterwards.
 fn benchdog_on(file: &str, text: &str, arguments: &[&str]) -> (Output, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(file), text).unwrap();
@@ -37,7 +38,7 @@ fn benchdog_in(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_benchdog")).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// A scenario with one replacement is refused with exactly this message.
+/// Asserts that a scenario with one replacement is refused with this message.
 #[track_caller]
 fn assert_scenario_refused(replace: &str, with: &str, message: &str) {
     assert!(SCENARIO.contains(replace));
@@ -55,7 +56,7 @@ fn assert_refused(output: &Output, message: &str) {
 }
 
 #[test]
-fn the_scenario_that_the_cases_spoil_is_good() {
+fn the_scenario_without_a_replacement_is_valid() {
     let (output, _) = benchdog_on("good.toml", SCENARIO, &["run", "good.toml", "--record", "never"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
@@ -104,7 +105,7 @@ fn a_negative_number() {
 }
 
 #[test]
-fn a_number_that_is_none() {
+fn not_a_number() {
     assert_scenario_refused(
         "force_n = 15.0",
         "force_n = nan",
@@ -168,7 +169,7 @@ fn a_format_from_the_future() {
 
 const PLAN: &str = include_str!("../scenarios/plans/cut-rim.json");
 
-/// A plan with one replacement is refused with exactly this message.
+/// Asserts that a plan with one replacement is refused with this message.
 #[track_caller]
 fn assert_plan_refused(replace: &str, with: &str, message: &str) {
     assert!(PLAN.contains(replace), "the plan has no {replace}");
@@ -179,13 +180,13 @@ fn assert_plan_refused(replace: &str, with: &str, message: &str) {
 }
 
 #[test]
-fn the_plan_that_the_cases_spoil_is_good() {
+fn the_plan_without_a_replacement_is_valid() {
     let (output, _) = benchdog_on("good.json", PLAN, &["simulate", "good.json", "--record", "never"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]
-fn a_plan_that_is_no_json() {
+fn a_plan_that_is_not_json() {
     assert_plan_refused("\"arms\": [", "\"arms\": ", "bad.json:51: arms: invalid type: map, expected a sequence");
 }
 
@@ -296,7 +297,7 @@ fn a_plan_whose_name_is_a_path() {
 }
 
 #[test]
-fn a_plan_for_nobody() {
+fn a_plan_for_an_impossible_person() {
     assert_plan_refused(
         "\"height_m\": 1.75",
         "\"height_m\": 0.2",
@@ -305,7 +306,7 @@ fn a_plan_for_nobody() {
 }
 
 #[test]
-fn a_time_step_that_the_simulation_cannot_take() {
+fn a_time_step_that_is_too_long() {
     assert_scenario_refused(
         "[grip]",
         "[simulation]\ntimestep_s = 0.0045\n\n[grip]",
@@ -314,16 +315,16 @@ fn a_time_step_that_the_simulation_cannot_take() {
 }
 
 #[test]
-fn a_hold_too_short_to_see_creep() {
+fn a_hold_too_short_to_measure_creep() {
     assert_scenario_refused(
         "[grip]",
         "[simulation]\nhold_s = 0.01\n\n[grip]",
-        "bad.toml:13: simulation.hold_s: found 0.01, expected at least 10 time steps, for creep to be seen",
+        "bad.toml:13: simulation.hold_s: found 0.01, expected at least 10 time steps, to measure creep",
     );
 }
 
 #[test]
-fn a_tool_that_is_turned_by_no_rotation() {
+fn a_tool_whose_rotation_is_not_a_unit_quaternion() {
     assert_scenario_refused(
         "[grip]",
         "[tool]\nmass_kg = 1.0\ntip_h_m = [0.0, 0.0, -0.2]\nrotation_xyzw = [1.0, 1.0, 0.0, 0.0]\n\n[grip]",
@@ -332,7 +333,7 @@ fn a_tool_that_is_turned_by_no_rotation() {
 }
 
 #[test]
-fn a_scenario_inside_a_plan_that_makes_no_sense() {
+fn an_invalid_scenario_inside_a_plan() {
     let out = tempfile::tempdir().unwrap();
     let planned = benchdog_in(
         Path::new(env!("CARGO_MANIFEST_DIR")),
@@ -368,7 +369,7 @@ fn a_saturation_at_no_distance() {
 }
 
 #[test]
-fn a_normalised_objective_that_is_none() {
+fn an_invalid_normalised_objective() {
     for (keys, message) in [
         (
             "peripersonal_share = 1.5",
@@ -391,7 +392,7 @@ fn a_normalised_objective_that_is_none() {
     }
 }
 
-/// A scenario with this `[load]` or `[uncertainty]` is refused with exactly this message; line 16 is the section's.
+/// Asserts that a scenario with this `[load]` or `[uncertainty]` is refused with this message; the section is at line 16.
 #[track_caller]
 fn assert_section_refused(section: &str, message: &str) {
     let (output, _) = benchdog_on("bad.toml", &format!("{SCENARIO}\n{section}"), &["run", "bad.toml"]);

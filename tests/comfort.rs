@@ -4,10 +4,10 @@ use std::path::Path;
 
 use benchdog::{
     model::{
-        plan::{AverageComfort, Plan},
-        scenario::PersonAnswer,
+        plan::{MeanComfort, Plan},
+        scenario::ResponseKind,
     },
-    planner::{self, PlanOutcome},
+    planner::{self, Outcome, Planner},
     robot::Robot,
     scenario::{self, LoadedScenario},
 };
@@ -17,9 +17,9 @@ fn cut() -> LoadedScenario {
 }
 
 fn plan(loaded: &LoadedScenario) -> Plan {
-    match planner::plan(&loaded.scenario, &loaded.robot).unwrap() {
-        PlanOutcome::Found(plan) => *plan,
-        PlanOutcome::Infeasible(why) => panic!("{why}"),
+    match Planner::new(&loaded.robot).plan(&loaded.scenario).unwrap() {
+        Outcome::Found(plan) => plan,
+        Outcome::Infeasible(why) => panic!("{why}"),
     }
 }
 
@@ -31,12 +31,12 @@ fn flaws(plan: &Plan, loaded: &LoadedScenario) -> Vec<String> {
 #[test]
 fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
     let mut loaded = cut();
-    loaded.scenario.comfort.person = PersonAnswer::Average;
+    loaded.scenario.comfort.person = ResponseKind::Mean;
     let plan = plan(&loaded);
     assert_eq!(flaws(&plan, &loaded), [""; 0]);
     let comfort = plan.comfort.unwrap();
-    let AverageComfort { answers, muscular_regularised, peripersonal_m } = comfort.average.unwrap();
-    assert!(answers > 100);
+    let MeanComfort { responses, muscular_regularised, peripersonal_m } = comfort.average.unwrap();
+    assert!(responses > 100);
     // The default weights; rounding of one sum.
     assert!((comfort.objective - (muscular_regularised + 64.0 * peripersonal_m)).abs() < 1e-12);
     // The posture in the plan is the best answer that the search found, not a middling one.
@@ -44,7 +44,7 @@ fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
     assert!(of_posture > comfort.objective);
 
     let mut spoiled = plan;
-    let average = AverageComfort { answers, muscular_regularised: 1.01 * muscular_regularised, peripersonal_m };
+    let average = MeanComfort { responses, muscular_regularised: 1.01 * muscular_regularised, peripersonal_m };
     spoiled.comfort.as_mut().unwrap().average = Some(average);
     assert!(flaws(&spoiled, &loaded)[0].starts_with("comfort.average.muscular_regularised is"));
 }

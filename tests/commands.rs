@@ -1,4 +1,4 @@
-//! The commands as a CI job meets them: exit codes, files, JUnit.
+//! Exit codes, files and JUnit reports of the commands.
 
 use std::{
     fs,
@@ -18,7 +18,7 @@ fn benchdog(arguments: &[&str], out: &Path) -> Output {
         .unwrap()
 }
 
-/// The weak-grip scenario with another name and expectation, beside the plan that it names.
+/// Writes the weak-grip scenario with another name and expectation, and its plan; returns the scenario's path.
 fn slipping_scenario(folder: &Path, name: &str, expected: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let plans = folder.join("plans");
@@ -61,7 +61,7 @@ fn no_plan_where_one_was_expected_is_exit_code_3_and_outweighs_1() {
     let output = benchdog(&["run", infeasible.to_str().unwrap(), &not_met, "--record", "never"], &out);
     assert_eq!(output.status.code(), Some(3));
     let table = String::from_utf8(output.stdout).unwrap();
-    assert!(table.contains("robot reach"), "the reason names what stood in the way: {table}");
+    assert!(table.contains("robot reach"), "the reason names the constraint: {table}");
     assert!(!out.join("fails-out-of-reach/plan.json").exists());
 }
 
@@ -72,7 +72,7 @@ fn two_scenarios_of_one_name_are_refused_before_anything_runs() {
     let out = folder.path().join("out");
     let output = benchdog(&["run", &one, &one], &out);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("found \"same\", which is the name of"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("found \"same\", which is also the name of"));
     assert!(!out.exists());
 }
 
@@ -89,14 +89,14 @@ fn a_folder_that_cannot_be_written_is_one_clear_error() {
 }
 
 #[test]
-fn a_closed_reader_is_no_error() {
+fn a_closed_pipe_is_not_an_error() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_benchdog"))
         .args(["schema", "plan"])
         .stdout(std::process::Stdio::piped())
         .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
-    // Closed long before the process has started up and made its schema.
+    // Closed long before the process prints.
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0));
@@ -106,7 +106,7 @@ fn a_closed_reader_is_no_error() {
 const CUT: &str = include_str!("../scenarios/plans/cut-rim.json");
 const LEVER: &str = include_str!("../scenarios/plans/long-lever.json");
 
-/// A plan that the scenarios use, changed; its verdict in a simulation of its own.
+/// The verdict on a changed plan, and the exit code of `simulate`.
 fn verdict_on_changed_plan(plan: &str, change: impl FnOnce(&mut Value)) -> (Value, Option<i32>) {
     let folder = tempfile::tempdir().unwrap();
     let mut plan: Value = serde_json::from_str(plan).unwrap();
@@ -141,7 +141,7 @@ fn a_board_too_heavy_for_its_grip_drops_before_the_load() {
 }
 
 #[test]
-fn files_of_an_earlier_run_do_not_stay() {
+fn files_of_an_earlier_run_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = slipping_scenario(folder.path(), "again", "slips");
     let recording = folder.path().join("again/recording.rrd");
@@ -153,7 +153,7 @@ fn files_of_an_earlier_run_do_not_stay() {
 
 #[cfg(feature = "recording")]
 #[test]
-fn a_recording_says_what_the_verdict_file_says() {
+fn a_recording_contains_the_verdict() {
     use benchdog::model::verdict::{CheckKind, Verdict};
 
     let folder = tempfile::tempdir().unwrap();
@@ -166,7 +166,7 @@ fn a_recording_says_what_the_verdict_file_says() {
     assert_eq!(recorded.verdict, written);
     let judged = |kind| written.check(kind).unwrap().value;
     let worst = |peaks: &std::collections::BTreeMap<String, f64>| peaks.values().copied().fold(0.0, f64::max);
-    // The plots are stored as 64-bit numbers; their peaks are the values that were judged.
+    // Plots are stored as 64-bit numbers; their peaks are the judged values.
     assert_eq!(worst(&recorded.peaks.slip_mm), judged(CheckKind::Slip));
     assert_eq!(worst(&recorded.peaks.rotation_deg), judged(CheckKind::SlipRotation));
     assert_eq!(recorded.peaks.deflection_mm, judged(CheckKind::Deflection));
@@ -180,4 +180,46 @@ fn only_failed_runs_are_recorded_on_request() {
     let verdicts: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(verdicts[0]["verdict"], "slips");
     assert!(!folder.path().join("as-expected/recording.rrd").exists());
+}
+
+/// Runs benchdog and returns its exit code and the largest number of threads that it had.
+#[cfg(target_os = "linux")]
+fn most_threads(arguments: &[&str], folder: &Path) -> (Option<i32>, usize) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_benchdog"))
+        .current_dir(folder)
+        .args(arguments)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let tasks = format!("/proc/{}/task", child.id());
+    let mut most = 0;
+    loop {
+        most = most.max(fs::read_dir(&tasks).map_or(0, Iterator::count));
+        if let Some(status) = child.try_wait().unwrap() {
+            return (status.code(), most);
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn jobs_bounds_the_threads_of_maps_plans_and_simulations() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let text = fs::read_to_string(root.join("quickstart.toml")).unwrap();
+    // Four scenarios that share their maps: with more threads than one, several ask for the same map.
+    for place in 1..=4 {
+        let text = text.replace("quickstart", &format!("hole-{place}"));
+        let text = text.replace("[0.0, 0.0]", &format!("[0.0, 0.0{place}]"));
+        fs::write(folder.path().join(format!("hole-{place}.toml")), text).unwrap();
+    }
+    for jobs in [1, 3] {
+        let (code, threads) =
+            most_threads(&["run", ".", "--record", "never", "--jobs", &jobs.to_string()], folder.path());
+        assert_eq!(code, Some(0));
+        // The main thread and that of the signal handler do no work of their own.
+        assert_eq!(threads, jobs + 2, "--jobs {jobs}");
+    }
 }

@@ -1,4 +1,4 @@
-//! Same inputs and seed, same bytes: between two runs, for one thread or two, and in every build.
+//! Equal inputs and seeds give equal bytes: in two runs, with one and two threads, and in every build.
 
 use std::{fs, path::Path, process::Command};
 
@@ -10,14 +10,14 @@ use benchdog::{
 };
 use serde_json::Value;
 
-/// Fingerprint of the first tenth of a second of a hold, from one build of one machine and meant for all. The tests run in
-/// release; this is how a build without optimisation is held to the same bits:
+/// Fingerprint of a simulation of a tenth of a second, which must be the same in all builds and on all machines. The tests
+/// run in release; this checks a build without optimisation:
 ///
 /// ```sh
-/// cargo test --no-default-features --test determinism a_short_hold
+/// cargo test --no-default-features --features cli --test determinism a_short_hold
 /// ```
 ///
-/// A change that is meant to change the simulation renews it: the failing test tells the new one.
+/// After an intended change of the simulation, copy the new value from the failing test.
 const SHORT_HOLD: &str = "d41bbe0c888ac6747dd2f6ffa7f3b64c0ec6044c8697c663aa41db015fa0a7c4";
 
 const SCENARIOS: [&str; 2] = ["scenarios/quickstart.toml", "scenarios/cut-rim.toml"];
@@ -34,12 +34,12 @@ fn run(out: &Path, jobs: &str) {
     assert!(status.success());
 }
 
-/// A plan without the one figure that two runs do not share.
+/// A plan without the durations, which differ between runs.
 fn plan_without_clock(path: &Path) -> Value {
     let mut plan: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
     plan["planner"].as_object_mut().unwrap().remove("map_ms");
     let clock = plan["planner"].as_object_mut().unwrap().remove("wall_ms");
-    assert!(clock.is_some(), "the plan says how long it took");
+    assert!(clock.is_some(), "no wall_ms");
     plan
 }
 
@@ -83,7 +83,7 @@ fn a_plan_that_went_through_a_file_gives_the_same_simulation() {
 fn a_short_hold_is_the_same_bit_by_bit_in_every_build() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
     let (plan, robot) = read_plan(&path, None).unwrap();
-    // Every phase, and the person.
+    // All phases, and a person.
     let settings =
         SimulationSettings { settle_s: 0.03, ramp_s: 0.04, hold_s: 0.02, release_s: 0.01, timestep_s: 0.002 };
     let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();

@@ -1,4 +1,4 @@
-//! `benchdog margin` and `benchdog export`, from the command line.
+//! The commands `margin` and `export`.
 
 use std::{fs, path::Path, process::Command};
 
@@ -16,7 +16,7 @@ fn benchdog(arguments: &[&str]) -> (String, Option<i32>) {
 }
 
 #[test]
-fn a_margin_stands_beside_both_predictions() {
+fn a_margin_agrees_with_the_predictions() {
     let (text, code) = benchdog(&["margin", "tests/data/holds/cut-04.json", "--format", "json"]);
     assert_eq!(code, Some(0), "{text}");
     let margin: Value = serde_json::from_str(&text).unwrap();
@@ -24,11 +24,11 @@ fn a_margin_stands_beside_both_predictions() {
     let (holds, fails) = (number(&margin["load_factor"]), number(&margin["fails_at"]));
     assert!(fails > holds && fails - holds <= 1e-3 * fails);
     assert_eq!(margin["ended_by"], "pivots");
-    // What fails is beyond its limit at the load that fails.
+    // The failed check exceeds its limit at the failing load.
     assert_eq!(margin["check"]["name"], "slip_rotation");
     assert!(number(&margin["check"]["value"]) > number(&margin["check"]["limit"]));
     let predicted = &margin["predicted"];
-    // No distribution of forces holds more than the best case does; the compliant one is good to a tenth.
+    // The load factor is an upper bound; the compliant one is accurate to 10 %.
     assert!(holds < number(&predicted["best_case"]));
     assert!((number(&predicted["compliant"]) / holds - 1.0).abs() < 0.1);
 }
@@ -40,7 +40,7 @@ fn a_margin_below_one_is_exit_code_1() {
     assert!(text.contains("FAIL") && text.contains("then deflects (deflection "), "{text}");
 }
 
-/// Every start tag of a document with its attributes; panics where it is not well formed.
+/// All start tags of a document with their attributes; panics if it is not well formed.
 fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {
     let mut reader = Reader::from_str(text);
     let mut found = Vec::new();
@@ -90,19 +90,19 @@ fn an_exported_scene_has_the_masses_joints_gains_and_load_of_the_plan() {
     assert_eq!(left, arm.stiffness_nm_rad);
     assert_eq!(of("motor").len(), 4);
 
-    // The whole load, in the middle of the hold: 0.5 s of settling, 1 s of ramp, 0.5 s of hold at 2 ms.
+    // The full load in the middle of the hold: 0.5 s settle, 1 s ramp, 0.5 s hold at 2 ms.
     let load = of("numeric").into_iter().find(|numeric| get(numeric, "name") == "tool_wrench_o").unwrap();
     let rows = numbers(&get(load, "data"));
     let wrench: [f64; 6] = plan.operation.wrench_o.into();
     assert_eq!(rows[6 * 1000..6 * 1001], wrench);
     assert_eq!(rows[6 * 250..6 * 251], [0.0; 6]);
-    // Nine joints an arm and the board's seven numbers; the plan's angles stand first.
+    // Nine joints per arm and the board's seven numbers; the plan's angles come first.
     let positions = numbers(&get(of("key")[0], "qpos"));
     assert_eq!(positions.len(), 25);
     assert_eq!(positions[..7], plan.arms[0].q_rad[..]);
 }
 
-/// Mass of everything that arm and finger joints move, kg: links whose way to the root leads over one of them.
+/// Mass of all links that arm and finger joints move, kg.
 fn moving_mass_kg(robot: &Robot) -> f64 {
     let moves = |joint: usize| {
         robot

@@ -1,5 +1,5 @@
-//! Every message that a user meets, to the letter. The expected texts are under `tests/snapshots`; after a change that is
-//! meant, `INSTA_UPDATE=always cargo test --release --test messages` writes them again, and `git diff` shows what changed.
+//! The text of every message. The expected texts are in `tests/snapshots`; after an intended change,
+//! `INSTA_UPDATE=always cargo test --release --test messages` updates them.
 
 #![cfg(feature = "recording")]
 
@@ -9,11 +9,11 @@ use std::{
     process::{Command, Output},
 };
 
-/// A scenario whose plan is given, so that it runs within a second.
+/// A scenario that names a plan, so that it runs within a second.
 const SCENARIO: &str = include_str!("../scenarios/fails-weak-grip.toml");
 const PLAN: &str = include_str!("../scenarios/plans/cut-rim-weak-grip.json");
 
-/// A folder with scenarios that run fast.
+/// A folder with scenarios of these names and expectations.
 fn folder(names: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir_all(folder.path().join("plans")).unwrap();
@@ -28,11 +28,11 @@ fn folder(names: &[(&str, &str)]) -> tempfile::TempDir {
 fn benchdog(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_benchdog"));
     command.args(arguments).current_dir(folder);
-    // No viewer is to be found, whatever this machine has.
+    // So that a viewer installed on this machine is not found.
     command.env("PATH", folder.join("bin")).output().unwrap()
 }
 
-/// All that the user sees, without what differs between machines and runs.
+/// Output and exit code, without paths and times.
 fn seen(folder: &Path, arguments: &[&str]) -> String {
     let output = benchdog(folder, arguments);
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap().replace(folder.to_str().unwrap(), "FOLDER");
@@ -47,7 +47,7 @@ fn seen(folder: &Path, arguments: &[&str]) -> String {
     )
 }
 
-/// How long something took is replaced by `T`: in the last column of the table, and at the end of a progress line.
+/// Replaces durations by `T`: in the last column of the table, and at the end of progress lines.
 fn without_times(text: &str) -> String {
     let mut in_table = false;
     let line = |line: &str| {
@@ -142,7 +142,7 @@ fn usage_errors() {
 }
 
 #[test]
-fn what_a_run_says() {
+fn messages_of_a_run() {
     let folder = folder(&[("a", "slips"), ("b", "holds"), ("c", "slips")]);
     let run = |name, more: &[&str]| {
         let arguments = [&["run", ".", "--jobs", "1", "--record", "never"], more].concat();
@@ -156,7 +156,7 @@ fn what_a_run_says() {
 }
 
 #[test]
-fn what_is_said_of_a_recording() {
+fn messages_about_a_recording() {
     let folder = folder(&[("a", "slips")]);
     assert_eq!(benchdog(folder.path(), &["run", "a.toml"]).status.code(), Some(0));
     let recording = "out/a/recording.rrd";

@@ -1,4 +1,4 @@
-//! More than one plan: a search that is stopped or limited, the best few, the front of both comforts, a whole circle.
+//! Searches that are stopped or limited, and searches for several plans: the best few, the Pareto front, a whole circle.
 
 use std::{cell::Cell, ops::ControlFlow, path::Path, sync::LazyLock};
 
@@ -9,14 +9,14 @@ use benchdog::{
         plan::Plan,
         scenario::{Budget, PlannerKind, Scenario},
     },
-    planner::{self, FrontOutcome, PlanOutcome, RobotMap, TopOutcome, circle},
+    planner::{self, Outcome, Planner, Progress, path},
     robot::{ArmState, Chain, Robot},
     scenario,
 };
 
 static ROBOT: LazyLock<Robot> = LazyLock::new(|| load("quickstart").1);
-/// Both scenarios have the same board.
-static MAP: LazyLock<RobotMap> = LazyLock::new(|| RobotMap::new(&ROBOT, load("quickstart").0.object.size_m));
+/// The tests share its maps.
+static PLANNER: LazyLock<Planner> = LazyLock::new(|| Planner::new(&ROBOT));
 
 fn load(name: &str) -> (Scenario, Robot) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/{name}.toml"));
@@ -30,11 +30,15 @@ fn fast(name: &str) -> Scenario {
     scenario
 }
 
-fn found(outcome: PlanOutcome) -> Plan {
+fn found<T>(outcome: Outcome<T>) -> T {
     match outcome {
-        PlanOutcome::Found(plan) => *plan,
-        PlanOutcome::Infeasible(why) => panic!("{why}"),
+        Outcome::Found(found) => found,
+        Outcome::Infeasible(why) => panic!("{why}"),
     }
+}
+
+fn plan(scenario: &Scenario) -> Plan {
+    found(PLANNER.plan(scenario).unwrap())
 }
 
 fn objective(plan: &Plan) -> f64 {
@@ -51,76 +55,76 @@ fn verified(plan: &Plan, scenario: &Scenario) {
 }
 
 #[test]
-fn who_looks_on_sees_every_better_hold_and_changes_nothing() {
+fn the_observer_sees_every_improvement_and_changes_nothing() {
     let scenario = fast("quickstart");
-    let alone = found(planner::plan_on(&scenario, &MAP).unwrap());
+    let alone = plan(&scenario);
     let mut seen = Vec::new();
-    let watched = planner::plan_until(&scenario, &MAP, &mut |progress| {
+    let mut observer = |progress: &Progress<'_>| {
         seen.extend(progress.better.map(|comfort| comfort.objective));
         ControlFlow::Continue(())
-    });
-    assert_eq!(serde_json::to_string(&found(watched.unwrap())).unwrap(), serde_json::to_string(&alone).unwrap());
+    };
+    let observed = PLANNER.search(&scenario).observer(&mut observer).plan();
+    assert_eq!(serde_json::to_string(&found(observed.unwrap())).unwrap(), serde_json::to_string(&alone).unwrap());
     assert!(seen.len() > 2 && seen.windows(2).all(|pair| pair[0] < pair[1]), "{seen:?}");
-    // The last that was told is the plan: rounding of one evaluation only.
+    // The last improvement is the plan, but for rounding of one evaluation.
     assert!((seen[seen.len() - 1] - objective(&alone)).abs() < 1e-9);
 }
 
 #[test]
 fn a_stopped_search_has_the_best_plan_so_far() {
     let scenario = fast("quickstart");
-    let full = found(planner::plan_on(&scenario, &MAP).unwrap());
-    let (told, after) = (Cell::new(0), Cell::new(0));
+    let full = plan(&scenario);
+    let (improvements, after) = (Cell::new(0), Cell::new(0));
     let best = Cell::new(f64::NAN);
-    let stopped = planner::plan_until(&scenario, &MAP, &mut |progress| {
-        if told.get() == 3 {
+    let mut observer = |progress: &Progress<'_>| {
+        if improvements.get() == 3 {
             after.set(after.get() + 1);
         }
         if let Some(comfort) = progress.better {
-            told.set(told.get() + 1);
+            improvements.set(improvements.get() + 1);
             best.set(comfort.objective);
         }
-        if told.get() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    let stopped = found(stopped.unwrap());
+        if improvements.get() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let stopped = found(PLANNER.search(&scenario).observer(&mut observer).plan().unwrap());
     verified(&stopped, &scenario);
     assert!((objective(&stopped) - best.get()).abs() < 1e-9);
     assert!(objective(&stopped) < objective(&full));
-    assert_eq!(after.get(), 0, "nothing is tested once the search is stopped");
+    assert_eq!(after.get(), 0, "nothing is evaluated once the search is stopped");
 }
 
 #[test]
-fn a_search_that_is_stopped_at_once_has_nothing() {
+fn a_search_that_is_stopped_at_once_finds_nothing() {
     let scenario = fast("quickstart");
-    let outcome = planner::plan_until(&scenario, &MAP, &mut |_| ControlFlow::Break(())).unwrap();
-    assert!(matches!(outcome, PlanOutcome::Infeasible(_)));
+    let mut observer = |_: &Progress<'_>| ControlFlow::Break(());
+    let outcome = PLANNER.search(&scenario).observer(&mut observer).plan().unwrap();
+    assert!(matches!(outcome, Outcome::Infeasible(_)));
 }
 
 #[test]
-fn no_more_candidates_are_looked_at_than_allowed() {
+fn no_more_candidates_are_evaluated_than_allowed() {
     let mut scenario = fast("quickstart");
-    let free = found(planner::plan_on(&scenario, &MAP).unwrap());
+    let free = plan(&scenario);
     let needed = free.planner.unwrap().evaluations;
     for fewer in [1, 5, 10] {
         scenario.planner.evaluations = Some(needed - fewer);
-        let limited = found(planner::plan_on(&scenario, &MAP).unwrap());
+        let limited = plan(&scenario);
         assert!(limited.planner.unwrap().evaluations <= needed - fewer);
         verified(&limited, &scenario);
     }
     scenario.planner.evaluations = Some(needed);
-    assert_eq!(comforts(&found(planner::plan_on(&scenario, &MAP).unwrap())), comforts(&free));
+    assert_eq!(comforts(&plan(&scenario)), comforts(&free));
     scenario.planner.evaluations = Some(3);
-    match planner::plan_on(&scenario, &MAP).unwrap() {
-        PlanOutcome::Found(plan) => assert!(plan.planner.unwrap().evaluations <= 3),
-        PlanOutcome::Infeasible(why) => assert!(why.candidates <= 3, "{why}"),
+    match PLANNER.plan(&scenario).unwrap() {
+        Outcome::Found(plan) => assert!(plan.planner.unwrap().evaluations <= 3),
+        Outcome::Infeasible(why) => assert!(why.candidates <= 3, "{why}"),
     }
 }
 
 #[test]
-fn the_best_few_differ_and_are_sorted_and_keep_every_constraint() {
+fn the_best_few_differ_are_sorted_and_satisfy_every_constraint() {
     let scenario = fast("quickstart");
-    let TopOutcome::Found(plans) = planner::top(&scenario, &MAP, 3, &mut planner::nobody).unwrap() else {
-        panic!("the quickstart has plans")
-    };
+    let plans = found(PLANNER.search(&scenario).top(3).unwrap());
     assert_eq!(plans.len(), 3);
     assert!(plans.windows(2).all(|pair| objective(&pair[0]) >= objective(&pair[1])));
     for (index, plan) in plans.iter().enumerate() {
@@ -145,12 +149,10 @@ fn the_best_few_differ_and_are_sorted_and_keep_every_constraint() {
 #[test]
 fn the_front_is_non_dominated_and_ends_at_the_single_optima() {
     let scenario = fast("quickstart");
-    let FrontOutcome::Found(front) = planner::front(&scenario, &MAP, &mut planner::nobody).unwrap() else {
-        panic!("the quickstart has plans")
-    };
+    let front = found(PLANNER.search(&scenario).front().unwrap());
     for pair in front.points.windows(2) {
         let ([m0, p0], [m1, p1]) = (comforts(&pair[0].plan), comforts(&pair[1].plan));
-        assert!(m0 > m1 && p0 < p1, "one beats the other: {m0} {p0}, {m1} {p1}");
+        assert!(m0 > m1 && p0 < p1, "one dominates the other: {m0} {p0}, {m1} {p1}");
     }
     let ends = [&front.points[0], &front.points[front.points.len() - 1]];
     for (index, (end, kind)) in ends.into_iter().zip([PlannerKind::Muscular, PlannerKind::Peripersonal]).enumerate() {
@@ -159,29 +161,25 @@ fn the_front_is_non_dominated_and_ends_at_the_single_optima() {
         assert!((best - front.optima[index]).abs() <= 1e-9 * best);
         let mut alone = scenario.clone();
         alone.planner.kind = kind;
-        let alone = found(planner::plan_on(&alone, &MAP).unwrap());
+        let alone = plan(&alone);
         assert!(best >= comforts(&alone)[index] * (1.0 - 1e-9), "{kind} alone finds more");
     }
-    let own = found(planner::plan_on(&scenario, &MAP).unwrap());
+    let own = plan(&scenario);
     assert!(objective(&front.own.plan) >= objective(&own) * (1.0 - 1e-9), "the comfort planner alone finds more");
     for point in front.points.iter().chain([&front.own]) {
         verified(&point.plan, point.plan.scenario.as_ref().unwrap());
     }
 }
 
-/// Practice serves the front and the best few as it serves a plan: neither loses what the planner itself finds.
+/// Warm starts serve the front and the best few as they serve a plan: neither loses what the planner itself finds.
 #[test]
-fn the_front_and_the_best_few_begin_from_practice_too() {
+fn the_front_and_the_best_few_use_warm_starts_too() {
     let mut scenario = fast("quickstart");
     scenario.planner.budget = Budget::Default;
-    let alone = objective(&found(planner::plan_on(&scenario, &MAP).unwrap()));
-    let TopOutcome::Found(plans) = planner::top(&scenario, &MAP, 2, &mut planner::nobody).unwrap() else {
-        panic!("the quickstart has plans")
-    };
-    let FrontOutcome::Found(front) = planner::front(&scenario, &MAP, &mut planner::nobody).unwrap() else {
-        panic!("the quickstart has plans")
-    };
-    // The same starts in other heats: their climbs may end a few tenths of a percent apart.
+    let alone = objective(&plan(&scenario));
+    let plans = found(PLANNER.search(&scenario).top(2).unwrap());
+    let front = found(PLANNER.search(&scenario).front().unwrap());
+    // The same starts in other rounds: their refinements may end a few tenths of a percent apart.
     for of in [objective(&plans[0]), objective(&front.own.plan)] {
         assert!(of >= 0.995 * alone, "{of}, the planner alone finds {alone}");
     }
@@ -194,10 +192,8 @@ fn a_front_marks_the_share_that_a_normalised_objective_asks_for() {
     // The front is of both comforts, whatever planner the scenario names.
     for kind in [PlannerKind::Comfort, PlannerKind::Muscular] {
         scenario.planner.kind = kind;
-        let FrontOutcome::Found(front) = planner::front(&scenario, &MAP, &mut planner::nobody).unwrap() else {
-            panic!("the quickstart has plans")
-        };
-        // The sweep's own optima may be some hundredths better than those that the share was over.
+        let front = found(PLANNER.search(&scenario).front().unwrap());
+        // The sweep's own optima may be some hundredths better than those of the objective.
         assert!((front.own.share - 0.3).abs() < 0.02, "{kind}: {}", front.own.share);
     }
 }
@@ -214,11 +210,12 @@ fn link_poses(q_rad: &[Vec<f64>], thickness_m: f64) -> Vec<Pose> {
 }
 
 #[test]
-fn a_circle_is_held_by_one_hold_and_by_a_sequence_with_one_grasp() {
-    let points = circle::points(&fast("cut-rim")).unwrap();
-    let found = circle::continuous(&points, &MAP, &mut planner::nobody).unwrap();
-    let served = |plans: &circle::PlansByPoint| plans.iter().flatten().count();
-    assert!(served(&found.hold) > 0 && served(&found.sequence) >= served(&found.hold));
+fn a_circle_is_covered_by_one_grasp_and_by_a_sequence_with_one_grasp() {
+    let scenario = fast("cut-rim");
+    let points = path::points(&scenario).unwrap();
+    let found = found(PLANNER.search(&scenario).circle().unwrap()).continuous;
+    let covered = |plans: &path::PlansByPoint| plans.iter().flatten().count();
+    assert!(covered(&found.hold) > 0 && covered(&found.sequence) >= covered(&found.hold));
     for plans in [&found.hold, &found.sequence] {
         let first = plans.iter().flatten().next().unwrap();
         for (plan, scenario) in plans.iter().zip(&points) {
@@ -230,17 +227,17 @@ fn a_circle_is_held_by_one_hold_and_by_a_sequence_with_one_grasp() {
     }
     let first = found.hold.iter().flatten().next().unwrap();
     for plan in found.hold.iter().flatten() {
-        assert_eq!((&plan.arms, plan.object.x_wo), (&first.arms, first.object.x_wo), "one hold is one hold");
+        assert_eq!((&plan.arms, plan.object.x_wo), (&first.arms, first.object.x_wo), "one grasp for all points");
     }
     motions_are_clear(&found, first.object.size_m);
 }
 
 /// Every step of every motion within joint limits, on the grasps, free of collisions, short, and from plan to plan.
-fn motions_are_clear(found: &circle::Continuous, size_m: [f64; 3]) {
+fn motions_are_clear(found: &path::Continuous, size_m: [f64; 3]) {
     let collision = CollisionModel::new(&ROBOT);
     let grasp = &found.sequence.iter().flatten().next().unwrap().arms;
     let chains: Vec<_> = (0..2).map(|arm| Chain::new(&ROBOT, arm, 0.0)).collect();
-    assert_eq!(found.motions.len(), circle::POINTS - 1);
+    assert_eq!(found.motions.len(), path::POINTS - 1);
     for (index, motion) in found.motions.iter().enumerate() {
         for (plan, step) in
             [(&found.sequence[index], &motion[0]), (&found.sequence[index + 1], &motion[motion.len() - 1])]
@@ -253,7 +250,7 @@ fn motions_are_clear(found: &circle::Continuous, size_m: [f64; 3]) {
             for ((chain, hold), q_rad) in chains.iter().zip(grasp).zip(&step.q_rad) {
                 assert!(chain.within_limits(q_rad, 0.0));
                 let (is, meant) = (chain.gripper_pose(q_rad), step.x_wo * hold.x_og);
-                // METHOD section 3 asks for 1e-6 of a plan's inverse kinematics.
+                // The tolerance of docs/method.md#34-constraints.
                 assert!((is.translation.vector - meant.translation.vector).norm() < 1e-6);
                 assert!(is.rotation.angle_to(&meant.rotation) < 1e-6);
             }
@@ -265,7 +262,7 @@ fn motions_are_clear(found: &circle::Continuous, size_m: [f64; 3]) {
         for pair in motion.windows(2) {
             let joints = pair[0].q_rad.iter().flatten().zip(pair[1].q_rad.iter().flatten());
             let most_rad = joints.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(most_rad <= 3.0 * circle::STEP_RAD, "a step of {most_rad} rad");
+            assert!(most_rad <= 3.0 * path::STEP_RAD, "a step of {most_rad} rad");
         }
     }
 }

@@ -14,7 +14,7 @@ use benchdog::{
     robot::Robot,
     scenario::read_plan,
     sim::{Conditions, simulate},
-    statics::{CompliantResponse, Crossing, Hold, ResponseOutcome, StabilityWorkspace},
+    statics::{CompliantResponse, ContactModel, LimitCrossing, ResponseOutcome, StabilityWorkspace},
 };
 
 /// METHOD section 7.
@@ -29,7 +29,7 @@ const SETTINGS: SimulationSettings =
 
 struct Case {
     plan: Plan,
-    hold: Hold,
+    hold: ContactModel,
     limits: Limits,
 }
 
@@ -42,7 +42,7 @@ fn cases() -> (Robot, Vec<Case>) {
     let (_, robot) = read_plan(&paths[0], None).unwrap();
     let cases = paths.iter().map(|path| {
         let (plan, _) = read_plan(path, Some(&robot)).unwrap();
-        let hold = Hold::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap();
+        let hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap();
         let limits = limits(plan.operation.kind);
         Case { plan, hold, limits }
     });
@@ -129,12 +129,12 @@ fn failing_loads_are_predicted() {
 }
 
 /// True when the limit that was predicted to end the hold is the one that did.
-fn agree(limit: Option<&Crossing>, by: VerdictKind) -> bool {
+fn agree(limit: Option<&LimitCrossing>, by: VerdictKind) -> bool {
     matches!(
         (limit, by),
-        (Some(Crossing::Deflection), VerdictKind::Deflects)
-            | (Some(Crossing::Slip { .. }), VerdictKind::Slips)
-            | (Some(Crossing::SlipRotation { .. }), VerdictKind::Pivots)
-            | (Some(Crossing::Torque { .. }), VerdictKind::Saturates)
+        (Some(LimitCrossing::Deflection), VerdictKind::Deflects)
+            | (Some(LimitCrossing::Slip { .. }), VerdictKind::Slips)
+            | (Some(LimitCrossing::SlipRotation { .. }), VerdictKind::Pivots)
+            | (Some(LimitCrossing::Torque { .. }), VerdictKind::Saturates)
     )
 }

@@ -1,4 +1,4 @@
-//! Every scenario file of the repository ends as its author expects.
+//! Every file in `scenarios/` meets its expectation.
 
 use std::{collections::BTreeMap, fs, path::PathBuf, process::Command};
 
@@ -35,7 +35,7 @@ fn every_scenario_meets_its_expectation() {
     assert_reasons_differ(&verdicts);
 }
 
-/// The scenarios show a hold that stands and failures of several kinds, not one kind many times.
+/// Asserts that the scenarios show successes and several kinds of failure.
 fn assert_reasons_differ(verdicts: &[Value]) {
     let mut count = BTreeMap::<&str, usize>::new();
     for verdict in verdicts {

@@ -1,4 +1,4 @@
-//! The committed JSON Schemas are those of the code, and what the code writes is valid under them.
+//! The JSON Schemas in `schemas/` are up to date, and written files are valid under them.
 
 use std::{fs, path::Path, process::Command};
 
@@ -27,7 +27,7 @@ fn assert_valid(of: &str, instance: &Value) {
 }
 
 #[test]
-fn committed_schemas_are_those_of_the_code() {
+fn committed_schemas_are_up_to_date() {
     for of in ["scenario", "plan", "verdict"] {
         let printed = String::from_utf8(benchdog(&["schema", of])).unwrap();
         assert_eq!(printed, committed(of), "run `just schemas`");

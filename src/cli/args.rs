@@ -1,4 +1,4 @@
-//! The command line.
+//! Definition of the command line.
 
 use std::{num::NonZero, path::PathBuf};
 
@@ -7,12 +7,11 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::{help, versions};
 use crate::model::scenario::{Budget, PlannerKind, PlannerSettings};
 
-/// Plans how a two-armed robot holds a board that a person drills or cuts, and proves by simulation that the hold
-/// stands.
+/// Plans how a two-armed robot holds a board that a person drills or cuts, and verifies the plan in simulation.
 #[derive(Debug, Parser)]
 #[command(name = "benchdog", version, long_version = versions::LONG.as_str(), about, after_help = help::EXIT_CODES)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -20,49 +19,49 @@ pub struct Cli {
 /// A command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Plan, simulate, judge, record and report scenarios: the main job
+    /// Plan, simulate, judge, record and report scenarios
     Run(RunArgs),
-    /// Plan a scenario's hold and write it to a file
+    /// Plan a scenario and write the plan
     Plan(PlanArgs),
-    /// Write the trade-off of the two comforts as a Pareto front, as CSV, SVG and plans
+    /// Write the Pareto front of muscular and peripersonal comfort as CSV, SVG and plans
     Front(FrontArgs),
-    /// Hold a board for a whole circle that is cut: one hold, a sequence of poses, and 16 separate plans
+    /// Plan the cut of a whole circle: with one grasp, with a sequence of poses, and with 16 separate plans
     Circle(CircleArgs),
-    /// Simulate and judge a plan, ours or anybody's
+    /// Simulate and judge a plan, also one from another planner
     Simulate(SimulateArgs),
-    /// Write the best and worst muscular comfort along a circle that is cut, as CSV and SVG
+    /// Write the best and worst muscular comfort along a circular cut as CSV and SVG
     Curve(CurveArgs),
-    /// Plan, simulate and report the paper's whole evaluation: 25 operations, four planners
+    /// Plan, simulate and report the paper's evaluation: 25 operations, four planners
     Reproduce(ReproduceArgs),
     /// Print the JSON Schema of a file format
     Schema(SchemaArgs),
-    /// Raise a plan's load until the hold fails, beside what the statics predict
+    /// Find the load at which a plan fails in simulation, and compare it with the predictions
     Margin(MarginArgs),
     /// Write a plan's scene for another simulator
     Export(ExportArgs),
-    /// Say what a recording says: verdict, checks, peaks, first failure; judge it again with other limits
+    /// Print a recording's verdict, checks, peaks and first failure; judge its trace again with other limits
     #[cfg(feature = "recording")]
     Inspect(InspectArgs),
     /// Open a recording in the rerun viewer
     #[cfg(feature = "recording")]
     View(ViewArgs),
-    /// Check that benchdog can work here: assets, versions, a test of physics and solver
+    /// Check the installation: assets, versions, physics and solver
     #[command(after_help = help::DOCTOR)]
     Doctor,
-    /// Print the completions of a shell
+    /// Print a shell's completion script
     Completions(CompletionsArgs),
 }
 
-/// What `run` and `simulate` share.
+/// Options of `run` and `simulate`.
 #[derive(Clone, Debug, Args)]
 pub struct ReportArgs {
-    /// Form of what is printed to standard output
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
     /// Also write a JUnit report to this file
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Which runs to record
+    /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Always)]
     pub record: RecordChoice,
     /// Folder for plans, verdicts, recordings and reports
@@ -74,17 +73,16 @@ pub struct ReportArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::RUN)]
 pub struct RunArgs {
-    /// Scenario files, folders of them, or patterns such as 'grasps/**/*.toml'
+    /// Scenario files, folders with scenario files, or patterns such as 'grasps/**/*.toml'
     #[arg(required = true, value_name = "SCENARIO")]
     pub scenarios: Vec<PathBuf>,
-    /// Only scenarios whose name contains this text, or matches it when it has one of * ? [; may be given several times
+    /// Run only scenarios whose name contains this text or, if it has one of * ? [, matches it as a pattern; may be repeated
     #[arg(long, value_name = "TEXT")]
     pub filter: Vec<String>,
-    /// Start no further scenario after the first that does not meet its expectation
+    /// Start no scenario after one that does not meet its expectation
     #[arg(long)]
     pub fail_fast: bool,
-    /// How many scenarios run at once; all cores unless given. The planner's maps are made on all cores in any case. The
-    /// results do not depend on it
+    /// Number of threads; by default one per core. The results do not depend on it
     #[arg(long, value_name = "N")]
     pub jobs: Option<NonZero<usize>>,
     /// The planner.
@@ -101,10 +99,10 @@ pub struct RunArgs {
 pub struct PlanArgs {
     /// Scenario file
     pub scenario: PathBuf,
-    /// Where to write the plan, standard output unless given; with --top the folder for plan-1.json and so on
+    /// File for the plan, by default standard output; with --top the folder for plan-1.json, plan-2.json, ...
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write the best K plans that differ: in an edge, by 50 mm or 15 degrees of the board, or by 30 degrees of a joint
+    /// Write the best K plans that differ in an edge, by 50 mm or 15 degrees of the board, or by 30 degrees of a joint
     #[arg(long, value_name = "K", requires = "output")]
     pub top: Option<NonZero<usize>>,
     /// The planner.
@@ -112,35 +110,35 @@ pub struct PlanArgs {
     pub planner: PlannerArgs,
 }
 
-/// What takes the place of the scenario's `[planner]` keys.
+/// Options that override the scenario's `[planner]` keys.
 #[derive(Clone, Copy, Debug, Args)]
 #[command(next_help_heading = "Search")]
 pub struct PlannerArgs {
-    /// What the planner looks for, in place of the scenario's
+    /// Planner; overrides the scenario's
     #[arg(long, value_enum, value_name = "KIND")]
     pub planner: Option<PlannerChoice>,
-    /// How long it looks.
+    /// Budget and seed.
     #[command(flatten)]
     pub search: SearchArgs,
 }
 
-/// What takes the place of a scenario's seed and budget.
+/// Options that override a scenario's budget and seed.
 #[derive(Clone, Copy, Debug, Args)]
 #[command(next_help_heading = "Search")]
 pub struct SearchArgs {
-    /// How much work a search may do, in place of the scenario's
+    /// Search budget; overrides the scenario's
     #[arg(long, value_enum, value_name = "BUDGET")]
     pub budget: Option<BudgetChoice>,
-    /// The largest number of candidates that a search may look at, in place of the scenario's
+    /// Largest number of candidates that a search evaluates; overrides the scenario's
     #[arg(long, value_name = "N")]
     pub evaluations: Option<NonZero<u64>>,
-    /// Seed of the planner, in place of the scenario's
+    /// Seed of the planner; overrides the scenario's
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 }
 
 impl PlannerArgs {
-    /// Puts what is given in the place of what a scenario says.
+    /// Overrides a scenario's settings.
     pub fn apply(&self, settings: &mut PlannerSettings) {
         settings.kind = self.planner.map_or(settings.kind, PlannerKind::from);
         self.search.apply(settings);
@@ -148,7 +146,7 @@ impl PlannerArgs {
 }
 
 impl SearchArgs {
-    /// Puts what is given in the place of what a scenario says.
+    /// Overrides a scenario's settings.
     pub fn apply(&self, settings: &mut PlannerSettings) {
         settings.budget = self.budget.map_or(settings.budget, Budget::from);
         settings.evaluations = self.evaluations.map(NonZero::get).or(settings.evaluations);
@@ -165,7 +163,7 @@ pub struct FrontArgs {
     /// Folder for `front.csv`, `front.svg` and the plans
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// How long each search looks.
+    /// Budget and seed of each search.
     #[command(flatten)]
     pub search: SearchArgs,
 }
@@ -174,12 +172,12 @@ pub struct FrontArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::CIRCLE)]
 pub struct CircleArgs {
-    /// Scenario of a cut; the circle is that through its point about the middle of the board
+    /// Scenario of a cut; the circle about the board's centre goes through its point
     pub scenario: PathBuf,
     /// Folder for `circle.csv`, `motion.csv` and the plans
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// How long each search looks.
+    /// Budget and seed of each search.
     #[command(flatten)]
     pub search: SearchArgs,
 }
@@ -190,7 +188,7 @@ pub struct CircleArgs {
 pub struct SimulateArgs {
     /// Plan file
     pub plan: PathBuf,
-    /// Scenario whose friction, phases, limits and expectation apply, in place of those in the plan
+    /// Scenario whose friction, phases, limits and expectation apply instead of those in the plan
     #[arg(long, value_name = "FILE")]
     pub scenario: Option<PathBuf>,
     /// Reports and recordings.
@@ -202,8 +200,8 @@ pub struct SimulateArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::CURVE)]
 pub struct CurveArgs {
-    /// Scenario of a cut, whose person, tool, board, force and distance from the middle count; that of the paper's
-    /// reproduction unless given
+    /// Scenario of a cut: its person, tool, board, force and distance from the centre are used; by default the first cut
+    /// of the paper's evaluation
     pub scenario: Option<PathBuf>,
     /// Folder for `muscular_curve.csv` and `muscular_curve.svg`
     #[arg(long, value_name = "DIR", default_value = "out")]
@@ -214,19 +212,19 @@ pub struct CurveArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::REPRODUCE)]
 pub struct ReproduceArgs {
-    /// Fewer seeds of the random planner, no search for the loads at which holds fail, no sensitivity analysis
+    /// Use fewer seeds of the random planner; omit failing loads and the sensitivity analysis
     #[arg(long)]
     pub quick: bool,
-    /// Only operations whose name contains this text, or matches it when it has one of * ? [; may be given several times
+    /// Only operations whose name contains this text or, if it has one of * ? [, matches it as a pattern; may be repeated
     #[arg(long, value_name = "TEXT")]
     pub filter: Vec<String>,
-    /// How many holds are worked on at once; all cores unless given. The results do not depend on it
+    /// Number of threads; by default one per core. The results do not depend on it
     #[arg(long, value_name = "N")]
-    pub jobs: Option<std::num::NonZero<usize>>,
+    pub jobs: Option<NonZero<usize>>,
     /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Never)]
     pub record: RecordChoice,
-    /// Folder for the results; `results` unless given, with --quick `out/reproduce-quick`
+    /// Folder for the results; by default `results`, with --quick `out/reproduce-quick`
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -246,10 +244,10 @@ pub struct SchemaArgs {
 pub struct MarginArgs {
     /// Plan file
     pub plan: PathBuf,
-    /// Scenario whose friction, load, phases, limits and expectation apply, in place of those in the plan
+    /// Scenario whose friction, load, phases, limits and expectation apply instead of those in the plan
     #[arg(long, value_name = "FILE")]
     pub scenario: Option<PathBuf>,
-    /// Form of what is printed to standard output
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
 }
@@ -260,10 +258,10 @@ pub struct MarginArgs {
 pub struct ExportArgs {
     /// Plan file
     pub plan: PathBuf,
-    /// Scenario whose friction, load and phases apply, in place of those in the plan
+    /// Scenario whose friction, load and phases apply instead of those in the plan
     #[arg(long, value_name = "FILE")]
     pub scenario: Option<PathBuf>,
-    /// Where to write the scene as MJCF, the format of MuJoCo
+    /// File for the scene as MJCF, the format of MuJoCo
     #[arg(long, value_name = "FILE")]
     pub mjcf: PathBuf,
 }
@@ -276,13 +274,13 @@ pub struct InspectArgs {
     /// Recording
     #[arg(value_name = "FILE.rrd")]
     pub recording: PathBuf,
-    /// Form of what is printed to standard output
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
-    /// Judge the stored trace again, with the limits of the run but for those given here
+    /// Judge the stored trace again, with the run's limits except those given here
     #[arg(long)]
     pub check: bool,
-    /// Scenario whose limits and expectation apply, in place of the run's
+    /// Scenario whose limits and expectation apply instead of the run's
     #[arg(long, value_name = "FILE")]
     pub scenario: Option<PathBuf>,
     /// Limits.
@@ -290,29 +288,29 @@ pub struct InspectArgs {
     pub limits: LimitArgs,
 }
 
-/// Limits that take the place of others.
+/// Limits that override those of the run.
 #[cfg(feature = "recording")]
 #[derive(Clone, Copy, Debug, Args)]
 #[command(next_help_heading = "Limits")]
 pub struct LimitArgs {
-    /// Translation of a hand on the board, mm
+    /// Translation of a hand relative to the board, mm
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
     pub slip_mm: Option<f64>,
-    /// Rotation of a hand on the board, degrees
+    /// Rotation of a hand relative to the board, degrees
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = positive)]
     pub slip_deg: Option<f64>,
-    /// Displacement of the tool point of the board, mm
+    /// Displacement of the board's tool point, mm
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
     pub deflection_mm: Option<f64>,
-    /// Rate of slip in the second half of the hold, mm/s
+    /// Rate of slip in the second half of the hold phase, mm/s
     #[arg(long, value_name = "MM_S", allow_negative_numbers = true, value_parser = positive)]
     pub creep_mm_s: Option<f64>,
-    /// Demanded joint torque over its limit
+    /// Demanded joint torque divided by its limit
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = positive)]
     pub torque_ratio: Option<f64>,
 }
 
-/// A limit from the command line.
+/// Parses a limit.
 #[cfg(feature = "recording")]
 fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "expected a positive number".to_owned())?;
@@ -338,16 +336,16 @@ pub struct CompletionsArgs {
     pub shell: clap_complete::Shell,
 }
 
-/// What a planner looks for.
+/// A planner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PlannerChoice {
-    /// The best of both comforts together
+    /// Maximise the weighted sum of both comforts
     Comfort,
-    /// The best muscular comfort
+    /// Maximise muscular comfort
     Muscular,
-    /// The best peripersonal comfort
+    /// Maximise peripersonal comfort
     Peripersonal,
-    /// Any hold, drawn uniformly
+    /// Draw a feasible grasp uniformly
     Random,
 }
 
@@ -362,10 +360,10 @@ impl From<PlannerChoice> for PlannerKind {
     }
 }
 
-/// How much work a search may do.
+/// A search budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BudgetChoice {
-    /// To replan while the person moves
+    /// For replanning while the person moves
     Fast,
     /// For one plan
     Default,
@@ -383,23 +381,23 @@ impl From<BudgetChoice> for Budget {
     }
 }
 
-/// Form of what is printed.
+/// An output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// A table
     Human,
-    /// The verdicts
+    /// JSON
     Json,
 }
 
-/// Which runs to record.
+/// Which simulations to record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RecordChoice {
-    /// None
+    /// Record none
     Never,
-    /// Those that do not meet their expectation
+    /// Record those that do not meet their expectation
     Failed,
-    /// All
+    /// Record all
     Always,
 }
 

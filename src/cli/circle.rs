@@ -1,43 +1,38 @@
-//! `benchdog circle`: the three ways to hold a board for a whole circle that is cut, side by side.
+//! `benchdog circle`: plans the cut of a whole circle with three strategies and compares them.
 
 use super::{
     args::CircleArgs,
     curve::circle_radius_m,
     exit::{CliError, Exit},
-    interrupt,
-    maps::Maps,
-    output,
-    plan::{infeasible, to_be_planned, until_interrupted},
+    interrupt, output,
+    plan::{infeasible, load_for_planning, stop_on_interrupt},
 };
 use crate::{
-    human::HumanError,
-    model::{
-        plan::Plan,
-        scenario::{PersonAnswer, Scenario},
-    },
+    model::{plan::Plan, scenario::ResponseKind},
     planner::{
-        self, Infeasible, RobotMap,
-        circle::{self, Continuous, MotionStep, PlansByPoint},
+        Outcome, Planner,
+        path::{CirclePlans, Continuous, MotionStep},
     },
     report,
 };
 
-/// Writes plans and tables of the three ways.
+/// Plans with the three strategies and writes plans and tables.
 pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
-    let mut loaded = to_be_planned(&args.scenario)?;
+    let mut loaded = load_for_planning(&args.scenario)?;
     circle_radius_m(&loaded)?;
     args.search.apply(&mut loaded.scenario.planner);
-    // Of three ways to hold the best answers are compared; the mean of all would take minutes for each.
-    loaded.scenario.comfort.person = PersonAnswer::Most;
+    // The strategies are compared by the person's best response: the mean response would take minutes per grasp.
+    loaded.scenario.comfort.person = ResponseKind::Best;
     report::file::check_folder(&args.out)?;
-    interrupt::listen("what was found of the circle is written")?;
-    let size_m = loaded.scenario.object.size_m;
-    let found = Maps::default().with(&loaded.robot, size_m, |map, _| three_ways(&loaded.scenario, map))?;
-    let (ways, motions) = match found {
-        Ok(found) => found,
-        Err(why) => return Ok(infeasible(&loaded, &why)),
+    interrupt::listen("what was found is written")?;
+    let planner = Planner::new(&loaded.robot);
+    let found = match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).circle()? {
+        Outcome::Found(found) => found,
+        Outcome::Infeasible(why) => return Ok(infeasible(&loaded, &why)),
     };
-    for (name, plans) in &ways {
+    let CirclePlans { continuous: Continuous { hold, sequence, motions }, separate } = found;
+    let strategies = [("hold", hold), ("sequence", sequence), ("separate", separate)];
+    for (name, plans) in &strategies {
         for (index, plan) in plans.iter().enumerate() {
             let path = args.out.join(format!("{name}-{}.json", index + 1));
             match plan {
@@ -46,16 +41,16 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
             }
         }
     }
-    let joints = ways.iter().flat_map(|(_, plans)| plans).flatten().next().map_or_else(Vec::new, joints);
+    let joints = strategies.iter().flat_map(|(_, plans)| plans).flatten().next().map_or_else(Vec::new, joints);
     let step = |step: &MotionStep| report::circle::Step { x_wo: step.x_wo, q_rad: step.q_rad.concat() };
     let motions: Vec<Vec<_>> = motions.iter().map(|motion| motion.iter().map(step).collect()).collect();
     report::file::write_whole(&args.out.join("motion.csv"), report::circle::motion_csv(&joints, &motions).as_bytes())?;
-    let ways: Vec<_> = ways.iter().map(|(name, plans)| (*name, plans.as_slice())).collect();
-    report::file::write_whole(&args.out.join("circle.csv"), report::circle::csv(&ways).as_bytes())?;
-    output::print(&report::circle::table(&ways))?;
+    let strategies: Vec<_> = strategies.iter().map(|(name, plans)| (*name, plans.as_slice())).collect();
+    report::file::write_whole(&args.out.join("circle.csv"), report::circle::csv(&strategies).as_bytes())?;
+    output::print(&report::circle::table(&strategies))?;
     Ok(if interrupt::requested() {
         Exit::Interrupted
-    } else if ways.iter().any(|(_, plans)| plans.iter().any(Option::is_some)) {
+    } else if strategies.iter().any(|(_, plans)| plans.iter().any(Option::is_some)) {
         Exit::Met
     } else {
         Exit::Infeasible
@@ -65,18 +60,4 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
 /// The names of all joints of a plan's arms, arm after arm.
 fn joints(plan: &Plan) -> Vec<String> {
     plan.arms.iter().flat_map(|arm| arm.joints.clone()).collect()
-}
-
-type Ways = Vec<(&'static str, PlansByPoint)>;
-type Motions = Vec<Vec<MotionStep>>;
-
-fn three_ways(scenario: &Scenario, map: &RobotMap) -> Result<Result<(Ways, Motions), Infeasible>, HumanError> {
-    // The optima of one cut are good enough for all, and make them comparable.
-    let points = match planner::with_optima(scenario, map)? {
-        Ok(scenario) => circle::points(&scenario).unwrap_or_default(),
-        Err(why) => return Ok(Err(why)),
-    };
-    let Continuous { hold, sequence, motions } = circle::continuous(&points, map, &mut until_interrupted)?;
-    let separate = circle::separate(&points, map, &mut until_interrupted)?;
-    Ok(Ok((vec![("hold", hold), ("sequence", sequence), ("separate", separate)], motions)))
 }

@@ -1,4 +1,4 @@
-//! `benchdog completions`: what a shell needs to complete commands and options.
+//! `benchdog completions`: completion scripts of shells.
 
 use clap::CommandFactory;
 
@@ -8,7 +8,7 @@ use super::{
     output,
 };
 
-/// Prints the completions of a shell.
+/// Prints a completion script.
 pub fn completions(args: &CompletionsArgs) -> Result<Exit, CliError> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "benchdog", &mut script);

@@ -1,4 +1,5 @@
-//! `benchdog curve`: how comfortable and uncomfortable a person's solutions are along a circle that is cut.
+//! `benchdog curve`: best and worst muscular comfort along a circular cut
+//! (`docs/method.md#411-muscular-comfort-along-a-circle`).
 
 use std::path::Path;
 
@@ -15,7 +16,7 @@ use crate::{
     scenario::{self, LoadedScenario, paper},
 };
 
-/// Writes the curve as CSV and as a picture.
+/// Writes the curve as CSV and SVG.
 pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
     let loaded = match &args.scenario {
         Some(path) => scenario::load(path)?,
@@ -28,10 +29,10 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
     Ok(Exit::Met)
 }
 
-/// The curve of the circle that a scenario's cut lies on.
+/// The curve of the circle of a scenario's cut.
 ///
 /// # Errors
-/// When the scenario is not of a cut, its cut is in the middle of the board, or its person or tool is none.
+/// If the operation is not a cut or is at the board's centre, or the person or the tool is invalid.
 pub fn curve_of(loaded: &LoadedScenario) -> Result<Curve, CliError> {
     let scenario = &loaded.scenario;
     let radius_m = circle_radius_m(loaded)?;
@@ -46,11 +47,14 @@ pub fn curve_of(loaded: &LoadedScenario) -> Result<Curve, CliError> {
     }))
 }
 
-/// The radius of the circle that a scenario cuts, m.
+/// The radius of the circle of a scenario's cut, m.
+///
+/// # Errors
+/// If the operation is not a cut or is at the board's centre.
 pub fn circle_radius_m(loaded: &LoadedScenario) -> Result<f64, CliError> {
     loaded.scenario.operation.circle_radius_m().ok_or_else(|| {
-        let found = format!("{}: found an operation that cuts no circle", loaded.path.display());
-        CliError::Usage(format!("{found}, expected a cut beside the middle of the board"))
+        let found = format!("{}: found an operation that is not on a circle", loaded.path.display());
+        CliError::Usage(format!("{found}, expected a cut away from the board's centre"))
     })
 }
 

@@ -1,10 +1,11 @@
-//! Exit codes and the errors that lead to them.
+//! Exit codes and errors of commands.
 
 use std::process::ExitCode;
 
 use crate::{model::verdict::Verdict, scenario::InputError};
 
-/// How a command ended, in the order of precedence: the last that applies to any scenario wins.
+/// The result of a command, in increasing order of precedence: of several scenarios the greatest one determines the exit
+/// code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// All expectations met.
@@ -13,7 +14,7 @@ pub enum Exit {
     NotMet,
     /// No feasible plan where one was expected.
     Infeasible,
-    /// Interrupted by the user before all scenarios had their turn.
+    /// Interrupted by the user before all scenarios were run.
     Interrupted,
     /// Bad input or usage, or output that cannot be written.
     Input,
@@ -22,7 +23,7 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// The process's exit code.
+    /// The exit code.
     pub fn code(self) -> u8 {
         match self {
             Self::Met => 0,
@@ -30,12 +31,12 @@ impl Exit {
             Self::Input => 2,
             Self::Infeasible => 3,
             Self::Bug => 70,
-            // As shells report a program that Ctrl-C ended.
+            // The code that shells report for a program ended by Ctrl-C.
             Self::Interrupted => 130,
         }
     }
 
-    /// What one verdict means for the exit code.
+    /// The result for one verdict.
     pub fn of(verdict: &Verdict) -> Self {
         use crate::model::verdict::VerdictKind::Infeasible;
         match (verdict.met, verdict.verdict) {
@@ -52,18 +53,21 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a command could not do its work.
+/// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// An input file cannot be used.
+    /// An input file is invalid.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// A plan that the simulation cannot be built from.
+    /// The simulation cannot be set up from a plan.
     #[error("failed to simulate the plan: {0}")]
     Simulation(crate::sim::SimError),
-    /// The person or the tool is none.
+    /// The person or the tool is invalid.
     #[error(transparent)]
     Human(#[from] crate::human::HumanError),
+    /// A scenario cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] crate::planner::PlanError),
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] crate::report::file::WriteError),
@@ -73,17 +77,17 @@ pub enum CliError {
     /// The CSV summary cannot be made.
     #[error("failed to write the CSV summary: {0}")]
     Csv(#[from] csv::Error),
-    /// Signals cannot be caught.
+    /// The handler of Ctrl-C cannot be installed.
     #[error("failed to listen for Ctrl-C: {0}")]
     Signals(#[from] ctrlc::Error),
     /// A recording cannot be written or read.
     #[cfg(feature = "recording")]
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
-    /// Something on this machine does not work as it must.
+    /// Something on this machine does not work.
     #[error("{0}")]
     Machine(String),
-    /// The command line asks for what cannot be.
+    /// The arguments are invalid.
     #[error("{0}")]
     Usage(String),
     /// Standard output cannot be written.
@@ -92,7 +96,7 @@ pub enum CliError {
 }
 
 impl CliError {
-    /// The exit code of this error: what no input should bring about is a bug.
+    /// The result of a command with this error. An error that no input should cause is a bug.
     pub fn exit(&self) -> Exit {
         match self {
             Self::JUnit(_) | Self::Csv(_) => Exit::Bug,
@@ -104,6 +108,7 @@ impl CliError {
             | Self::Input(_)
             | Self::Simulation(_)
             | Self::Human(_)
+            | Self::Plan(_)
             | Self::Write(_)
             | Self::Machine(_)
             | Self::Usage(_)
@@ -117,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_worst_end_wins() {
+    fn the_worst_result_wins() {
         let order = [Exit::Met, Exit::NotMet, Exit::Infeasible, Exit::Interrupted, Exit::Input, Exit::Bug];
         assert!(order.is_sorted());
         assert_eq!(order.map(Exit::code), [0, 1, 3, 130, 2, 70]);

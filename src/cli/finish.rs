@@ -1,4 +1,4 @@
-//! What happens to a run when it is over: its files are written, and all runs together are reported.
+//! Writes the files of finished runs and reports on them.
 
 use std::path::Path;
 
@@ -15,22 +15,22 @@ use crate::{
     robot::Robot,
 };
 
-/// How one run ended: what is reported of it and what it means for the exit code.
+/// One finished, failed or skipped run.
 #[derive(Debug)]
-pub struct Ended {
-    /// What is reported.
+pub struct FinishedRun {
+    /// The outcome for reports.
     pub outcome: Outcome,
-    /// The exit code if it were the only one.
+    /// The command's result if this were its only run.
     pub exit: Exit,
-    /// How long it took, s.
+    /// Duration, s.
     pub wall_s: Option<f64>,
 }
 
-impl Ended {
-    /// Runs a job to its end, whatever that is: other scenarios must not suffer from an error or a bug in this one.
+impl FinishedRun {
+    /// Runs a job and turns its errors and panics into an outcome, so that they do not affect other scenarios.
     ///
     /// # Errors
-    /// When a file cannot be written, which is no scenario's own matter.
+    /// If a file cannot be written: this affects all scenarios.
     pub fn catch(name: &str, job: impl FnOnce() -> Result<Self, CliError>) -> Result<Self, CliError> {
         let (exit, message) = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(job)) {
             Ok(Ok(ended)) => return Ok(ended),
@@ -54,14 +54,14 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".into())
 }
 
-/// The reports on a whole run.
+/// The files of the report.
 const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
 
-/// Sees that results can be written, and takes away what an earlier run left of those that this one will write: if it is
-/// killed, nothing must be there that could be taken for its result.
+/// Checks that results can be written, and removes reports and verdicts of an earlier run, so that they cannot be mistaken
+/// for results of this one if it is killed.
 ///
 /// # Errors
-/// When the folder cannot be written.
+/// If the folder cannot be written.
 pub fn prepare<'a>(args: &ReportArgs, names: impl Iterator<Item = &'a str>) -> Result<(), CliError> {
     report::file::check_folder(&args.out)?;
     for name in REPORTS {
@@ -76,11 +76,11 @@ pub fn prepare<'a>(args: &ReportArgs, names: impl Iterator<Item = &'a str>) -> R
     Ok(())
 }
 
-/// Writes plan, recording and, last, verdict of a run into a folder of its name.
+/// Writes plan, recording and, last, verdict of a run into the folder named after it.
 ///
 /// # Errors
-/// When a file cannot be written.
-pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -> Result<Ended, CliError> {
+/// If a file cannot be written.
+pub fn write_run(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -> Result<FinishedRun, CliError> {
     let folder = args.out.join(&run.verdict.name);
     let wanted = match args.record {
         RecordChoice::Never => false,
@@ -94,7 +94,7 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
     write_or_remove(&folder.join("recording.rrd"), recording)?;
     write_or_remove(&folder.join("verdict.json"), Some(report::json::verdict(&run.verdict).into_bytes()))?;
     let recording = recorded.then(|| folder.join("recording.rrd"));
-    Ok(Ended {
+    Ok(FinishedRun {
         exit: Exit::of(&run.verdict),
         wall_s: None,
         outcome: Outcome::Judged {
@@ -106,7 +106,7 @@ pub fn finish(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -
     })
 }
 
-/// Writes what a run brought forth; what an earlier run left in its place is removed, lest it be taken for this one's.
+/// Writes a file of a run, or removes that of an earlier run if this one has none.
 fn write_or_remove(path: &Path, bytes: Option<Vec<u8>>) -> Result<(), CliError> {
     match bytes {
         Some(bytes) => report::file::write_whole(path, &bytes)?,
@@ -115,8 +115,8 @@ fn write_or_remove(path: &Path, bytes: Option<Vec<u8>>) -> Result<(), CliError> 
     Ok(())
 }
 
-/// The table; a single run is shown with its checks.
-fn for_people(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
+/// The table of outcomes; for a single run also its checks.
+fn text(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     let mut text = report::console::table(outcomes, wall_s);
     if let [Outcome::Judged { verdict, recording, .. }] = outcomes {
         text.push('\n');
@@ -125,43 +125,43 @@ fn for_people(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     text
 }
 
-/// All that ended, as the reports need it.
-pub struct Ending {
-    /// What became of each.
+/// All finished runs, in the form that reports need.
+pub struct RunSummary {
+    /// The outcome of each run.
     pub outcomes: Vec<Outcome>,
-    /// How long each took, s.
+    /// The duration of each run, s.
     pub wall_s: Vec<Option<f64>>,
-    /// How the command ends.
+    /// The command's result.
     pub exit: Exit,
 }
 
-impl From<Vec<Ended>> for Ending {
-    fn from(ended: Vec<Ended>) -> Self {
+impl From<Vec<FinishedRun>> for RunSummary {
+    fn from(ended: Vec<FinishedRun>) -> Self {
         let exit = ended.iter().map(|ended| ended.exit).max().unwrap_or(Exit::Met);
         let (outcomes, wall_s) = ended.into_iter().map(|ended| (ended.outcome, ended.wall_s)).unzip();
         Self { outcomes, wall_s, exit }
     }
 }
 
-/// Reports on standard output and in the file of `--junit`.
+/// Writes the report to standard output and to the file of `--junit`.
 ///
 /// # Errors
-/// When the report cannot be written.
-pub fn report(ending: &Ending, args: &ReportArgs) -> Result<(), CliError> {
+/// If the report cannot be written.
+pub fn report(summary: &RunSummary, args: &ReportArgs) -> Result<(), CliError> {
     match args.format {
-        Format::Human => output::print(&for_people(&ending.outcomes, &ending.wall_s))?,
-        Format::Json => output::print(&report::json::verdicts(&ending.outcomes))?,
+        Format::Human => output::print(&text(&summary.outcomes, &summary.wall_s))?,
+        Format::Json => output::print(&report::json::verdicts(&summary.outcomes))?,
     }
     if let Some(path) = &args.junit {
-        report::file::write_whole(path, report::junit::document(&ending.outcomes)?.as_bytes())?;
+        report::file::write_whole(path, report::junit::document(&summary.outcomes)?.as_bytes())?;
     }
     Ok(())
 }
 
-/// Writes the reports on a whole run into its folder.
+/// Writes the reports into the output folder.
 ///
 /// # Errors
-/// When one cannot be written.
+/// If one cannot be written.
 pub fn write_reports(outcomes: &[Outcome], out: &Path) -> Result<(), CliError> {
     let bytes = [
         report::html::page(outcomes).into_bytes(),
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_panic_in_one_run_is_a_bug_with_its_message() {
-        let ended = Ended::catch("bad-luck", || panic!("{}", "out of cheese")).unwrap();
+        let ended = FinishedRun::catch("bad-luck", || panic!("{}", "out of cheese")).unwrap();
         assert_eq!(ended.exit, Exit::Bug);
         let Outcome::Crashed { name, message } = ended.outcome else { panic!("a panic is a crash") };
         assert_eq!((name.as_str(), message.as_str()), ("bad-luck", "this is a bug in benchdog: out of cheese"));

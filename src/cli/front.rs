@@ -1,38 +1,34 @@
-//! `benchdog front`: the trade-off of the two comforts, as a table for programs, a picture and plans.
+//! `benchdog front`: the Pareto front of the two comforts as CSV, SVG and plans.
 
 use super::{
     args::FrontArgs,
     exit::{CliError, Exit},
-    interrupt,
-    maps::Maps,
-    output,
-    plan::{infeasible, to_be_planned, until_interrupted},
+    interrupt, output,
+    plan::{infeasible, load_for_planning, stop_on_interrupt},
 };
 use crate::{
-    planner::{self, Front, FrontOutcome},
+    planner::{Front, FrontPoint, Outcome, Planner},
     report::{self, front::Row},
 };
 
-/// Writes the front.
+/// Computes and writes the front.
 pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
-    let mut loaded = to_be_planned(&args.scenario)?;
+    let mut loaded = load_for_planning(&args.scenario)?;
     args.search.apply(&mut loaded.scenario.planner);
     report::file::check_folder(&args.out)?;
-    interrupt::listen("the front of what was found is written")?;
-    let scenario = &loaded.scenario;
-    let outcome = Maps::default()
-        .with(&loaded.robot, scenario.object.size_m, |map, _| planner::front(scenario, map, &mut until_interrupted))?;
-    match outcome {
-        FrontOutcome::Found(front) => {
+    interrupt::listen("the front of the plans found so far is written")?;
+    let planner = Planner::new(&loaded.robot);
+    match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).front()? {
+        Outcome::Found(front) => {
             write(&front, args)?;
             Ok(if interrupt::requested() { Exit::Interrupted } else { Exit::Met })
         }
-        FrontOutcome::Infeasible(why) => Ok(infeasible(&loaded, &why)),
+        Outcome::Infeasible(why) => Ok(infeasible(&loaded, &why)),
     }
 }
 
 fn write(front: &Front, args: &FrontArgs) -> Result<(), CliError> {
-    let row = |point: &planner::FrontPoint, own| {
+    let row = |point: &FrontPoint, own| {
         let [muscular, peripersonal_m] = point.comforts();
         Row { share: point.share, muscular, peripersonal_m, own }
     };

@@ -1,4 +1,4 @@
-//! Examples and tables that the help texts end with.
+//! The final part of each command's help: examples and notes.
 
 /// `benchdog --help`.
 pub const EXIT_CODES: &str = "\
@@ -8,7 +8,7 @@ Exit codes:
   2    bad input or usage, or output that cannot be written
   3    no feasible plan where one was expected
   70   a bug in benchdog
-  130  interrupted; what was done until then is reported
+  130  interrupted; finished work is reported
 
 Start with: benchdog run scenarios/quickstart.toml";
 
@@ -17,14 +17,14 @@ pub const RUN: &str = "\
 Examples:
   benchdog run scenarios/quickstart.toml        one scenario, with its checks
   benchdog run scenarios                        every .toml file of a folder
-  benchdog run 'grasps/**/*.toml' --jobs 4      a pattern, four at once
+  benchdog run 'grasps/**/*.toml' --jobs 4      a pattern, four threads
   benchdog run scenarios --filter cut --filter 'fails-*'
   benchdog run scenarios --record failed --fail-fast
 
-Into --out go report.html, summary.csv, summary.json and junit.xml, and for each scenario a
-folder of its name with plan.json, recording.rrd and, last of all, verdict.json: a run that was
-killed leaves none of the four reports, and no verdict.json of what it did not finish.
-Ctrl-C ends the run after the scenarios at work and reports; a second one ends it at once.";
+Writes report.html, summary.csv, summary.json and junit.xml into --out, and for each scenario a
+folder with plan.json, recording.rrd and, last, verdict.json. A killed run leaves none of the four
+reports and no verdict.json of an unfinished scenario.
+Ctrl-C finishes the scenarios in progress and reports; a second Ctrl-C exits immediately.";
 
 /// `benchdog plan --help`.
 pub const PLAN: &str = "\
@@ -34,23 +34,23 @@ Examples:
   benchdog plan scenarios/quickstart.toml --planner muscular --budget fast
   benchdog plan scenarios/quickstart.toml --top 3 -o plans
 
-Ctrl-C ends the search: the best plan so far is checked and written, and the exit code is 130.";
+Ctrl-C ends the search: the best plan so far is checked and written; the exit code is 130.";
 
 /// `benchdog front --help`.
 pub const FRONT: &str = "\
 Example:
   benchdog front scenarios/quickstart.toml --out front
 
-Weights from all on the muscular to all on the peripersonal comfort, each over its own optimum;
-what another plan beats in both is left out. front-1.json and so on are the plans.";
+The objective's weights vary from muscular comfort alone to peripersonal comfort alone, each divided
+by its optimum. Plans that another plan dominates are omitted. The plans are front-1.json, ...";
 
 /// `benchdog circle --help`.
 pub const CIRCLE: &str = "\
 Example:
   benchdog circle scenarios/cut-rim.toml --out circle
 
-circle.csv has the comfort of 16 points for the three ways; the plans are hold-1.json to
-hold-16.json, sequence-1.json to sequence-16.json and separate-1.json to separate-16.json;
+circle.csv lists the comfort at 16 points for the three strategies. The plans are hold-1.json to
+hold-16.json, sequence-1.json to sequence-16.json and separate-1.json to separate-16.json.
 motion.csv is the sequence's path of the arms' joints and the board from point to point.";
 
 /// `benchdog simulate --help`.
@@ -79,14 +79,14 @@ Examples:
 /// `benchdog reproduce --help`.
 pub const REPRODUCE: &str = "\
 Examples:
-  benchdog reproduce                            the evidence in results/
-  benchdog reproduce --quick                    a look at it
+  benchdog reproduce                            write results/
+  benchdog reproduce --quick                    a shorter version
   benchdog reproduce --quick --filter cut-05 --record always
 
-Into --out go report.md, table1.csv, plans.csv, physics.csv, best_case.csv, random.csv,
-sensitivity.csv, the muscular curve and pictures/, the same for equal runs; timing.csv, which is
-not; recordings/; and work/, from which a run that was stopped goes on. The exit code is 1 when
-one of the 100 holds failed in simulation, 3 when a planner found none.";
+Writes into --out: report.md, table1.csv, plans.csv, physics.csv, best_case.csv, random.csv,
+sensitivity.csv, the muscular curve and pictures/, which are equal for equal runs; timing.csv,
+which is not; recordings/; and work/, from which a stopped run continues. The exit code is 1 if
+one of the 100 plans failed in simulation, 3 if a planner found no plan.";
 
 /// `benchdog schema --help`.
 pub const SCHEMA: &str = "\
@@ -102,8 +102,8 @@ Examples:
   benchdog inspect recording.rrd --check --slip-mm 0.5 --deflection-mm 3
   benchdog inspect recording.rrd --scenario stricter.toml
 
-With --check, a limit or --scenario the stored trace is judged again; the exit code is then 1
-when the verdict is not the expected one. What the file says of the run stays as it was.";
+With --check, a limit or --scenario, the stored trace is judged again and the exit code is 1 if the
+verdict is not the expected one. The file is not changed.";
 
 /// `benchdog view --help`.
 #[cfg(feature = "recording")]
@@ -119,7 +119,7 @@ pub const DOCTOR: &str = "\
 Example:
   benchdog doctor
 
-Exit code 0 when benchdog can work here. A viewer that is not found is told and is no fault.";
+The exit code is 0 if all checks pass. A missing viewer is reported but is not a failure.";
 
 /// `benchdog completions --help`.
 pub const COMPLETIONS: &str = "\

@@ -1,4 +1,4 @@
-//! `benchdog inspect`: what a recording says, from the file alone, and what other limits would say of its trace.
+//! `benchdog inspect`: prints the contents of a recording and judges its trace again with other limits.
 
 use std::collections::BTreeMap;
 
@@ -21,24 +21,24 @@ use crate::{
     scenario,
 };
 
-/// Prints what a recording says; on request judges its trace again, which decides the exit code then.
+/// Prints a recording's contents. If its trace is judged again, the new verdict determines the exit code.
 pub fn inspect(args: &InspectArgs) -> Result<Exit, CliError> {
     let summary = record::read_summary(&args.recording)?;
-    let again = if asks_for_check(args) { Some(judge_again(args)?) } else { None };
+    let rejudged = if wants_check(args) { Some(judge_again(args)?) } else { None };
     match args.format {
-        Format::Human => output::print(&for_people(&summary, again.as_ref()))?,
-        Format::Json => output::print(&for_programs(&summary, again.as_ref()))?,
+        Format::Human => output::print(&text(&summary, rejudged.as_ref()))?,
+        Format::Json => output::print(&json(&summary, rejudged.as_ref()))?,
     }
-    Ok(again.as_ref().map_or(Exit::Met, Exit::of))
+    Ok(rejudged.as_ref().map_or(Exit::Met, Exit::of))
 }
 
-fn asks_for_check(args: &InspectArgs) -> bool {
+fn wants_check(args: &InspectArgs) -> bool {
     let LimitArgs { slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio } = args.limits;
     let limits = [slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio];
     args.check || args.scenario.is_some() || limits.iter().any(Option::is_some)
 }
 
-/// The verdict on the stored trace under the limits asked for.
+/// The verdict on the stored trace under the given limits.
 fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
     let RecordedRun { scenario, verdict, trace, .. } = record::read_run(&args.recording)?;
     let (limits, expect) = match &args.scenario {
@@ -51,7 +51,7 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
     let judgement = judge(&trace, &with(limits, args.limits));
     if judgement.fingerprint != verdict.fingerprint {
         let (found, expected) = (judgement.fingerprint, verdict.fingerprint);
-        let problem = format!("found a trace of fingerprint {found}, expected the one that was judged, {expected}");
+        let problem = format!("found a trace with fingerprint {found}, expected {expected}, that of the verdict");
         return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
     }
     Ok(judgement.to_verdict(&verdict.name, expect.verdict, verdict.seed, versions()))
@@ -68,7 +68,7 @@ fn with(limits: Limits, given: LimitArgs) -> Limits {
     }
 }
 
-fn for_people(summary: &RecordedSummary, again: Option<&Verdict>) -> String {
+fn text(summary: &RecordedSummary, rejudged: Option<&Verdict>) -> String {
     let mut text = console::details(&summary.verdict, None);
     let peaks = &summary.peaks;
     let by_hand = |figures: &BTreeMap<String, f64>, unit: &str| {
@@ -91,7 +91,7 @@ fn for_people(summary: &RecordedSummary, again: Option<&Verdict>) -> String {
     for (time_s, event) in &summary.events {
         text.push_str(&format!("{time_s:>7.3} s  {event}\n"));
     }
-    if let Some(verdict) = again {
+    if let Some(verdict) = rejudged {
         text.push_str("\njudged again\n");
         text.push_str(&console::details(verdict, None));
     }
@@ -105,7 +105,7 @@ struct Document<'a> {
     phases: Vec<Moment<'a>>,
     events: Vec<Moment<'a>>,
     end_s: f64,
-    /// The verdict under other limits; null when none were asked for.
+    /// The verdict under other limits; null if the trace was not judged again.
     judged_again: Option<&'a Verdict>,
 }
 
@@ -123,7 +123,7 @@ struct Moment<'a> {
     text: &'a str,
 }
 
-fn for_programs(summary: &RecordedSummary, judged_again: Option<&Verdict>) -> String {
+fn json(summary: &RecordedSummary, judged_again: Option<&Verdict>) -> String {
     let peaks = &summary.peaks;
     let document = Document {
         verdict: &summary.verdict,
@@ -138,7 +138,7 @@ fn for_programs(summary: &RecordedSummary, judged_again: Option<&Verdict>) -> St
         end_s: summary.end_s,
         judged_again,
     };
-    // Serialisation into a string fails only for maps with keys that are no strings.
+    // Serialisation to a string fails only for maps whose keys are not strings.
     let text = serde_json::to_string_pretty(&document).expect("a recording's summary has only string keys");
     format!("{text}\n")
 }

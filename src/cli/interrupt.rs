@@ -1,4 +1,4 @@
-//! Ctrl-C, and the signal by which a CI job is cancelled: the first asks for a clean end, the second ends at once.
+//! Ctrl-C and the termination signal: the first one requests an orderly end, the second one exits immediately.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -7,24 +7,24 @@ use super::{
     output,
 };
 
-/// True once the user has asked for an end.
+/// True after the first signal.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// Listens from now on; `ending` says what is still done after the first signal.
+/// Installs the handler; `ending` tells the user what still happens after the first signal.
 ///
 /// # Errors
-/// When the system does not let signals be caught.
+/// If the handler cannot be installed.
 pub fn listen(ending: &'static str) -> Result<(), CliError> {
     ctrlc::set_handler(move || {
         if REQUESTED.swap(true, Ordering::SeqCst) {
             std::process::exit(Exit::Interrupted.code().into());
         }
-        output::complain(&format!("interrupted: {ending}; once more to end at once"));
+        output::message(&format!("interrupted: {ending}; press Ctrl-C again to exit immediately"));
     })?;
     Ok(())
 }
 
-/// True once the user has asked for an end.
+/// True after the first signal.
 pub fn requested() -> bool {
     REQUESTED.load(Ordering::SeqCst)
 }

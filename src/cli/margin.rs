@@ -1,4 +1,5 @@
-//! `benchdog margin`: the load raised until the hold fails, beside what the statics predict.
+//! `benchdog margin`: the load at which a plan fails in simulation, and the predicted load factors
+//! (`docs/method.md#89-failing-load`).
 
 use serde::Serialize;
 
@@ -18,55 +19,56 @@ use crate::{
     robot::Robot,
     scenario,
     sim::{self, Conditions},
-    statics::{Hold, HoldError, StabilityWorkspace},
+    statics::{ContactModel, ContactModelError, StabilityWorkspace},
 };
 
-/// How much load a hold stands, by the simulation and by both predictions.
+/// The load factors of a plan by simulation and by both predictions.
 #[derive(Clone, Debug, Serialize)]
 struct Margin {
     name: String,
-    /// The multiple of the load up to which the simulated hold stands.
+    /// The largest simulated multiple of the load at which the plan does not fail.
     load_factor: f64,
-    /// The smallest multiple that was found to fail, at most 0.1 % more; none when the hold stands 100 times the load.
+    /// The smallest simulated multiple at which it fails, at most 0.1 % more; `None` if it does not fail at 100.
     fails_at: Option<f64>,
-    /// What becomes of the hold there.
+    /// The verdict at that multiple.
     ended_by: VerdictKind,
-    /// The check that says so.
+    /// The check that fails there.
     #[serde(skip_serializing_if = "Option::is_none")]
     check: Option<Check>,
-    /// Why there is no such check, in words.
+    /// Why there is no such check.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
-    /// What the statics predict; none when they have no answer to the plan.
+    /// The predictions; `None` if they are not defined for the plan.
     predicted: Option<Predicted>,
-    /// How many simulations it took.
+    /// Number of simulations.
     simulations: usize,
-    /// What the author expected, and whether it is so.
+    /// The expected verdict.
     expected: VerdictKind,
+    /// Whether the expectation is met.
     met: bool,
 }
 
-/// What the statics predict.
+/// The predicted load factors.
 #[derive(Clone, Debug, Serialize)]
 struct Predicted {
-    /// The largest multiple that any distribution of forces holds, with a certificate (lambda*).
+    /// The load factor, lambda*.
     best_case: f64,
-    /// What limits it.
+    /// The constraints that are active at it.
     binding: Vec<String>,
-    /// The largest multiple that compliant arms hold.
+    /// The compliant load factor.
     compliant: f64,
-    /// What ends it.
+    /// The limit that ends it.
     compliant_ended_by: Option<String>,
 }
 
 /// Finds and reports the margin of a plan.
 pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
-    let (plan, robot, scenario) = scenario::plan_and_scenario(&args.plan, args.scenario.as_deref())?;
+    let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
     let margin = margin_of(&plan, &robot, &scenario)?;
     match args.format {
-        Format::Human => output::print(&for_people(&margin))?,
+        Format::Human => output::print(&text(&margin))?,
         Format::Json => {
-            // Serialisation fails only for maps with keys that are no strings, and there are none.
+            // Serialisation fails only for maps whose keys are not strings.
             let text = serde_json::to_string_pretty(&margin).expect("a margin has only string keys");
             output::print(&format!("{text}\n"))?;
         }
@@ -75,7 +77,7 @@ pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
 }
 
 fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, CliError> {
-    // Statics that have no answer to a plan which can be simulated are no reason to have no margin.
+    // A plan without predictions may still be simulated.
     let predicted = predicted(plan, robot, scenario).ok().flatten();
     let expected = scenario.expect.verdict;
     let empty = Margin {
@@ -98,8 +100,8 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
     let failed = judgement.first_failure.as_ref().map(|failure| failure.check);
     let met = match expected {
         VerdictKind::Holds => holds_at >= scenario.limits.load_factor,
-        // The load itself fails as expected, or a load beyond it does.
-        other => judged(plan, robot, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
+        // The verdict on the load itself, not on the failing load, must be the expected one.
+        other => judge_at(plan, robot, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
     };
     Ok(Margin {
         load_factor: holds_at,
@@ -113,23 +115,23 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
     })
 }
 
-/// The load at which a plan's hold fails in simulation; the search begins at `guess`.
+/// The load at which a plan fails in simulation. The search starts at `guess`.
 ///
 /// # Errors
-/// When the simulation cannot be built from the plan.
+/// If the simulation cannot be set up from the plan.
 pub fn simulated(plan: &Plan, robot: &Robot, scenario: &Scenario, guess: f64) -> Result<FailingLoad, CliError> {
-    failing_load(guess, |factor| judged(plan, robot, scenario, factor))
+    failing_load(guess, |factor| judge_at(plan, robot, scenario, factor))
 }
 
-/// What becomes of the hold under a multiple of its load.
-fn judged(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
+/// The judgement on a plan under a multiple of its load.
+fn judge_at(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
     let trace = sim::simulate(robot, plan, &Conditions::of(scenario).scaled(factor)).map_err(CliError::Simulation)?;
     Ok(judge(&trace, &scenario.limits))
 }
 
-/// What the statics say of the plan, under the friction that it counts on.
-fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, HoldError> {
-    let hold = Hold::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
+/// The predictions for a plan, with the scenario's nominal friction.
+fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, ContactModelError> {
+    let hold = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
     let mut workspace = StabilityWorkspace::new();
     let crate::statics::LoadFactorOutcome::Solved(best_case) = workspace.load_factor(&hold)? else { return Ok(None) };
     let compliant = workspace.compliant_load_factor(&hold, &scenario.limits)?;
@@ -141,7 +143,7 @@ fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<P
     }))
 }
 
-fn for_people(margin: &Margin) -> String {
+fn text(margin: &Margin) -> String {
     let why = match (&margin.check, &margin.reason) {
         (Some(check), _) => format!(" ({} {:.3} {}, at most {})", check.name, check.value, check.unit, check.limit),
         (None, Some(reason)) => format!(" ({reason})"),
@@ -156,10 +158,7 @@ fn for_people(margin: &Margin) -> String {
         "{}: holds up to {:.3} times the load, {end}; expected {}: {met}\n",
         margin.name, margin.load_factor, margin.expected
     );
-    text.push_str(&format!(
-        "simulated            {:7.3}  {} simulations, each with its whole load\n",
-        margin.load_factor, margin.simulations
-    ));
+    text.push_str(&format!("simulated            {:7.3}  {} simulations\n", margin.load_factor, margin.simulations));
     if let Some(predicted) = &margin.predicted {
         let ended_by = predicted.compliant_ended_by.as_deref().unwrap_or("nothing up to 100");
         text.push_str(&format!("compliant prediction {:7.3}  {ended_by}\n", predicted.compliant));

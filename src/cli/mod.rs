@@ -1,5 +1,5 @@
-//! The commands. They compose the parts of the crate, own the clock, the threads, the terminal and the files that are
-//! written, and turn what happened into an exit code. Nothing below this module knows any of these.
+//! The commands. They combine the other modules and are the only code that uses the clock, the terminal, signals and exit
+//! codes, decides about threads, and writes files.
 
 mod args;
 mod circle;
@@ -14,11 +14,11 @@ mod help;
 #[cfg(feature = "recording")]
 mod inspect;
 mod interrupt;
-mod maps;
 mod margin;
 mod output;
 mod pipeline;
 mod plan;
+mod planners;
 mod progress;
 #[cfg(feature = "recording")]
 mod recording;
@@ -30,6 +30,7 @@ mod run;
 mod schema;
 mod select;
 mod simulate;
+mod threads;
 mod versions;
 #[cfg(feature = "recording")]
 mod view;
@@ -41,12 +42,12 @@ use clap::Parser;
 pub use args::{Cli, Command};
 pub use exit::Exit;
 
-/// Runs the command line of this process.
+/// Parses this process's arguments and runs the command.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // clap knows which of help, version and usage errors goes to which stream; a closed one is no error.
+            // clap chooses the stream for help, version and usage errors; a closed stream is not an error.
             let _ = error.print();
             return if error.use_stderr() { Exit::Input.into() } else { Exit::Met.into() };
         }
@@ -72,12 +73,12 @@ pub fn main() -> ExitCode {
     match outcome {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(error)) => {
-            output::complain(&format!("error: {error}"));
+            output::message(&format!("error: {error}"));
             error.exit().into()
         }
-        // The panic's own message has been printed by the default hook.
+        // The default hook has printed the panic's message.
         Err(_) => {
-            output::complain("error: this is a bug in benchdog; please report it with the message above");
+            output::message("error: this is a bug in benchdog; please report it with the message above");
             Exit::Bug.into()
         }
     }

@@ -1,13 +1,13 @@
-//! Standard output and standard error: a reader that closes early is no error.
+//! Standard output and standard error. A closed pipe is not an error.
 
 use std::io::{ErrorKind, Write};
 
 use super::exit::CliError;
 
-/// Writes data to standard output.
+/// Writes text to standard output.
 ///
 /// # Errors
-/// When it cannot be written for a reason other than a closed pipe.
+/// If it cannot be written for a reason other than a closed pipe.
 pub fn print(text: &str) -> Result<(), CliError> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Stdout(error)),
@@ -15,7 +15,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// Writes a message to standard error; there is nobody to tell when that fails.
-pub fn complain(message: &str) {
+/// Writes a message to standard error. A failure to do so is ignored.
+pub fn message(message: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{message}");
 }

@@ -1,8 +1,8 @@
-//! The main path: scenario -> plan -> simulation -> judgement -> verdict, for one scenario.
+//! The main path for one scenario: plan, simulate, judge.
 
-use std::{collections::BTreeMap, time::Instant};
+use std::collections::BTreeMap;
 
-use super::{exit::CliError, maps::Maps, versions::versions};
+use super::{exit::CliError, planners::Planners, versions::versions};
 use crate::{
     judge::{Judgement, judge},
     model::{
@@ -12,35 +12,35 @@ use crate::{
         trace::Trace,
         verdict::{Verdict, VerdictKind},
     },
-    planner::{self, Onlooker, PlanOutcome},
+    planner::{self, Outcome},
     robot::Robot,
     scenario::LoadedScenario,
     sim::{self, Conditions},
 };
 
-/// One scenario, run to its verdict.
+/// A scenario or plan with its verdict.
 #[derive(Debug)]
 pub struct Run {
     /// The verdict.
     pub verdict: Verdict,
-    /// The plan that was judged; none when there is none.
+    /// The plan; `None` if none was found.
     pub plan: Option<Plan>,
-    /// The simulation, with what the judge made of it; none when there was nothing to simulate.
+    /// Trace and judgement; `None` if nothing was simulated.
     pub simulated: Option<(Trace, Judgement)>,
 }
 
-/// Plans where the scenario names no plan, then simulates and judges.
+/// Plans a scenario unless it names a plan, simulates the plan and judges it.
 ///
 /// # Errors
-/// When the person or the tool is none, or the simulation cannot be built from the plan.
-pub fn run_scenario(loaded: &LoadedScenario, maps: &Maps) -> Result<Run, CliError> {
+/// If the person or the tool is invalid, or the simulation cannot be set up from the plan.
+pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run, CliError> {
     let scenario = &loaded.scenario;
     let plan = match &loaded.plan {
         Some(plan) => plan.clone(),
-        None => match timed_plan(scenario, &loaded.robot, maps, &mut planner::nobody)? {
-            PlanOutcome::Found(plan) => *plan,
-            PlanOutcome::Infeasible(why) => {
-                let verdict = without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
+        None => match planners.timed_plan(scenario, &loaded.robot, None)? {
+            Outcome::Found(plan) => plan,
+            Outcome::Infeasible(why) => {
+                let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
                 return Ok(Run { verdict, plan: None, simulated: None });
             }
         },
@@ -48,13 +48,14 @@ pub fn run_scenario(loaded: &LoadedScenario, maps: &Maps) -> Result<Run, CliErro
     run_plan(scenario, &loaded.robot, plan)
 }
 
-/// Simulates and judges a plan, if nothing in it touches what it must not, under a scenario's friction, phases, limits and expectation.
+/// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. A plan with a collision in the
+/// planned pose is not simulated; its verdict is `touches`.
 ///
 /// # Errors
-/// When the simulation cannot be built from the plan.
+/// If the simulation cannot be set up from the plan.
 pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
     if let Some(touch) = planner::first_touch(&plan, &scenario.tool, robot)? {
-        let verdict = without_simulation(scenario, VerdictKind::Touches, touch);
+        let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, touch);
         return Ok(Run { verdict, plan: Some(plan), simulated: None });
     }
     let trace = sim::simulate(robot, &plan, &Conditions::of(scenario)).map_err(CliError::Simulation)?;
@@ -64,31 +65,8 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
     Ok(Run { verdict, plan: Some(plan), simulated: Some((trace, judgement)) })
 }
 
-/// Plans a scenario, with the time that it took in the plan; the onlooker may end the search.
-///
-/// # Errors
-/// When the scenario's person or tool is none.
-pub fn timed_plan(
-    scenario: &Scenario,
-    robot: &Robot,
-    maps: &Maps,
-    onlooker: &mut Onlooker<'_>,
-) -> Result<PlanOutcome, CliError> {
-    Ok(maps.with_work(robot, scenario, |map, work, map_ms| {
-        let start = Instant::now();
-        let mut outcome = planner::plan_with(scenario, map, work, onlooker)?;
-        if let PlanOutcome::Found(plan) = &mut outcome
-            && let Some(record) = &mut plan.planner
-        {
-            record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);
-            record.map_ms = Some(map_ms);
-        }
-        Ok(outcome)
-    })?)
-}
-
-/// The verdict on a scenario that has nothing to simulate.
-fn without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
+/// The verdict on a scenario for which nothing was simulated.
+fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
     Verdict {
         format: FORMAT,
         name: scenario.name.clone(),

@@ -1,24 +1,23 @@
-//! `benchdog plan`: a scenario's hold, written to a file or to standard output; with `--top` several that differ.
+//! `benchdog plan`: writes a scenario's plan or, with `--top`, the best plans that differ.
 
 use std::{ops::ControlFlow, path::Path};
 
 use super::{
     args::PlanArgs,
     exit::{CliError, Exit},
-    interrupt,
-    maps::Maps,
-    output, pipeline,
+    interrupt, output,
+    planners::Planners,
 };
 use crate::{
     model::verdict::VerdictKind,
-    planner::{self, Infeasible, PlanOutcome, Progress, TopOutcome},
+    planner::{Infeasible, Outcome, Planner, Progress},
     report,
     scenario::{self, LoadedScenario},
 };
 
-/// Plans a scenario. Ctrl-C ends the search with the best hold so far.
+/// Plans a scenario. Ctrl-C ends the search with the best plan so far.
 pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
-    let mut loaded = to_be_planned(&args.scenario)?;
+    let mut loaded = load_for_planning(&args.scenario)?;
     args.planner.apply(&mut loaded.scenario.planner);
     interrupt::listen("the best plan so far is checked and written")?;
     match (args.top, &args.output) {
@@ -27,27 +26,29 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     }
 }
 
-/// Reads a scenario that does not bring its plan.
-pub fn to_be_planned(path: &Path) -> Result<LoadedScenario, CliError> {
+/// Reads a scenario that does not name a plan.
+///
+/// # Errors
+/// If it is invalid or names a plan.
+pub fn load_for_planning(path: &Path) -> Result<LoadedScenario, CliError> {
     let loaded = scenario::load(path)?;
     if loaded.plan.is_some() {
         let path = path.display();
-        return Err(CliError::Usage(format!(
-            "{path}: planner.plan: the scenario has its plan, there is nothing to plan"
-        )));
+        return Err(CliError::Usage(format!("{path}: planner.plan: found a plan, expected a scenario without one")));
     }
     Ok(loaded)
 }
 
-/// Ends a search once the user has asked for it.
-pub fn until_interrupted(_: &Progress<'_>) -> ControlFlow<()> {
+/// Ends a search after Ctrl-C.
+pub fn stop_on_interrupt(_: &Progress<'_>) -> ControlFlow<()> {
     if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError> {
-    let outcome = pipeline::timed_plan(&loaded.scenario, &loaded.robot, &Maps::default(), &mut until_interrupted)?;
+    let planners = Planners::default();
+    let outcome = planners.timed_plan(&loaded.scenario, &loaded.robot, Some(&mut stop_on_interrupt))?;
     match outcome {
-        PlanOutcome::Found(plan) => {
+        Outcome::Found(plan) => {
             let text = report::json::plan(&plan);
             match output {
                 Some(path) => report::file::write_whole(path, text.as_bytes())?,
@@ -55,18 +56,15 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
             }
             Ok(found(loaded))
         }
-        PlanOutcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
+        Outcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
     }
 }
 
 fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, CliError> {
     report::file::check_folder(folder)?;
-    let scenario = &loaded.scenario;
-    let outcome = Maps::default().with(&loaded.robot, scenario.object.size_m, |map, _| {
-        planner::top(scenario, map, wanted, &mut until_interrupted)
-    })?;
-    match outcome {
-        TopOutcome::Found(plans) => {
+    let planner = Planner::new(&loaded.robot);
+    match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).top(wanted)? {
+        Outcome::Found(plans) => {
             for (index, plan) in plans.iter().enumerate() {
                 let path = folder.join(format!("plan-{}.json", index + 1));
                 report::file::write_whole(&path, report::json::plan(plan).as_bytes())?;
@@ -74,7 +72,7 @@ fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, Cl
             output::print(&report::plans::table(&plans))?;
             Ok(found(loaded))
         }
-        TopOutcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
+        Outcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
     }
 }
 
@@ -88,9 +86,9 @@ fn found(loaded: &LoadedScenario) -> Exit {
     }
 }
 
-/// Says that a scenario has no plan, and why.
+/// Prints why no plan was found; returns the command's result.
 pub fn infeasible(loaded: &LoadedScenario, why: &Infeasible) -> Exit {
-    output::complain(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
+    output::message(&format!("{}: no feasible plan: {why}", loaded.scenario.name));
     if interrupt::requested() {
         Exit::Interrupted
     } else if loaded.scenario.expect.verdict == VerdictKind::Infeasible {

@@ -1,4 +1,4 @@
-//! What is seen of a run while it lasts, on standard error: a line for each scenario that ends and, on a terminal, a bar.
+//! Progress of a run on standard error: a line for each finished scenario and, on a terminal, a progress bar.
 
 use std::time::Duration;
 
@@ -7,18 +7,18 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::output;
 use crate::report::{Outcome, console};
 
-/// The bar redraws so often while nothing ends, to show that it lives.
+/// Interval at which the bar is redrawn.
 const TICK: Duration = Duration::from_millis(200);
 
-/// The lines and the bar.
+/// Progress lines and bar.
 pub struct Progress {
     bar: ProgressBar,
 }
 
 impl Progress {
-    /// Begins with this many scenarios to go.
+    /// Progress of `scenarios` scenarios.
     pub fn new(scenarios: usize) -> Self {
-        // Hidden by itself where standard error is no terminal.
+        // indicatif hides the bar if standard error is not a terminal.
         let bar = ProgressBar::new(scenarios as u64);
         if let Ok(style) = ProgressStyle::with_template("{spinner} [{bar:30}] {pos}/{len}  {elapsed}  {msg}") {
             bar.set_style(style.progress_chars("=> "));
@@ -29,27 +29,27 @@ impl Progress {
         Self { bar }
     }
 
-    /// A scenario's turn has come.
+    /// Shows that a scenario has started.
     pub fn begins(&self, name: &str) {
         self.bar.set_message(name.to_owned());
     }
 
-    /// A scenario has ended after so many seconds.
+    /// Shows that a scenario has finished after `wall_s` seconds.
     pub fn ends(&self, outcome: &Outcome, wall_s: f64) {
         self.advances(Some(&format!("{} ({wall_s:.1} s)", console::line(outcome))));
     }
 
-    /// Something has ended, and this is to be said of it.
+    /// Advances the bar by one and prints a line, if there is one.
     pub fn advances(&self, line: Option<&str>) {
         self.bar.inc(1);
         match line {
-            Some(line) if self.bar.is_hidden() => output::complain(line),
+            Some(line) if self.bar.is_hidden() => output::message(line),
             Some(line) => self.bar.println(line),
             None => {}
         }
     }
 
-    /// All is over: the bar goes, the lines stay.
+    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }

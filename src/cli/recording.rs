@@ -1,4 +1,4 @@
-//! The recording of a run: what the recorder needs of the person is computed here, since it knows no bodies.
+//! Makes the recording of a run. The shape of the person is computed here, because `record` does not depend on `human`.
 
 use nalgebra::Point3;
 
@@ -10,10 +10,10 @@ use crate::{
     robot::Robot,
 };
 
-/// The bytes of a run's recording; none when nothing was simulated.
+/// The bytes of a run's recording; `None` if nothing was simulated.
 ///
 /// # Errors
-/// When the recording cannot be made.
+/// If the recording cannot be made.
 pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, CliError> {
     let (Some(plan), Some((trace, judgement))) = (&run.plan, &run.simulated) else { return Ok(None) };
     let person = match &plan.human {
@@ -37,7 +37,7 @@ pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Ve
     Ok(Some(record::encode(&input)?))
 }
 
-/// The person without the tool, which the recorder draws from the palm to the board.
+/// The shape of the person without the tool, which the recorder draws from the palm to the board.
 fn person_shape(capsules: &[crate::human::Capsule], points_w: Vec<Point3<f64>>) -> PersonShape {
     let (tool, body): (Vec<&crate::human::Capsule>, Vec<_>) =
         capsules.iter().partition(|capsule| capsule.name == BodyPart::Tool);

@@ -1,10 +1,9 @@
-//! `benchdog run`: the main job, on one scenario or many.
+//! `benchdog run`: plans, simulates, judges, records and reports scenarios.
 
 use std::{
-    num::NonZero,
     sync::{
         Mutex, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicBool, Ordering},
     },
     time::Instant,
 };
@@ -12,126 +11,94 @@ use std::{
 use super::{
     args::RunArgs,
     exit::{CliError, Exit},
-    finish::{self, Ended, Ending},
-    interrupt,
-    maps::Maps,
-    pipeline,
+    finish::{self, FinishedRun, RunSummary},
+    interrupt, pipeline,
+    planners::Planners,
     progress::Progress,
     select::{self, Selected},
+    threads,
 };
 use crate::{report::SkipReason, scenario::LoadedScenario};
 
-/// Runs scenarios: all are read and checked, and the folder for the results too, before the first is planned.
+/// Runs scenarios. All scenarios and the output folder are checked before the first one is planned.
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let scenarios = select::scenarios(&args.scenarios, &args.filter, &args.planner)?;
     let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
     finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
-    interrupt::listen("the scenarios at work are finished and reported")?;
-    let turns = Turns {
+    interrupt::listen("the scenarios in progress are finished and reported")?;
+    let runner = Runner {
         args,
-        maps: Maps::default(),
+        planners: Planners::default(),
         progress: Progress::new(wanted.len()),
         failed: AtomicBool::new(false),
-        broken: Mutex::new(None),
+        fatal: Mutex::new(None),
     };
-    let jobs = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
-    let ended = in_parallel(jobs, &scenarios, |selected| turns.take(selected));
-    turns.progress.finish();
-    if let Some(error) = turns.broken.into_inner().unwrap_or_else(PoisonError::into_inner) {
+    let to_be_planned = wanted.iter().map(|selected| &selected.loaded).filter(|loaded| loaded.plan.is_none());
+    let to_be_planned: Vec<_> = to_be_planned.map(|loaded| (&loaded.robot, &loaded.scenario)).collect();
+    let finished = threads::with_threads(args.jobs, || {
+        runner.planners.prepare(&to_be_planned);
+        threads::map_in_parallel(&scenarios, |selected| runner.run_or_skip(selected))
+    })?;
+    runner.progress.finish();
+    if let Some(error) = runner.fatal.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(error);
     }
-    let ending = Ending::from(ended);
-    // The table first: a disk that has become full must not cost it.
-    finish::report(&ending, &args.report)?;
-    finish::write_reports(&ending.outcomes, &args.report.out)?;
-    Ok(ending.exit)
+    let summary = RunSummary::from(finished);
+    // The table first: it must not depend on a disk that is full by now.
+    finish::report(&summary, &args.report)?;
+    finish::write_reports(&summary.outcomes, &args.report.out)?;
+    Ok(summary.exit)
 }
 
-/// What the scenarios of a run share.
-struct Turns<'a> {
+/// State shared by the scenarios of a run.
+struct Runner<'a> {
     args: &'a RunArgs,
-    maps: Maps,
+    planners: Planners,
     progress: Progress,
-    /// True once an expectation was not met.
+    /// True after an expectation was not met.
     failed: AtomicBool,
-    /// The first error that leaves no sense in going on: a disk that takes no more is full for all.
-    broken: Mutex<Option<CliError>>,
+    /// The first error that affects all scenarios, such as a full disk.
+    fatal: Mutex<Option<CliError>>,
 }
 
-impl Turns<'_> {
-    /// Runs a scenario, or says why not.
-    fn take(&self, selected: &Selected) -> Ended {
+impl Runner<'_> {
+    /// Runs or skips a scenario.
+    fn run_or_skip(&self, selected: &Selected) -> FinishedRun {
         let name = &selected.loaded.scenario.name;
         if let Some(reason) = self.reason_to_skip(selected) {
-            return Ended::skipped(name, reason);
+            return FinishedRun::skipped(name, reason);
         }
         self.progress.begins(name);
         let start = Instant::now();
-        let mut ended = match Ended::catch(name, || self.run(&selected.loaded)) {
-            Ok(ended) => ended,
+        let mut finished = match FinishedRun::catch(name, || self.run(&selected.loaded)) {
+            Ok(finished) => finished,
             Err(error) => {
-                self.broken.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-                return Ended::skipped(name, SkipReason::AfterFailure);
+                self.fatal.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                return FinishedRun::skipped(name, SkipReason::AfterFailure);
             }
         };
         let wall_s = start.elapsed().as_secs_f64();
-        ended.wall_s = Some(wall_s);
-        self.failed.fetch_or(ended.exit != Exit::Met, Ordering::SeqCst);
-        self.progress.ends(&ended.outcome, wall_s);
-        ended
+        finished.wall_s = Some(wall_s);
+        self.failed.fetch_or(finished.exit != Exit::Met, Ordering::SeqCst);
+        self.progress.ends(&finished.outcome, wall_s);
+        finished
     }
 
-    fn run(&self, loaded: &LoadedScenario) -> Result<Ended, CliError> {
-        let run = pipeline::run_scenario(loaded, &self.maps)?;
-        finish::finish(run, &loaded.scenario, &loaded.robot, &self.args.report)
+    fn run(&self, loaded: &LoadedScenario) -> Result<FinishedRun, CliError> {
+        let run = pipeline::run_scenario(loaded, &self.planners)?;
+        finish::write_run(run, &loaded.scenario, &loaded.robot, &self.args.report)
     }
 
     fn reason_to_skip(&self, selected: &Selected) -> Option<SkipReason> {
-        let broken = || self.broken.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+        let fatal = || self.fatal.lock().unwrap_or_else(PoisonError::into_inner).is_some();
         if !selected.wanted {
             Some(SkipReason::Filtered)
         } else if interrupt::requested() {
             Some(SkipReason::Interrupted)
-        } else if broken() || self.args.fail_fast && self.failed.load(Ordering::SeqCst) {
+        } else if fatal() || self.args.fail_fast && self.failed.load(Ordering::SeqCst) {
             Some(SkipReason::AfterFailure)
         } else {
             None
         }
-    }
-}
-
-/// The results of a job on every item, in the order of the items, worked off by so many threads.
-pub(super) fn in_parallel<T: Sync, R: Send>(jobs: usize, items: &[T], job: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::with_capacity(items.len()));
-    std::thread::scope(|scope| {
-        for _ in 0..jobs.min(items.len()) {
-            scope.spawn(|| {
-                while let Some((index, item)) = {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    items.get(index).map(|item| (index, item))
-                } {
-                    let result = job(item);
-                    done.lock().unwrap_or_else(PoisonError::into_inner).push((index, result));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    done.sort_by_key(|&(index, _)| index);
-    done.into_iter().map(|(_, result)| result).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_come_in_the_order_of_the_items() {
-        let items: Vec<u64> = (0..50).collect();
-        for jobs in [1, 2, 7, 100] {
-            assert_eq!(in_parallel(jobs, &items, |item| item * item), items.iter().map(|i| i * i).collect::<Vec<_>>());
-        }
-        assert!(in_parallel(2, &[], |item: &u64| *item).is_empty());
     }
 }

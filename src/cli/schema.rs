@@ -1,4 +1,4 @@
-//! `benchdog schema`: the JSON Schemas of the file formats, made from the types that read and write them.
+//! `benchdog schema`: JSON Schemas of the file formats, derived from the types that read and write them.
 
 use schemars::{Schema, schema_for};
 
@@ -18,14 +18,14 @@ pub fn schema(args: &SchemaArgs) -> Result<Exit, CliError> {
     Ok(Exit::Met)
 }
 
-/// The schema of a format, as it is printed and stored under `schemas/`.
+/// The schema of a format, as stored in `schemas/`.
 fn schema_text(of: SchemaOf) -> String {
     let schema: Schema = match of {
         SchemaOf::Scenario => schema_for!(ScenarioFile),
         SchemaOf::Plan => schema_for!(Plan),
         SchemaOf::Verdict => schema_for!(Verdict),
     };
-    // A JSON value always prints: its keys are strings and its numbers finite.
+    // A JSON value can always be printed: its keys are strings and its numbers finite.
     let text = serde_json::to_string_pretty(&schema).expect("a JSON value prints");
     format!("{text}\n")
 }

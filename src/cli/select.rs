@@ -1,4 +1,4 @@
-//! Which scenarios a run is about: files, folders and patterns become scenarios that have been read and checked.
+//! Selects the scenarios of a run from files, folders and patterns, and reads them.
 
 use std::{
     collections::BTreeMap,
@@ -10,21 +10,21 @@ use glob::Pattern;
 use super::{args::PlannerArgs, exit::CliError};
 use crate::scenario::{self, LoadedScenario};
 
-/// A scenario, and whether `--filter` lets it through.
+/// A scenario, and whether it passes `--filter`.
 #[derive(Debug)]
 pub struct Selected {
     /// The scenario.
     pub loaded: LoadedScenario,
-    /// False when it is only to be listed.
+    /// False if the filters exclude it: it is listed, but not run.
     pub wanted: bool,
 }
 
-/// Reads and checks every scenario that the arguments name, in their order; folders and patterns in the order of names.
+/// Reads and checks the scenarios that the arguments name, in this order; those of a folder or pattern are sorted by name.
 ///
 /// # Errors
-/// When an argument names no scenario, a scenario cannot be used, two have one name, or no name passes the filters.
+/// If an argument names no scenario, a scenario is invalid, two have the same name, or none passes the filters.
 pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArgs) -> Result<Vec<Selected>, CliError> {
-    let asked = filters.join(", ");
+    let given = filters.join(", ");
     let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
     let mut names = BTreeMap::<String, PathBuf>::new();
     let mut selected = Vec::new();
@@ -34,7 +34,7 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
         let name = loaded.scenario.name.clone();
         if let Some(other) = names.insert(name.clone(), path.clone()) {
             let (path, other) = (path.display(), other.display());
-            return Err(CliError::Usage(format!("{path}: name: found \"{name}\", which is the name of {other} too")));
+            return Err(CliError::Usage(format!("{path}: name: found \"{name}\", which is also the name of {other}")));
         }
         let wanted = filters.is_empty() || filters.iter().any(|filter| filter.passes(&name));
         selected.push(Selected { loaded, wanted });
@@ -44,12 +44,12 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
     }
     let known: Vec<_> = names.into_keys().collect();
     Err(CliError::Usage(format!(
-        "--filter {asked}: found no scenario that passes, expected one of {}",
+        "--filter {given}: found no scenario that passes, expected one of {}",
         known.join(", ")
     )))
 }
 
-/// The files that the arguments name. A path that exists is taken as it is, whatever characters it has.
+/// The files that the arguments name. An existing path is never a pattern, even if it contains * ? or [.
 fn files(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
     let mut files = Vec::new();
     for argument in arguments {
@@ -69,7 +69,7 @@ fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?', '['])
 }
 
-/// The `.toml` files of a folder, without those of folders in it.
+/// The `.toml` files of a folder, not of its subfolders.
 fn scenarios_in(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
     let failed = |error| CliError::Usage(format!("failed to read {}: {error}", folder.display()));
     let mut files = Vec::new();
@@ -104,19 +104,19 @@ fn matches(pattern: &str) -> Result<Vec<PathBuf>, CliError> {
     Ok(files)
 }
 
-/// A `--filter`.
+/// A filter of names.
 pub enum Filter {
-    /// A part of a name.
+    /// The name contains this text.
     Contains(String),
-    /// A pattern of a whole name.
+    /// The whole name matches this pattern.
     Matches(Pattern),
 }
 
 impl Filter {
-    /// The filter of a text.
+    /// Parses the text of a `--filter`.
     ///
     /// # Errors
-    /// When the text is a broken pattern.
+    /// If the text is an invalid pattern.
     pub fn new(text: &str) -> Result<Self, CliError> {
         match is_pattern(text) {
             false => Ok(Self::Contains(text.to_owned())),
@@ -127,7 +127,7 @@ impl Filter {
         }
     }
 
-    /// True when it lets this name through.
+    /// True if the name passes.
     pub fn passes(&self, name: &str) -> bool {
         match self {
             Self::Contains(text) => name.contains(text.as_str()),
@@ -146,7 +146,7 @@ mod tests {
         assert!(passes("cut", "short-cut-3") && !passes("cut", "drill"));
         assert!(passes("cut-*", "cut-3") && !passes("cut-*", "short-cut-3"));
         assert!(passes("cut-0[1-3]", "cut-02") && !passes("cut-0[1-3]", "cut-04"));
-        let Err(CliError::Usage(message)) = Filter::new("cut-[") else { panic!("an open bracket is no pattern") };
+        let Err(CliError::Usage(message)) = Filter::new("cut-[") else { panic!("an open bracket is not a pattern") };
         assert!(message.starts_with("--filter cut-[: "), "{message}");
     }
 }

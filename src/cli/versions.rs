@@ -1,14 +1,14 @@
-//! Versions of Benchdog and of the engines that decide a verdict.
+//! Versions of Benchdog and of the engines that verdicts depend on.
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
 /// The engines, with the versions that `Cargo.lock` holds; a test compares the two.
 const ENGINES: [(&str, &str); 3] = [("clarabel", "0.11.1"), ("parry3d-f64", "0.31.1"), ("rapier3d-f64", "0.36.1")];
 
-/// The version of rerun whose files are written, and whose viewer shows them.
+/// The version of rerun whose file format and viewer are used.
 pub const RERUN: &str = "0.36.3";
 
-/// What `--version` says: Benchdog, the engines that decide a verdict, and what writes recordings.
+/// The text of `--version`.
 pub static LONG: LazyLock<String> = LazyLock::new(|| {
     let engines = ENGINES.iter().map(|(name, version)| format!("\n{name} {version}"));
     let rerun =
@@ -16,7 +16,7 @@ pub static LONG: LazyLock<String> = LazyLock::new(|| {
     format!("{}{}{rerun}", env!("CARGO_PKG_VERSION"), engines.collect::<String>())
 });
 
-/// Name to version, for verdicts and recordings.
+/// The versions in verdicts, by name.
 pub fn versions() -> BTreeMap<String, String> {
     let own = ("benchdog", env!("CARGO_PKG_VERSION"));
     std::iter::once(own).chain(ENGINES).map(|(name, version)| (name.into(), version.into())).collect()

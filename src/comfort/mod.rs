@@ -22,7 +22,7 @@ use crate::{
     model::{
         frames::Pose,
         operation::Operation,
-        plan::{AverageComfort, Comfort},
+        plan::{Comfort, MeanComfort},
         scenario::ComfortSettings,
         wrench::Wrench,
     },
@@ -94,14 +94,14 @@ pub fn weighted(comfort: Comfort, settings: &ComfortSettings) -> Comfort {
 }
 
 /// Makes the mean over all answers the objective of a posture's comfort.
-pub fn rate_by_average(comfort: &mut Comfort, average: AverageComfort, settings: &ComfortSettings) {
+pub fn rate_by_average(comfort: &mut Comfort, average: MeanComfort, settings: &ComfortSettings) {
     comfort.objective = objective(settings, average.muscular_regularised, average.peripersonal_m);
     comfort.average = Some(average);
 }
 
 /// The mean comfort over the person's answers to a hold, discretised uniformly (METHOD section 3; the steps are those of
 /// [`Answer`]); none when there is no answer.
-pub fn average(hold: &Hold<'_>) -> Option<AverageComfort> {
+pub fn average(hold: &Hold<'_>) -> Option<MeanComfort> {
     let (mut answers, mut muscular, mut peripersonal_m) = (0_u64, 0.0, 0.0);
     answers::visit(hold, |_, answer| {
         answers += 1;
@@ -109,8 +109,8 @@ pub fn average(hold: &Hold<'_>) -> Option<AverageComfort> {
         peripersonal_m += answer.peripersonal_m;
     });
     let n = answers as f64;
-    (answers > 0).then(|| AverageComfort {
-        answers,
+    (answers > 0).then(|| MeanComfort {
+        responses: answers,
         muscular_regularised: muscular / n,
         peripersonal_m: peripersonal_m / n,
     })

@@ -162,7 +162,7 @@ fn the_best_answer_beats_the_grid_and_the_mean_lies_below_it() {
         assert!(best.objective >= of_grid, "{} {of_grid}", best.objective);
         let mean = average(&hold).unwrap();
         assert!(objective(&hold.settings, mean.muscular_regularised, mean.peripersonal_m) < of_grid);
-        assert!(mean.answers > 1_000);
+        assert!(mean.responses > 1_000);
     }
 }
 

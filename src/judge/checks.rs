@@ -57,14 +57,14 @@ pub(super) struct Crossing {
 }
 
 /// One measured series under a limit.
-struct Channel {
+struct Series {
     /// The hand, pad or joint; empty for the board.
     what: String,
     /// One entry a judged sample.
     values: Vec<f64>,
 }
 
-impl Channel {
+impl Series {
     fn new(what: String, values: &[f64]) -> Self {
         Self { what, values: values.to_vec() }
     }
@@ -83,11 +83,11 @@ pub(super) fn findings(
 ) -> Vec<Finding> {
     let count = judged.len();
     let hand = |kind, limit, series: fn(&HandMeasures) -> &[f64]| {
-        let channel = |hand: &HandMeasures| Channel::new(format!("{} hand", hand.name), &series(hand)[..count]);
-        sampled(kind, limit, measures.hands.iter().map(channel).collect())
+        let series = |hand: &HandMeasures| Series::new(format!("{} hand", hand.name), &series(hand)[..count]);
+        sampled(kind, limit, measures.hands.iter().map(series).collect())
     };
-    let deflection = Channel::new(String::new(), &measures.deflection_mm[..count]);
-    let joint = |joint: &JointMeasures| Channel::new(joint.name.clone(), &joint.torque_ratio[..count]);
+    let deflection = Series::new(String::new(), &measures.deflection_mm[..count]);
+    let joint = |joint: &JointMeasures| Series::new(joint.name.clone(), &joint.torque_ratio[..count]);
     let mut findings = vec![
         hand(CheckKind::Slip, limits.slip_mm, |hand| &hand.slip_mm),
         hand(CheckKind::SlipRotation, limits.slip_deg, |hand| &hand.slip_deg),
@@ -96,8 +96,8 @@ pub(super) fn findings(
     findings.extend(if to_the_end { creep(trace, judged, limits.creep_mm_s) } else { None });
     findings.extend([
         sampled(CheckKind::TorqueRatio, limits.torque_ratio, measures.joints.iter().map(joint).collect()),
-        sampled(CheckKind::PadOpen, OPEN_LIMIT_MS, pad_open_channels(trace, judged)),
-        sampled(CheckKind::ContactLost, CONTACT_LOST_LIMIT_MS, vec![contact_lost_channel(judged)]),
+        sampled(CheckKind::PadOpen, OPEN_LIMIT_MS, pad_open_series(trace, judged)),
+        sampled(CheckKind::ContactLost, CONTACT_LOST_LIMIT_MS, vec![contact_lost_series(judged)]),
         hand(CheckKind::Drop, DROP_MM, |hand| &hand.slip_mm),
     ]);
     findings.extend(person_overlap(trace, judged));
@@ -114,23 +114,23 @@ pub(super) fn first_failure(findings: &[Finding]) -> Option<(&Finding, &Crossing
 }
 
 /// For each pad, how long it has been open at each sample, ms.
-fn pad_open_channels(trace: &Trace, judged: &[Sample]) -> Vec<Channel> {
-    let pad_channel = |arm: usize, pad: usize| {
+fn pad_open_series(trace: &Trace, judged: &[Sample]) -> Vec<Series> {
+    let pad_series = |arm: usize, pad: usize| {
         let least_force_n = OPEN_SHARE * trace.arms[arm].grip_force_n;
-        Channel {
+        Series {
             what: format!("{} {} pad", trace.arms[arm].name, trace.arms[arm].pads[pad]),
             values: duration_ms(judged, |sample| sample.arms[arm].pads[pad].normal_force_n < least_force_n),
         }
     };
     (0..trace.arms.len())
         .flat_map(|arm| (0..trace.arms[arm].pads.len()).map(move |pad| (arm, pad)))
-        .map(|(arm, pad)| pad_channel(arm, pad))
+        .map(|(arm, pad)| pad_series(arm, pad))
         .collect()
 }
 
 /// How long no pad of any hand has touched the board at each sample, ms.
-fn contact_lost_channel(judged: &[Sample]) -> Channel {
-    Channel { what: String::new(), values: duration_ms(judged, |sample| !sample.is_touched()) }
+fn contact_lost_series(judged: &[Sample]) -> Series {
+    Series { what: String::new(), values: duration_ms(judged, |sample| !sample.has_contact()) }
 }
 
 /// How deep robot or board reach into the person; none when nobody stands there.
@@ -162,13 +162,13 @@ fn duration_ms(judged: &[Sample], condition: impl Fn(&Sample) -> bool) -> Vec<f6
 }
 
 /// The check of a limit on the largest of several series.
-fn sampled(kind: CheckKind, limit: f64, channels: Vec<Channel>) -> Finding {
-    let worst = channels.iter().flat_map(|channel| &channel.values).fold(0.0_f64, |worst, &value| worst.max(value));
-    let crossing = channels
+fn sampled(kind: CheckKind, limit: f64, series: Vec<Series>) -> Finding {
+    let worst = series.iter().flat_map(|series| &series.values).fold(0.0_f64, |worst, &value| worst.max(value));
+    let crossing = series
         .into_iter()
-        .filter_map(|channel| {
-            let sample = channel.values.iter().position(|&value| is_crossed(value, limit))?;
-            Some(Crossing { sample, what: channel.what })
+        .filter_map(|series| {
+            let sample = series.values.iter().position(|&value| is_crossed(value, limit))?;
+            Some(Crossing { sample, what: series.what })
         })
         .min_by_key(|crossing| crossing.sample);
     Finding { check: check(kind, worst, limit), crossing }

@@ -8,7 +8,7 @@ mod events;
 mod failing_load;
 mod fingerprint;
 mod measure;
-mod self_check;
+mod self_checks;
 #[cfg(test)]
 mod tests;
 
@@ -89,19 +89,19 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     if let Some(reason) = malformed(trace) {
         return no_verdict(trace, Measures::default(), Vec::new(), reason);
     }
-    let Believed { samples, ends_because } = believed(trace);
+    let ValidPart { samples, ends_because } = valid_part(trace);
     let reference = reference(samples);
     let measures = measure::measures(trace, &samples[reference..]);
     let judged = judged(samples, reference);
-    if let Some(reason) = undecidable(trace, judged, ends_because.as_deref()) {
+    if let Some(reason) = no_verdict_reason(trace, judged, ends_because.as_deref()) {
         return no_verdict(trace, measures, Vec::new(), reason);
     }
     let findings = checks::findings(trace, judged, &measures, limits, ends_because.is_none());
     let first = checks::first_failure(&findings);
     let decided = first.map_or(samples.len(), |(_, crossing)| reference + crossing.sample + 1);
-    let self_checks = self_check::self_checks(&samples[..decided]);
+    let self_checks = self_checks::self_checks(&samples[..decided]);
     let unfinished = ends_because.clone().filter(|_| first.is_none());
-    if let Some(reason) = unfinished.or_else(|| self_check::distrust(&self_checks)) {
+    if let Some(reason) = unfinished.or_else(|| self_checks::failed_self_checks(&self_checks)) {
         return no_verdict(trace, measures, self_checks, reason);
     }
     Judgement {
@@ -122,7 +122,7 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
 }
 
 /// The part of a trace that can be believed.
-struct Believed<'a> {
+struct ValidPart<'a> {
     /// The samples, up to the last good one; never none.
     samples: &'a [Sample],
     /// Why there are no more although the load went on, in words; none when the trace ran to its end.
@@ -131,10 +131,10 @@ struct Believed<'a> {
 
 /// The samples before the first number that is not finite, all of them when there is none; a simulation that broke down
 /// has left out what came after. A trace whose very first sample is none is left to [`malformed`].
-fn believed(trace: &Trace) -> Believed<'_> {
+fn valid_part(trace: &Trace) -> ValidPart<'_> {
     match trace.samples.iter().position(|sample| !fingerprint::sample_is_finite(sample)) {
-        Some(bad) => Believed { samples: &trace.samples[..bad], ends_because: Some(not_finite(&trace.samples[bad])) },
-        None => Believed { samples: &trace.samples, ends_because: trace.broke_down.clone() },
+        Some(bad) => ValidPart { samples: &trace.samples[..bad], ends_because: Some(not_finite(&trace.samples[bad])) },
+        None => ValidPart { samples: &trace.samples, ends_because: trace.broke_down.clone() },
     }
 }
 
@@ -149,7 +149,7 @@ fn reference(samples: &[Sample]) -> usize {
     if samples.iter().any(|sample| sample.phase.is_loaded()) {
         return settled;
     }
-    let last_touch = samples.iter().rposition(Sample::is_touched).map_or(0, |last| last + 1);
+    let last_touch = samples.iter().rposition(Sample::has_contact).map_or(0, |last| last + 1);
     settled.min(last_touch)
 }
 
@@ -157,7 +157,7 @@ fn reference(samples: &[Sample]) -> usize {
 /// load; none when the load never acted for another reason.
 fn judged(samples: &[Sample], reference: usize) -> &[Sample] {
     let end = samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
-    let lost = !samples[reference].is_touched();
+    let lost = !samples[reference].has_contact();
     let end = end.unwrap_or(if lost { samples.len() } else { reference });
     &samples[reference..end.max(reference)]
 }
@@ -187,7 +187,7 @@ fn malformed(trace: &Trace) -> Option<String> {
 }
 
 /// Why a well-formed trace allows no verdict whatever its limits; `ends_because` says why it was cut short, if so.
-fn undecidable(trace: &Trace, judged: &[Sample], ends_because: Option<&str>) -> Option<String> {
+fn no_verdict_reason(trace: &Trace, judged: &[Sample], ends_because: Option<&str>) -> Option<String> {
     if !fingerprint::constants_are_finite(trace) {
         return Some("found a limit or a tool point that is not finite".to_owned());
     }

@@ -1,9 +1,19 @@
-//! Poses and their form in files. Monogram notation: `x_wo` is the pose of frame O in frame W, `p_aq` the position of
-//! Q in A.
+//! Poses and their form in files.
 //!
-//! Frames: W world = robot base (x forward, y left, z up); O board, at its centre, z out of the worked face; T tool tip,
-//! z into the material; G gripper, z out of the fingers, which open along y; P pad, at its centre, z into the object;
-//! B person, on the floor between the feet; S shoulder centre, axes of B; H hand, at the wrist centre.
+//! Monogram notation: `x_wo` is the pose of frame O in frame W, `p_aq` the position of point Q in frame A.
+//!
+//! | frame | origin and axes |
+//! |---|---|
+//! | W | world: the robot's base, x forward, y left, z up |
+//! | O | board: its centre, z out of the worked face |
+//! | T | tool: its tip, z into the material |
+//! | G | gripper: the frame in the robot's URDF, z forward along the fingers, which open along y |
+//! | P | pad: its centre, z into the board |
+//! | B | person: on the floor between the feet |
+//! | S | shoulder centre, axes of B |
+//! | H | hand: the wrist centre |
+//!
+//! See `docs/method.md#11-frames`.
 
 use std::borrow::Cow;
 
@@ -14,11 +24,11 @@ use serde::{Deserialize, Serialize, de::Error as _};
 /// A rigid transform; `x_ab * p_b = p_a`.
 pub type Pose = Isometry3<f64>;
 
-/// How far from 1 the length of a quaternion in a file may be: six written digits keep it within this.
+/// Largest deviation of a quaternion's length from 1 in a file. Six written digits stay within it.
 const UNIT_TOLERANCE: f64 = 1e-5;
 
-/// Below this a quaternion counts as normalised already and is kept bit by bit, so that a plan that went through a file
-/// gives the same simulation as one that did not.
+/// A quaternion whose length deviates less than this is kept bit by bit: a plan read from a file then gives the same
+/// simulation as the plan that was written.
 const NORMALISED: f64 = 1e-12;
 
 /// A [`Pose`] in a file: `{"translation_m": [x, y, z], "rotation_xyzw": [x, y, z, w]}`.
@@ -37,10 +47,10 @@ impl From<&Pose> for PoseRecord {
     }
 }
 
-/// The rotation that a file's quaternion (scalar last) stands for.
+/// The rotation of a quaternion, scalar last.
 ///
 /// # Errors
-/// When the quaternion is not finite or its length is not 1 within 1e-5.
+/// If the quaternion is not finite or its length differs from 1 by more than 1e-5.
 pub fn rotation_from_xyzw(xyzw: [f64; 4]) -> Result<UnitQuaternion<f64>, String> {
     let [x, y, z, w] = xyzw;
     let quaternion = Quaternion::new(w, x, y, z);
@@ -67,7 +77,7 @@ impl TryFrom<PoseRecord> for Pose {
     }
 }
 
-/// `#[serde(with = "frames::pose")]`: a [`Pose`] as a [`PoseRecord`].
+/// For `#[serde(with = "frames::pose")]`: serialises a [`Pose`] as a [`PoseRecord`].
 pub mod pose {
     use serde::{Deserializer, Serializer};
 
@@ -81,13 +91,13 @@ pub mod pose {
     /// Reads a pose from a [`PoseRecord`].
     ///
     /// # Errors
-    /// When the record is malformed or its quaternion is not of unit length.
+    /// If the record is malformed or its quaternion is not of unit length.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Pose, D::Error> {
         Pose::try_from(PoseRecord::deserialize(deserializer)?).map_err(D::Error::custom)
     }
 }
 
-/// The schema of a six-component wrench array, shared by every field that holds one.
+/// The JSON Schema of a wrench: an array of six numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct WrenchSchema;
 

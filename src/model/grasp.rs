@@ -1,4 +1,4 @@
-//! A gripper on an edge of the board, as the few numbers that a planner chooses.
+//! The parameters of a gripper's grasp on an edge of the board.
 
 use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 
@@ -21,7 +21,7 @@ impl Edge {
     /// All four edges, counter-clockwise from +x_O.
     pub const ALL: [Self; 4] = [Self::PlusX, Self::PlusY, Self::MinusX, Self::MinusY];
 
-    /// The edge so many quarter turns further, counter-clockwise as seen from +z_O.
+    /// The edge after `quarters` quarter turns about z_O, counter-clockwise seen from +z_O.
     pub fn turned(self, quarters: usize) -> Self {
         let place = match self {
             Self::PlusX => 0,
@@ -32,7 +32,7 @@ impl Edge {
         Self::ALL[(place + quarters) % Self::ALL.len()]
     }
 
-    /// The unit vector in O that points out of the board across this edge.
+    /// The edge's outward unit normal, in O.
     pub fn outward_o(self) -> Vector3<f64> {
         match self {
             Self::PlusX => Vector3::x(),
@@ -42,8 +42,9 @@ impl Edge {
         }
     }
 
-    /// The edge that a gripper at `X_OG` reaches over: of those that its fingers come from within some 68 degrees, the one
-    /// that it is least deep inside. A grasp turns by 45 degrees at most, so its own edge is always among them.
+    /// The edge that a gripper at `x_og` grasps: of the edges whose outward normal is within about 68 degrees of -z_G, the
+    /// one that G is least deep inside. The angle of a planned grasp is at most 45 degrees, so its edge always
+    /// qualifies. `None` if no edge does.
     pub fn of(x_og: &Pose, size_m: [f64; 3]) -> Option<Self> {
         let backward_o = x_og.rotation * -Vector3::z();
         let depth_m =
@@ -52,7 +53,7 @@ impl Edge {
         behind.min_by(|a, b| depth_m(a).total_cmp(&depth_m(b)))
     }
 
-    /// Distance from the board's centre to the edge, and half the edge's length, m.
+    /// Distance from the board's centre to the edge and half the edge's length, m.
     pub fn reach_and_half_length_m(self, size_m: [f64; 3]) -> (f64, f64) {
         match self {
             Self::PlusX | Self::MinusX => (size_m[0] / 2.0, size_m[1] / 2.0),
@@ -72,24 +73,24 @@ impl std::fmt::Display for Edge {
     }
 }
 
-/// One gripper on one edge (METHOD section 2): z_G in the plane of the board pointing inward, y_G along +-z_O, centred
-/// in the thickness.
+/// A gripper's grasp on an edge: z_G lies in the board's plane and points inward, y_G along +z_O or -z_O, and G is
+/// centred in the thickness (`docs/method.md#25-edge-grasps`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeGrasp {
-    /// The edge that is held.
+    /// The grasped edge.
     pub edge: Edge,
-    /// Place along the edge, m, from its middle; positive counter-clockwise as seen from +z_O.
+    /// Position along the edge from its middle, m; positive counter-clockwise seen from +z_O.
     pub along_m: f64,
-    /// How far G lies inside the edge, measured along the edge's normal, m.
+    /// Distance of G from the edge into the board, along the edge's normal, m.
     pub depth_m: f64,
-    /// Turn of the gripper about z_O away from the edge's normal, rad.
+    /// Rotation about z_O of z_G against the edge's inward normal, rad.
     pub angle_rad: f64,
-    /// The finger axis y_G along -z_O instead of +z_O.
+    /// True if y_G, the axis along which the fingers open, points along -z_O, not +z_O.
     pub flipped: bool,
 }
 
 impl EdgeGrasp {
-    /// The gripper's pose on a board of this size, X_OG.
+    /// The gripper's pose `x_og` on a board of `size_m`.
     pub fn x_og(&self, size_m: [f64; 3]) -> Pose {
         let outward = self.edge.outward_o();
         let along = Vector3::z().cross(&outward);
@@ -115,7 +116,7 @@ mod tests {
                 let x_og = grasp.x_og([0.5, 0.4, 0.03]);
                 let z_g = x_og.rotation * Vector3::z();
                 let y_g = x_og.rotation * Vector3::y();
-                // cos(0.3): the turn of the gripper; rounding only.
+                // cos(0.3): the grasp's angle; rounding only.
                 assert!((z_g.dot(&-edge.outward_o()) - 0.3_f64.cos()).abs() < 1e-14);
                 assert!((y_g.z.abs() - 1.0).abs() < 1e-14);
                 assert_eq!(x_og.translation.vector.z, 0.0);

@@ -1,89 +1,82 @@
-//! How the tool loads the board over the time of a simulation, and how far the simulated world departs from the one that
-//! was planned for.
+//! The tool's load over time in a simulation, and the deviations of the simulated parameters from the planned ones.
 
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The load of a simulation: how the operation's wrench comes and goes, and which way it keeps pointing.
+/// The tool's load in a simulation (`docs/method.md#73-applied-load`).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Load {
-    /// What the wrench's direction is fixed to.
+    /// The frame in which the wrench's direction is constant.
     pub frame: ForceFrame,
-    /// The wrench over time.
+    /// The wrench as a function of time.
     pub profile: ForceProfile,
 }
 
-impl Load {
-    /// True for the load that a file need not spell out: a ramp that turns with the board.
-    pub fn is_plain(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
-/// What the direction of the tool's wrench is fixed to. It acts at the same point of the board either way.
+/// The frame in which the direction of the tool's wrench is constant. It acts at the same point of the board in both
+/// cases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ForceFrame {
-    /// The board: the wrench turns with it, as that of a tool which is stuck in it does.
+    /// The board: the wrench turns with the board, like that of a tool stuck in it.
     #[default]
     Board,
-    /// The world: the wrench keeps the direction that it has on the planned board, as that of a person who pushes on
-    /// does.
+    /// The world: the wrench keeps the direction that it has at the planned pose of the board, like that of a person who
+    /// keeps pushing in one direction.
     World,
 }
 
-/// How long the thrust of a drill takes to collapse when it breaks through, s.
+/// Time in which a drill's thrust falls to zero when it breaks through, s.
 pub const BREAKTHROUGH_S: f64 = 0.02;
 
-/// The tool's wrench over time. It grows in the ramp and acts in the hold; nothing acts before or after.
+/// The tool's wrench over time. It grows in the ramp phase and acts fully in the hold phase; it is zero before and after.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub enum ForceProfile {
-    /// The operation's wrench, growing evenly in the ramp and whole in the hold.
+    /// The operation's wrench: grows linearly in the ramp, constant in the hold.
     #[default]
     Ramp,
     /// A drill: `s(t) (w + z_T (vibration_n sin(2 pi vibration_hz t)); z_T spindle_torque_nm)` with `w` the operation's
-    /// wrench, `t` the time since the load began, and `s` the ramp, 1 in the hold, and from `breakthrough_s` on an even
-    /// fall to nothing within 20 ms.
+    /// wrench, `t` the time since the ramp began, and `s` the load factor: it grows linearly in the ramp, is 1 in the
+    /// hold, and from `breakthrough_s` on falls linearly to 0 within 20 ms.
     Drill {
-        /// Moment of the spindle on the board about z_T, N m: positive for a drill that turns clockwise for the one who
-        /// holds it.
+        /// Torque of the spindle on the board about z_T, N m: positive for a drill that turns clockwise as seen by the
+        /// person who holds it.
         spindle_torque_nm: f64,
         /// Amplitude of the thrust's vibration, N.
         vibration_n: f64,
-        /// Its frequency, Hz.
+        /// Frequency of the vibration, Hz.
         vibration_hz: f64,
-        /// When the drill breaks through, s after the hold began; never unless given.
+        /// When the drill breaks through, s after the start of the hold; by default it does not.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         breakthrough_s: Option<f64>,
     },
-    /// A knife that travels around a circle about `z_O` in the hold, in the direction of its force: wrench and point turn
-    /// with it.
+    /// A knife that moves along a circle about `z_O` during the hold, in the direction of its force. The wrench and its
+    /// point of application rotate with it.
     Path {
         /// Speed along the circle, m/s.
         speed_m_s: f64,
-        /// The circle's centre on the face, m along x_O and y_O.
+        /// The circle's centre on the worked face, m along x_O and y_O.
         centre_m: [f64; 2],
-        /// Force along z_T, into the face, as a share of the operation's force.
+        /// Force along z_T, into the face, as a fraction of the operation's force.
         normal_share: f64,
     },
-    /// A measured wrench in place of the operation's, linear between its rows; before the first and after the last the
-    /// wrench is that row's. The ramp is the profile's own.
+    /// A measured wrench that replaces the operation's. It is interpolated linearly between the rows and constant before the
+    /// first and after the last. No ramp is applied to it.
     Measured {
-        /// Rows of `[t, fx, fy, fz, mx, my, mz]`: s since the load began, N and N m about the tool tip in O axes, in the
-        /// order of time.
+        /// Rows of `[t, fx, fy, fz, mx, my, mz]` with increasing `t`: s since the ramp began, N, and N m about the tool
+        /// tip, O axes.
         samples: Vec<[f64; 7]>,
     },
 }
 
 impl ForceProfile {
-    /// Where a point is on the face after it has travelled along the circle for `travelled_s`, and by which angle about
-    /// z_O it went around the centre, rad: `speed / radius` a second, counter-clockwise when the force drives it so.
+    /// The angle about z_O that a point has moved around the circle's centre after `travelled_s`, rad:
+    /// `±(speed / radius) travelled_s`, positive if the force drives it counter-clockwise.
     ///
-    /// `p_ot_m` is the start and `force_o_n` the force there, O axes.
-    pub fn turned_rad(
+    /// `p_ot_m` is the start and `force_o_n` the force there, both in O.
+    pub fn travel_angle_rad(
         speed_m_s: f64,
         centre_m: [f64; 2],
         p_ot_m: &Vector3<f64>,
@@ -96,8 +89,8 @@ impl ForceProfile {
     }
 }
 
-/// What the simulation has, as a multiple of what the plan counts on; 1 throughout unless given. Plans and predictions
-/// do not see it.
+/// Parameters of the simulation as multiples of the values that the plan assumes; 1 by default. They do not affect plans
+/// and predictions (`docs/method.md#611-uncertain-friction-and-loads`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Uncertainty {
@@ -109,13 +102,6 @@ pub struct Uncertainty {
     pub contact_stiffness_scale: f64,
     /// Stiffness of every joint's position control.
     pub joint_stiffness_scale: f64,
-}
-
-impl Uncertainty {
-    /// True when the simulation has what the plan counts on.
-    pub fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 impl Default for Uncertainty {

@@ -1,70 +1,70 @@
-//! What a trace says about a hold, as numbers over time and as sentences. The judge derives them once; recordings and
-//! reports show the same ones.
+//! Quantities and events that the judge derives from a trace. Recordings and reports show the same ones.
 
 use super::verdict::CheckKind;
 
-/// The measured series of a hold (METHOD section 8), from the reference, the end of settling, to the end of what can be believed of the trace.
+/// The measured series of a hold, from the reference state (the end of settling) to the end of the valid part of the
+/// trace (`docs/method.md#81-reference-state`).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
-    /// Time since the start of the simulation, s; one entry a sample, as in every series below.
+    /// Time since the start of the simulation, s. This and every series below have one entry per sample.
     pub time_s: Vec<f64>,
-    /// The multiple of the operation's wrench that acted.
+    /// The applied multiple of the operation's wrench.
     pub load_factor: Vec<f64>,
-    /// How each hand moved on the board.
+    /// Motion of each hand relative to the board.
     pub hands: Vec<HandMeasures>,
-    /// Displacement of the tool point of the board in the world, mm.
+    /// Displacement in W of the board's tool point, mm.
     pub deflection_mm: Vec<f64>,
-    /// How hard each joint worked.
+    /// Torque ratio of each joint.
     pub joints: Vec<JointMeasures>,
 }
 
-/// How one hand moved on the board since the reference.
+/// Motion of one hand relative to the board since the reference state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandMeasures {
     /// The arm's name.
     pub name: String,
-    /// Translation of the point between its pads, in the board's frame, mm.
+    /// Translation in O of the point between the pads, mm.
     pub slip_mm: Vec<f64>,
-    /// Rotation against the board, degrees.
+    /// Rotation relative to the board, degrees.
     pub slip_deg: Vec<f64>,
 }
 
-/// How hard one joint worked.
+/// Torque ratio of one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointMeasures {
     /// The joint's name.
     pub name: String,
-    /// Size of the demanded torque over the joint's limit.
+    /// Absolute value of the demanded torque divided by the joint's limit.
     pub torque_ratio: Vec<f64>,
 }
 
-/// Something that a reader of a recording wants to jump to.
+/// An event in a trace that recordings and reports mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When, since the start of the simulation, s.
+    /// Time since the start of the simulation, s.
     pub time_s: f64,
-    /// What kind of news it is.
+    /// The kind of event.
     pub kind: EventKind,
-    /// What happened, in words.
+    /// A description.
     pub text: String,
-    /// What it happened to: a hand (`left hand`), a pad (`left upper pad`) or a joint; empty for the board and for phases.
+    /// The affected hand (`left hand`), pad (`left upper pad`) or joint; empty for the board and for phases.
     pub what: String,
 }
 
-/// What kind of news an [`Event`] is.
+/// The kind of an [`Event`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EventKind {
-    /// A part of the simulation begins.
+    /// A phase of the simulation begins.
     Phase,
-    /// The limit of this check was crossed for the first time.
+    /// The limit of this check is exceeded for the first time.
     LimitCrossed(CheckKind),
-    /// The simulation broke down.
+    /// The simulation broke down: its state is no longer finite or valid.
     BrokeDown,
 }
 
-/// The top of an axis from zero that shows a series and its limit: with a tenth above the larger of both, but not
-/// beyond four times the limit, lest a board that is lost press the limit's line to the floor. Without a limit, or with one
-/// of zero, the peak decides.
+/// The upper end of a plot's axis that starts at 0 and shows a series and its limit: 1.1 times the larger of peak and
+/// limit, where the peak counts at most four times the limit, so that the limit's line stays visible when a board is
+/// dropped. Without a limit, or if it is 0, 1.1 times the peak.
 pub fn axis_top(peak: f64, limit: Option<f64>) -> f64 {
     let top = match limit.filter(|limit| *limit > 0.0) {
         Some(limit) => peak.clamp(limit, 4.0 * limit),
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn an_axis_shows_the_limit_whatever_the_series_does() {
-        // Far below its limit, above it, and lost: 1.1 of the limit, of the peak, of four limits.
+        // Far below the limit, above it, and dropped: 1.1 times the limit, the peak, four times the limit.
         for (peak, top) in [(0.1, 2.2), (3.0, 3.3), (500.0, 8.8)] {
             // Two multiplications of exact decimals: a rounding each.
             assert!((axis_top(peak, Some(2.0)) - top).abs() < 1e-12);

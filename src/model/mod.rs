@@ -1,8 +1,7 @@
-//! The vocabulary: what the parts of Benchdog say to each other, and how it is written to files.
+//! The types that the other modules exchange, and their form in files.
 //!
-//! Every other module speaks in these types and none of them knows another module's internals, so this one must never
-//! know how a plan is found, simulated or judged. It uses nalgebra, serde and schemars (for the JSON Schemas), and
-//! nothing of ours.
+//! This module depends on nalgebra, serde and schemars (for the JSON Schemas) and on no other module of this crate. It
+//! contains no planning, simulation or judging code.
 
 pub mod frames;
 pub mod grasp;
@@ -15,8 +14,8 @@ pub mod trace;
 pub mod verdict;
 pub mod wrench;
 
-/// The `format` number that this build writes, and the only one that it reads.
+/// The file format: the only `format` number that this version writes and reads.
 pub const FORMAT: u32 = 1;
 
-/// Standard gravity's direction and size in the world frame W, m/s^2.
+/// Gravitational acceleration in W, m/s^2.
 pub const GRAVITY_W: nalgebra::Vector3<f64> = nalgebra::Vector3::new(0.0, 0.0, -9.81);

@@ -1,4 +1,5 @@
-//! The forceful operation: the wrench that the tool exerts on the board, and where (the paper's tuple `(°f, X_OT)`).
+//! The forceful operation: the wrench that the tool exerts on the board and the tool's pose, the paper's tuple
+//! `(°f, X_OT)` (`docs/method.md#21-forceful-operation`).
 
 use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 use schemars::JsonSchema;
@@ -9,20 +10,21 @@ use super::{
     wrench::Wrench,
 };
 
-/// What the person does to the board.
+/// The kind of a forceful operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum OperationKind {
-    /// A force along the tool's axis, into the board. The roll of the tool is free: a spindle is symmetric.
+    /// A force along the tool's axis, into the board. The tool's roll about this axis is free, because a spindle is
+    /// symmetric.
     Drill,
     /// A force along the blade's edge, in the plane of the face.
     Cut,
-    /// Any wrench at any tool pose.
+    /// An arbitrary wrench at an arbitrary pose of the tool.
     Wrench,
 }
 
 impl OperationKind {
-    /// True when the roll of the tool about its axis is the person's choice.
+    /// True if the person may choose the tool's roll about its axis.
     pub fn roll_is_free(self) -> bool {
         self == Self::Drill
     }
@@ -42,20 +44,20 @@ impl std::fmt::Display for OperationKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Operation {
-    /// What is done.
+    /// The kind.
     pub kind: OperationKind,
-    /// The wrench that the tool exerts on the object, about the tool tip, in O axes.
+    /// The wrench that the tool exerts on the board, about the tool tip, O axes.
     #[schemars(with = "WrenchSchema")]
     pub wrench_o: Wrench,
-    /// The tool tip's frame in O: z_T out of the tool into the material; for a blade x_T is the cutting direction.
+    /// The tool's pose in O: z_T points out of the tool into the material; for a blade x_T is the cutting direction.
     #[serde(with = "pose")]
     #[schemars(with = "PoseRecord")]
     pub x_ot: Pose,
 }
 
 impl Operation {
-    /// Drilling at a point of the worked face: `force_n` along `z_T = -z_O`, `x_T = x_O` until a roll is chosen
-    /// (METHOD section 2).
+    /// Drilling at a point of the worked face: `force_n` along `z_T = -z_O`; `x_T = x_O` until a roll is chosen
+    /// (`docs/method.md#22-drilling`).
     pub fn drill(point_m: [f64; 2], force_n: f64, thickness_m: f64) -> Self {
         let x_ot = tool_on_face(point_m, Vector3::x(), thickness_m);
         Self { kind: OperationKind::Drill, wrench_o: Wrench::from_force(Vector3::new(0.0, 0.0, -force_n)), x_ot }
@@ -68,38 +70,39 @@ impl Operation {
         Self { kind: OperationKind::Cut, wrench_o: Wrench::from_force(direction_o * force_n), x_ot }
     }
 
-    /// Cutting a circle about the middle of the board counter-clockwise, as the person sees it: `force_n` along the tangent at
-    /// the point `angle_rad` from x_O towards y_O (METHOD section 2).
+    /// Cutting a circle about the board's centre, counter-clockwise seen from +z_O: `force_n` along the tangent at the point
+    /// `angle_rad` from x_O towards y_O (`docs/method.md#23-cutting`).
     pub fn cut_on_circle(radius_m: f64, angle_rad: f64, force_n: f64, thickness_m: f64) -> Self {
         let (sin, cos) = libm::sincos(angle_rad);
         Self::cut([radius_m * cos, radius_m * sin], Vector3::new(-sin, cos, 0.0), force_n, thickness_m)
     }
 
-    /// The radius of the circle about the middle of the board that this operation cuts, m; none when it cuts none.
+    /// The radius of the circle about the board's centre that this operation cuts, m. `None` if it is not a cut or is at the
+    /// centre.
     pub fn circle_radius_m(&self) -> Option<f64> {
         let p_ot = self.x_ot.translation.vector;
         let radius_m = libm::hypot(p_ot.x, p_ot.y);
         (self.kind == OperationKind::Cut && radius_m > 0.0).then_some(radius_m)
     }
 
-    /// The operation with the tool turned by `roll_rad` about its own axis z_T.
+    /// The operation with the tool rotated by `roll_rad` about z_T.
     pub fn rolled(&self, roll_rad: f64) -> Self {
         let roll = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), roll_rad);
         Self { x_ot: self.x_ot * roll, ..*self }
     }
 
-    /// The wrench about the tool's tip in world axes, for an object at `x_wo`.
+    /// The wrench about the tool tip in W axes, for a board at `x_wo`.
     pub fn wrench_w(&self, x_wo: &Pose) -> Wrench {
         Wrench::new(x_wo.rotation * self.wrench_o.force_n, x_wo.rotation * self.wrench_o.moment_nm)
     }
 
-    /// The wrench about the object's origin in O axes: `(f, m + p_OT x f)`.
+    /// The wrench about the board's centre in O axes: `(f, m + p_OT x f)`.
     pub fn wrench_about_object(&self) -> Wrench {
         self.wrench_o.about(&self.x_ot.translation.vector)
     }
 }
 
-/// The tool tip's frame on the worked face: x_T as given, z_T = -z_O.
+/// The tool's pose on the worked face: x_T as given, z_T = -z_O.
 fn tool_on_face(point_m: [f64; 2], x_t: Vector3<f64>, thickness_m: f64) -> Pose {
     let z_t = -Vector3::z();
     let rotation = Rotation3::from_basis_unchecked(&[x_t, z_t.cross(&x_t), z_t]);

@@ -1,5 +1,6 @@
-//! The plan: where the board is held, by which arms, in which configuration, and how the person stands. Its JSON form is
-//! the contract with planners that are not ours.
+//! The plan: the board's pose, the arms' grasps and joint angles, and the person's posture.
+//!
+//! Its JSON form is the interface to other planners; see `benchdog schema plan`.
 
 use std::collections::BTreeMap;
 
@@ -9,38 +10,38 @@ use serde::{Deserialize, Serialize};
 use super::{
     frames::{Pose, PoseRecord, pose},
     operation::Operation,
-    scenario::{Hand, Person, PlannerKind, Scenario, Sex, is_zero},
+    scenario::{Hand, Person, PlannerKind, Scenario, Sex, is_default},
 };
 
-/// A hold of a board. `comfort`, `stability`, `human`, `planner` and `scenario` may be absent in a file that is read.
+/// A grasp of a board by a robot's arms. `human`, `comfort`, `stability`, `planner`, `scenario` and `benchdog` are optional.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
     /// The file format, 1.
     pub format: u32,
-    /// A name for tables and file names.
+    /// The name in tables and file names.
     pub name: String,
     /// The name of a built-in robot, or the path of a description file.
     pub robot: String,
-    /// The forceful operation, with the roll of the tool that was chosen.
+    /// The forceful operation, with the chosen roll of the tool.
     pub operation: Operation,
     /// The board and its pose.
     pub object: PlacedObject,
-    /// The arms that hold, in the order of the robot's description.
+    /// The arms that hold the board, in the order of the robot's description.
     pub arms: Vec<ArmHold>,
     /// The person's posture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human: Option<HumanPosture>,
-    /// The comfort of that posture.
+    /// The comfort of this posture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub comfort: Option<Comfort>,
-    /// The stability predicted.
+    /// The predicted stability.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,
-    /// Who made the plan.
+    /// How the plan was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub planner: Option<PlannerRecord>,
-    /// The scenario that the plan answers.
+    /// The scenario that was planned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Scenario>,
     /// The version of Benchdog that wrote the file.
@@ -48,7 +49,7 @@ pub struct Plan {
     pub benchdog: Option<String>,
 }
 
-/// The board in the world.
+/// The board and its pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlacedObject {
@@ -56,13 +57,13 @@ pub struct PlacedObject {
     pub size_m: [f64; 3],
     /// Mass, kg.
     pub mass_kg: f64,
-    /// Pose in the world.
+    /// Pose of the board in W.
     #[serde(with = "pose")]
     #[schemars(with = "PoseRecord")]
     pub x_wo: Pose,
 }
 
-/// One arm's part of the hold.
+/// The grasp and the joint angles of one arm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArmHold {
@@ -70,17 +71,17 @@ pub struct ArmHold {
     pub name: String,
     /// The arm's joints, from the base outward.
     pub joints: Vec<String>,
-    /// Their angles, rad.
+    /// The joint angles, rad.
     pub q_rad: Vec<f64>,
-    /// The gripper's pose on the board.
+    /// The gripper's pose in O.
     #[serde(with = "pose")]
     #[schemars(with = "PoseRecord")]
     pub x_og: Pose,
-    /// Force with which each finger is pushed, N.
+    /// The force that closes each finger, N.
     pub grip_force_n: f64,
 }
 
-/// The person's stance and working arm.
+/// The person's body dimensions, pose and arm configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HumanPosture {
@@ -88,77 +89,79 @@ pub struct HumanPosture {
     pub height_m: f64,
     /// Body mass, kg.
     pub mass_kg: f64,
-    /// Selects strengths and segment masses.
+    /// Selects the strength curves and segment masses.
     pub sex: Sex,
     /// The hand that holds the tool.
     pub hand: Hand,
     /// Strength percentile.
     pub percentile: f64,
-    /// How far the trunk leans forward about the hips, degrees; upright unless given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    /// Forward lean of the trunk about the hips, degrees; 0 by default.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub lean_deg: f64,
-    /// Pose of the body, on the floor between the feet.
+    /// Pose of the body in W; its origin is on the floor between the feet.
     #[serde(with = "pose")]
     #[schemars(with = "PoseRecord")]
     pub x_wb: Pose,
-    /// Angles of the working arm, rad; those of the mirrored right arm for a left-handed person.
+    /// Joint angles of the working arm, rad. For a left-handed person those of the mirrored right arm.
     pub q_rad: [f64; 7],
 }
 
 impl HumanPosture {
-    /// A person in a posture.
+    /// The posture of a person with this pose and these joint angles.
     pub fn new(person: &Person, x_wb: Pose, q_rad: [f64; 7]) -> Self {
         let Person { height_m, mass_kg, sex, hand, percentile, lean_deg } = *person;
         Self { height_m, mass_kg, sex, hand, percentile, lean_deg, x_wb, q_rad }
     }
 
-    /// The person without the posture.
+    /// The person's body dimensions.
     pub fn person(&self) -> Person {
         let Self { height_m, mass_kg, sex, hand, percentile, lean_deg, .. } = *self;
         Person { height_m, mass_kg, sex, hand, percentile, lean_deg }
     }
 }
 
-/// The comfort of a posture (METHOD sections 4 and 5).
+/// The comfort of a posture (`docs/method.md#4-muscular-comfort`, `docs/method.md#5-peripersonal-comfort`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Comfort {
-    /// `1 / ||alpha||^2`, as printed in the paper.
+    /// Muscular comfort as printed in the paper, `1 / ||alpha||^2` with the activations `alpha`.
     pub muscular: f64,
-    /// `1 / (||alpha||^2 + 0.01)`, which the planners maximise.
+    /// Regularised muscular comfort `1 / (||alpha||^2 + 0.01)`, which the planners maximise.
     pub muscular_regularised: f64,
-    /// The peripersonal metric, m.
+    /// Peripersonal comfort, m.
     pub peripersonal_m: f64,
-    /// The peripersonal metric times the number of body points: the sum in place of the mean, on the scale of the
-    /// paper's captions.
+    /// Peripersonal comfort times the number of body points: the sum instead of the mean, on the scale of the paper's
+    /// captions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peripersonal_scaled: Option<f64>,
-    /// `weight_muscular muscular_regularised + weight_peripersonal peripersonal_m`, or the normalised objective where
-    /// `comfort.peripersonal_share` asks for it; of this posture or, with `comfort.person = "average"`, of `average`.
+    /// The objective: `weight_muscular muscular_regularised + weight_peripersonal peripersonal_m`, or the normalised
+    /// objective if the scenario has `comfort.peripersonal_share`. It is that of this posture, or of `average` if the
+    /// scenario has `comfort.person = "average"`.
     pub objective: f64,
-    /// Torque over strength of each joint of the working arm.
+    /// Activation of each joint of the working arm: torque divided by strength.
     pub activations: [f64; 7],
-    /// The mean over all of the person's answers to the hold; only with `comfort.person = "average"`.
+    /// The mean comfort over all of the person's responses; only with `comfort.person = "average"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub average: Option<AverageComfort>,
-    /// The posture's RULA score; reported, not optimised.
+    pub average: Option<MeanComfort>,
+    /// The posture's RULA score. It is reported, not optimised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rula: Option<RulaScore>,
 }
 
-/// The mean comfort over the person's feasible answers on a uniform grid (METHOD section 3).
+/// The mean comfort over the person's feasible responses on a uniform grid (`docs/method.md#33-the-persons-response`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct AverageComfort {
-    /// How many answers the grid has.
-    pub answers: u64,
-    /// Mean of `1 / (||alpha||^2 + 0.01)`.
+pub struct MeanComfort {
+    /// Number of feasible responses on the grid.
+    #[serde(rename = "answers")]
+    pub responses: u64,
+    /// Mean regularised muscular comfort.
     pub muscular_regularised: f64,
-    /// Mean of the peripersonal metric, m.
+    /// Mean peripersonal comfort, m.
     pub peripersonal_m: f64,
 }
 
-/// The score of a posture by the Rapid Upper Limb Assessment (McAtamney & Corlett 1993).
+/// The score of a posture by the Rapid Upper Limb Assessment (RULA, McAtamney and Corlett 1993).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RulaScore {
@@ -170,37 +173,37 @@ pub struct RulaScore {
     pub neck_trunk_legs: u8,
 }
 
-/// The predicted stability (METHOD section 6).
+/// The predicted stability (`docs/method.md#6-stability`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stability {
-    /// The largest multiple of the operation that any distribution of forces holds; at most 100.
+    /// Load factor: the largest multiple of the operation's wrench for which some contact forces within the limits balance
+    /// it; at most 100.
     pub load_factor: f64,
-    /// The largest multiple that compliant, position-controlled arms hold; at most 100.
+    /// Compliant load factor: the largest multiple that position-controlled, compliant arms resist; at most 100.
     pub compliant_load_factor: f64,
-    /// What limits the load factor, such as `left upper pad: friction` or `left_w1: torque`.
+    /// The constraints that are active at the load factor, such as `left upper pad: friction` or `left_w1: torque`.
     pub binding: Vec<String>,
-    /// Joint torques of each arm in the compliant equilibrium at load 1, N m.
+    /// Joint torques of each arm in the compliant equilibrium at load factor 1, N m.
     pub joint_torque_nm: BTreeMap<String, Vec<f64>>,
-    /// Length of the displacement of the tool point in the compliant equilibrium at load 1, mm.
+    /// Displacement of the tool point in the compliant equilibrium at load factor 1, mm.
     pub predicted_deflection_mm: f64,
 }
 
-/// Who made the plan, and at what cost.
+/// How a plan was found, and at what cost.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlannerRecord {
-    /// What was maximised.
+    /// The planner.
     pub kind: PlannerKind,
     /// Seed of the search.
     pub seed: u64,
-    /// Time that the search took, ms; this and `map_ms` are the figures that two equal runs do not share.
+    /// Duration of the search, ms. Only this and `map_ms` differ between two equal runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall_ms: Option<f64>,
-    /// Time that the map of the robot and this size of board took, ms: that is made once for all plans of one run; zero
-    /// where it was at hand.
+    /// Duration of the precomputation that the plan uses, ms. Plans of one command may share it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_ms: Option<f64>,
-    /// How many candidates the search scored.
+    /// Number of candidates that the search evaluated.
     pub evaluations: u64,
 }

@@ -1,7 +1,7 @@
-//! The resolved scenario: every figure that a plan, a simulation and a verdict depend on, with every default filled in.
+//! The resolved scenario: every input of a plan, a simulation and a verdict, with all defaults filled in.
 //!
-//! A scenario file may leave most of this out; `crate::scenario` reads, checks and completes it. A plan carries the
-//! resolved form, so that anyone can recompute every figure from the plan's file alone.
+//! Most keys of a scenario file are optional; `crate::scenario` reads, checks and completes the file. A plan contains the
+//! resolved scenario, so that its values can be recomputed from the plan's file alone.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,16 +12,16 @@ use super::{
     verdict::VerdictKind,
 };
 
-/// A scenario with every default filled in.
+/// A scenario with all defaults filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     /// The file format, 1.
     pub format: u32,
-    /// A name for tables and file names.
+    /// The name in tables and file names.
     pub name: String,
-    /// The robot, with the figures of its description that the result depends on.
-    pub robot: RobotFigures,
+    /// The robot, with the parameters of its description that the result depends on.
+    pub robot: RobotParameters,
     /// The person.
     pub human: Person,
     /// The tool in the person's hand.
@@ -30,67 +30,67 @@ pub struct Scenario {
     pub object: Board,
     /// The forceful operation.
     pub operation: Operation,
-    /// How comfort is measured.
+    /// How comfort is defined.
     pub comfort: ComfortSettings,
-    /// How the hold is planned.
+    /// The planner.
     pub planner: PlannerSettings,
-    /// The grippers.
+    /// Grip force and friction.
     pub grip: Grip,
-    /// The simulation.
+    /// Phases and time step of the simulation.
     pub simulation: SimulationSettings,
-    /// How the tool loads the board over time; a ramp that turns with the board unless given.
-    #[serde(default, skip_serializing_if = "Load::is_plain")]
+    /// The tool's load over time; by default a ramp of a wrench that rotates with the board.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub load: Load,
-    /// How far the simulation departs from what the plan counts on; not at all unless given.
-    #[serde(default, skip_serializing_if = "Uncertainty::is_none")]
+    /// Deviations of the simulation from the values that the plan assumes; none by default.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub uncertainty: Uncertainty,
-    /// What the hold must keep to.
+    /// The limits that the hold must not exceed.
     pub limits: Limits,
-    /// What the author expects.
+    /// The expected verdict.
     pub expect: Expectation,
 }
 
-/// The robot's name and those of its figures that the stability and the simulation use.
+/// The robot's name and the parameters that stability and simulation depend on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RobotFigures {
+pub struct RobotParameters {
     /// The name of a built-in robot, or the path of a description file.
     pub description: String,
-    /// One entry an arm, in the description's order.
-    pub arms: Vec<ArmFigures>,
+    /// One entry per arm, in the description's order.
+    pub arms: Vec<ArmParameters>,
 }
 
-/// Figures of one arm.
+/// Parameters of one arm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ArmFigures {
+pub struct ArmParameters {
     /// The arm's name.
     pub name: String,
     /// The arm's joints, from the base outward.
     pub joints: Vec<String>,
-    /// Stiffness of each joint's position control, N m/rad.
+    /// Stiffness of each joint under position control, N m/rad.
     pub stiffness_nm_rad: Vec<f64>,
-    /// Damping of each joint's position control, N m s/rad.
+    /// Damping of each joint under position control, N m s/rad.
     pub damping_nm_s_rad: Vec<f64>,
-    /// The largest torque of each joint, N m.
+    /// Torque limit of each joint, N m.
     pub effort_nm: Vec<f64>,
     /// The pads of the arm's gripper.
-    pub pads: Vec<PadFigures>,
+    pub pads: Vec<PadParameters>,
 }
 
-/// One pad of a gripper.
+/// Parameters of one pad of a gripper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PadFigures {
+pub struct PadParameters {
     /// The pad's name, such as `upper`.
     pub name: String,
-    /// Its full sides along x_G and z_G, m.
+    /// Side lengths along x_G and z_G, m.
     pub size_m: [f64; 2],
-    /// Where its centre lies along x_G and z_G, m.
+    /// Position of its centre along x_G and z_G, m.
     pub centre_m: [f64; 2],
 }
 
-/// Male or female: selects strengths and segment masses.
+/// Selects the strength curves and segment masses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Sex {
@@ -100,13 +100,13 @@ pub enum Sex {
     Female,
 }
 
-/// The hand that works.
+/// The hand that holds the tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Hand {
     /// The right hand.
     Right,
-    /// The left hand: the mirror image of the right, tool included.
+    /// The left hand: the mirror image of the right hand, tool included.
     Left,
 }
 
@@ -118,36 +118,31 @@ pub struct Person {
     pub height_m: f64,
     /// Body mass, kg.
     pub mass_kg: f64,
-    /// Selects strengths and segment masses.
+    /// Selects the strength curves and segment masses.
     pub sex: Sex,
     /// The hand that holds the tool.
     pub hand: Hand,
     /// Strength percentile, 0.1 to 99.9.
     pub percentile: f64,
-    /// How far the trunk leans forward about the hips, degrees; 0, upright, unless given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    /// Forward lean of the trunk about the hips, degrees; 0, upright, by default.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub lean_deg: f64,
 }
 
-/// True for what need not be written.
-pub(super) fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-/// True for what need not be written.
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+/// True for values that files omit.
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// The tool in the hand: mass and the tip's frame T in the right hand's frame H.
+/// The tool in the hand: its mass and its frame T in the right hand's frame H.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tool {
-    /// Mass, kg; it acts at the palm.
+    /// Mass, kg. Its centre is at the palm.
     pub mass_kg: f64,
     /// Position of the tip in H, m.
     pub tip_h_m: [f64; 3],
-    /// Rotation R_HT, unit quaternion, scalar last.
+    /// Rotation `R_HT`, unit quaternion, scalar last.
     pub rotation_xyzw: [f64; 4],
 }
 
@@ -170,100 +165,103 @@ impl Board {
     }
 }
 
-/// How the person answers a hold, when it is scored.
+/// Which of the person's feasible responses to a grasp determines its comfort (`docs/method.md#33-the-persons-response`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum PersonAnswer {
-    /// The best feasible answer.
-    Most,
-    /// The mean over all feasible answers of a uniform grid. The search looks for holds with the best answer and ranks the
-    /// best few of them by the mean.
-    Average,
+pub enum ResponseKind {
+    /// The best feasible response.
+    #[serde(rename = "most")]
+    Best,
+    /// The mean over all feasible responses on a uniform grid. The search uses the best response and ranks its best few
+    /// grasps by the mean.
+    #[serde(rename = "average")]
+    Mean,
 }
 
-/// The form of the peripersonal metric (METHOD section 5).
+/// The form of peripersonal comfort (`docs/method.md#5-peripersonal-comfort`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PeripersonalForm {
-    /// The smallest distance.
+    /// The minimum distance.
     Min,
     /// The mean distance.
     Mean,
-    /// The mean weighted towards close points.
+    /// The mean distance, weighted towards close points.
     Weighted,
 }
 
-/// Which sign decides between the two strengths of a joint (METHOD section 4).
+/// Which sign selects one of the two strengths of a joint (`docs/method.md#47-direction-of-motion`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum StrengthDirection {
-    /// The sign of the motion that the wrench drives, as the paper has it.
+    /// The sign of the joint motion that the wrench drives, as in the paper.
     Paper,
-    /// The sign of the joint's torque.
+    /// The sign of the joint torque.
     Torque,
 }
 
-/// How comfort is measured.
+/// How comfort is defined.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ComfortSettings {
-    /// Best or mean answer of the person.
-    pub person: PersonAnswer,
-    /// Form of the peripersonal metric.
+    /// The person's best response (`most`) or the mean of all responses (`average`).
+    pub person: ResponseKind,
+    /// Form of peripersonal comfort.
     pub peripersonal: PeripersonalForm,
-    /// The distance beyond which the robot's being farther away is no more comfortable, m: every distance `d` of the
-    /// peripersonal metric is replaced by `min(d, saturation_m)`. As in the paper, none unless given.
+    /// Distance beyond which peripersonal comfort does not increase, m: every distance `d` is replaced by
+    /// `min(d, saturation_m)`. By default distances are not saturated, as in the paper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub saturation_m: Option<f64>,
-    /// Which sign selects a strength.
+    /// Which sign selects the strength of a joint.
     pub direction: StrengthDirection,
-    /// Weight of the regularised muscular comfort.
+    /// Weight of regularised muscular comfort.
     pub weight_muscular: f64,
-    /// Weight of the peripersonal comfort, 1/m.
+    /// Weight of peripersonal comfort, 1/m.
     pub weight_peripersonal: f64,
-    /// In place of the two weights: the share `s` of the peripersonal comfort, from 0 to 1, in the normalised objective
+    /// Instead of the two weights: the share `s` of peripersonal comfort, from 0 to 1, in the normalised objective
     /// `100 ((1 - s) muscular_regularised / optima.muscular_regularised + s peripersonal_m / optima.peripersonal_m)`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peripersonal_share: Option<f64>,
-    /// What the comforts are over in the normalised objective. Unless given, the planner `comfort` finds it: what the
-    /// planners of either comfort alone reach. The others do not look for it: where `random` chooses the person's answer,
-    /// and where they state the objective, 100 and 1 m stand in.
+    /// The values that the normalised objective divides the comforts by. By default the planner `comfort` determines them: the
+    /// values that the planners `muscular` and `peripersonal` reach. The other planners do not determine them; where they
+    /// need the objective, they use 100 and 1 m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub optima: Option<Optima>,
 }
 
-/// The best of each comfort that can be had when the other does not count.
+/// The largest value of each comfort if the other one has no weight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Optima {
-    /// `1 / (||alpha||^2 + 0.01)`.
+    /// Regularised muscular comfort `1 / (||alpha||^2 + 0.01)`.
     pub muscular_regularised: f64,
-    /// The peripersonal metric, m.
+    /// Peripersonal comfort, m.
     pub peripersonal_m: f64,
 }
 
 impl Optima {
-    /// Stands in where optima are not known: the bound of the muscular comfort, and 1 m.
-    const UNKNOWN: Self = Self { muscular_regularised: 100.0, peripersonal_m: 1.0 };
+    /// Used if the optima are not known: the upper bound of regularised muscular comfort, and 1 m.
+    const FALLBACK: Self = Self { muscular_regularised: 100.0, peripersonal_m: 1.0 };
 }
 
 impl ComfortSettings {
-    /// The weights of the regularised muscular comfort and of the peripersonal one (1/m) in the objective, which is their
-    /// weighted sum in either form.
+    /// The weights of regularised muscular comfort and of peripersonal comfort (1/m) in the objective, which is their weighted
+    /// sum also if it is normalised.
     pub fn weights(&self) -> [f64; 2] {
         let Some(share) = self.peripersonal_share else { return [self.weight_muscular, self.weight_peripersonal] };
-        let Optima { muscular_regularised, peripersonal_m } = self.optima.unwrap_or(Optima::UNKNOWN);
-        // A comfort whose best is nothing cannot be weighed by it.
+        let Optima { muscular_regularised, peripersonal_m } = self.optima.unwrap_or(Optima::FALLBACK);
+        // No division by an optimum of zero.
         let over = |share: f64, best: f64| if best > 0.0 { 100.0 * share / best } else { 0.0 };
         [over(1.0 - share, muscular_regularised), over(share, peripersonal_m)]
     }
 }
 
 impl Default for ComfortSettings {
-    /// METHOD section 5: the weights of the paper's combined metric, 64 being the number of body points.
+    /// The weights of the paper's combined metric; 64 is the number of body points
+    /// (`docs/method.md#56-weight-in-the-objective`).
     fn default() -> Self {
         Self {
-            person: PersonAnswer::Most,
+            person: ResponseKind::Best,
             peripersonal: PeripersonalForm::Weighted,
             saturation_m: None,
             direction: StrengthDirection::Paper,
@@ -275,17 +273,17 @@ impl Default for ComfortSettings {
     }
 }
 
-/// What a planner looks for (METHOD section 3).
+/// What a planner maximises (`docs/method.md#32-objective`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PlannerKind {
-    /// The best of both comforts together, weighted.
+    /// The weighted sum of both comforts.
     Comfort,
-    /// The best muscular comfort; the peripersonal one has no weight.
+    /// Muscular comfort.
     Muscular,
-    /// The best peripersonal comfort; the muscular one has no weight.
+    /// Peripersonal comfort.
     Peripersonal,
-    /// Any hold, drawn uniformly; the person answers it as best they can.
+    /// Nothing: a feasible grasp is drawn uniformly, and the person's best response to it is chosen.
     Random,
 }
 
@@ -293,12 +291,12 @@ impl PlannerKind {
     /// All planners, in the order of the paper's table.
     pub const ALL: [Self; 4] = [Self::Comfort, Self::Peripersonal, Self::Muscular, Self::Random];
 
-    /// The comfort that this planner maximises: `settings` as a weighted sum, with the weight of what it does not look at
-    /// set to zero.
+    /// The objective of this planner: `settings` as a weighted sum, with a weight of 0 for the comfort that the planner
+    /// ignores.
     pub fn objective(self, settings: ComfortSettings) -> ComfortSettings {
         let [weight_muscular, weight_peripersonal] = match self {
             Self::Comfort | Self::Random => settings.weights(),
-            // What is over its own optimum is best where it is best by itself, whatever its share.
+            // Dividing one comfort by its optimum does not move its maximum.
             Self::Muscular | Self::Peripersonal if settings.peripersonal_share.is_some() => [1.0, 1.0],
             Self::Muscular | Self::Peripersonal => settings.weights(),
         };
@@ -328,47 +326,47 @@ impl std::fmt::Display for PlannerKind {
     }
 }
 
-/// How much work a search may do.
+/// The search budget.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Budget {
-    /// For a robot that replans while the person moves.
+    /// For replanning while the person moves.
     Fast,
     /// For one plan.
     #[default]
     Default,
-    /// A hundred times the default: what the others are measured against.
+    /// A hundred times the default; a reference for the other two.
     Exhaustive,
 }
 
-/// Which stability a plan must show (METHOD section 6).
+/// The stability criterion of a plan (`docs/method.md#6-stability`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum StabilityKind {
-    /// The load factor of the cone program alone, as the paper has it.
+    /// The load factor only, as in the paper (`docs/method.md#65-load-factor`).
     Paper,
-    /// Also the compliant load factor and the predicted deflection.
+    /// Also the compliant load factor and the predicted deflection (`docs/method.md#69-compliant-load-factor`).
     Compliant,
 }
 
-/// How the hold is planned.
+/// Settings of the planner.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PlannerSettings {
-    /// The objective.
+    /// What the planner maximises.
     pub kind: PlannerKind,
-    /// The stability that a plan must show.
+    /// The stability criterion.
     pub stability: StabilityKind,
     /// Seed of the search.
     pub seed: u64,
-    /// How much work the search may do.
+    /// The search budget.
     #[serde(skip_serializing_if = "is_default")]
     pub budget: Budget,
-    /// The largest number of candidates that the search may look at, if that ends it before the budget does. The searches for
-    /// the optima of a normalised objective may look at as many each.
+    /// Largest number of candidates that the search evaluates, if that is less than the budget allows. The two searches for
+    /// the optima of a normalised objective may each evaluate as many.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evaluations: Option<u64>,
-    /// A plan file to judge in place of planning, relative to the scenario's file.
+    /// A plan file that is simulated instead of planning; relative to the scenario file's folder.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<String>,
 }
@@ -386,45 +384,45 @@ impl Default for PlannerSettings {
     }
 }
 
-/// The grippers' squeeze and friction.
+/// Grip force and friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Grip {
-    /// Force with which each finger is pushed, N.
+    /// The force that closes each finger, N.
     pub force_n: f64,
-    /// Coulomb friction between pad and board.
+    /// Coulomb friction coefficient of pads and board.
     pub friction: f64,
 }
 
 impl Default for Grip {
-    /// METHOD section 7.
+    /// The default grip force and friction (`docs/method.md#76-robot-figures`).
     fn default() -> Self {
         Self { force_n: 30.0, friction: 0.6 }
     }
 }
 
-/// The simulation's phases and step.
+/// The simulation's phases and time step (`docs/method.md#74-phases`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SimulationSettings {
-    /// Time under gravity alone before the load, s.
+    /// Duration of the settle phase, s: gravity only.
     pub settle_s: f64,
-    /// Time in which the load grows from nothing to the whole wrench, s.
+    /// Duration of the ramp, s: the load grows from zero to the full wrench.
     pub ramp_s: f64,
-    /// Time under the whole wrench, s.
+    /// Duration of the hold, s: the full wrench acts.
     pub hold_s: f64,
-    /// Time after the load is taken away, s.
+    /// Duration of the release phase, s: the load is removed.
     pub release_s: f64,
     /// Time step, s.
     pub timestep_s: f64,
 }
 
 impl SimulationSettings {
-    /// The longest time step, s: beyond it contacts sink in so far that a light board's hold loses its meaning.
+    /// The longest time step, s. Beyond it contacts of a light board penetrate too deeply for a valid result.
     pub const MAX_TIMESTEP_S: f64 = 0.004;
     /// The largest number of steps: 200 s at 2 ms, a trace of about 100 MB.
     pub const MAX_STEPS: usize = 100_000;
-    /// The fewest steps of a hold: creep is a slope over its second half.
+    /// The fewest steps of the hold phase: creep is a slope over its second half.
     pub const MIN_HOLD_STEPS: usize = 10;
 }
 
@@ -434,29 +432,29 @@ impl Default for SimulationSettings {
     }
 }
 
-/// What the hold must keep to (METHOD section 8).
+/// The limits of a hold (`docs/method.md#8-judgement`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
-    /// Translation of a hand on the board, mm.
+    /// Translation of a hand relative to the board, mm.
     pub slip_mm: f64,
-    /// Rotation of a hand on the board, degrees.
+    /// Rotation of a hand relative to the board, degrees.
     pub slip_deg: f64,
-    /// Displacement of the tool point of the board, mm.
+    /// Displacement of the board's tool point, mm.
     pub deflection_mm: f64,
-    /// Rate of slip in the second half of the hold, mm/s.
+    /// Rate of slip in the second half of the hold phase, mm/s.
     pub creep_mm_s: f64,
-    /// Demanded joint torque over its limit.
+    /// Demanded joint torque divided by its limit.
     pub torque_ratio: f64,
-    /// The load factor that a plan must be predicted to stand.
+    /// Smallest predicted load factor of a plan; the planner requires 1.1 times this value of the compliant load factor.
     pub load_factor: f64,
 }
 
-/// What the author of a scenario expects of it.
+/// The expected result of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
-    /// The verdict that counts as success.
+    /// The verdict that counts as a success.
     pub verdict: VerdictKind,
 }
 
@@ -480,7 +478,7 @@ mod tests {
             assert!((muscular * 62.0 - 100.0 * (1.0 - share)).abs() < rounding);
             assert!((peripersonal * 1.25 - 100.0 * share).abs() < rounding);
         }
-        // Where optima are not known, the bound of the muscular comfort and 1 m.
+        // Unknown optima: the upper bound of muscular comfort, and 1 m.
         let unknown = ComfortSettings { optima: None, ..with(0.25) };
         assert_eq!(unknown.weights(), [0.75, 25.0]);
         assert_eq!(ComfortSettings::default().weights(), [1.0, 64.0]);

@@ -1,23 +1,23 @@
-//! The trace: what happened in a simulation, step by step. The judge and the recording see this and nothing else of the
-//! physics.
+//! The trace of a simulation: the state after every step. It is all that the judge and the recording receive from the
+//! simulation.
 
 use super::{frames::Pose, wrench::Wrench};
 
-/// A part of the simulation.
+/// A phase of the simulation (`docs/method.md#74-phases`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Phase {
-    /// Under gravity alone; the state at its end is the reference.
+    /// Gravity only. The state at its end is the reference state.
     Settle,
     /// The load grows.
     Ramp,
-    /// Under the whole load.
+    /// The full load acts.
     Hold,
-    /// The load is gone.
+    /// The load is removed.
     Release,
 }
 
 impl Phase {
-    /// The phase's name in tables and recordings.
+    /// The name in tables and recordings.
     pub fn name(self) -> &'static str {
         match self {
             Self::Settle => "settle",
@@ -27,95 +27,95 @@ impl Phase {
         }
     }
 
-    /// True while the tool's wrench acts.
+    /// True if the tool's wrench acts in this phase.
     pub fn is_loaded(self) -> bool {
         matches!(self, Self::Ramp | Self::Hold)
     }
 }
 
-/// A simulated hold.
+/// The trace of a simulated hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The arms, in the order of every sample's `arms`.
     pub arms: Vec<ArmTrace>,
-    /// Position of the tool point on the board at the start, in O, m.
+    /// Position in O of the tool point at the start, m.
     pub p_ot_m: nalgebra::Vector3<f64>,
-    /// One sample a step, the first at time 0. The sample's forces are those of the step that led to it.
+    /// One sample per step, the first at time 0. Forces are those of the step that ends at the sample.
     pub samples: Vec<Sample>,
-    /// When and why the simulation broke down, in words; the samples end before. None when it ran to its end.
+    /// When and why the simulation broke down; the samples end before. `None` if it completed.
     pub broke_down: Option<String>,
-    /// The first bodies of robot or board and person that overlapped; none when none did, or the plan has no person.
+    /// The first overlap of the robot or the board with the person. `None` if there was none or the plan has no person.
     pub person_touch: Option<PersonTouch>,
 }
 
-/// Who touched the person, and where.
+/// An overlap with the person.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PersonTouch {
-    /// A link's name, or `the board`.
+    /// The name of the overlapping link, or `the board`.
     pub body: String,
-    /// The part of the person, in words.
+    /// The body part of the person.
     pub part: String,
 }
 
-/// What stays the same about an arm during a simulation.
+/// The constant data of an arm in a trace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmTrace {
     /// The arm's name.
     pub name: String,
-    /// The arm's joints, in the order of every sample.
+    /// The arm's joints, in the order of the samples.
     pub joints: Vec<String>,
-    /// The largest torque of each joint, N m.
+    /// The torque limit of each joint, N m.
     pub effort_nm: Vec<f64>,
-    /// The pads, in the order of every sample.
+    /// The pads, in the order of the samples.
     pub pads: Vec<String>,
-    /// Force with which each finger is pushed, N.
+    /// The force that closes each finger, N.
     pub grip_force_n: f64,
 }
 
 /// The state after one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// Time since the start, s.
+    /// Time since the start of the simulation, s.
     pub time_s: f64,
-    /// The part of the simulation.
+    /// The phase.
     pub phase: Phase,
-    /// The multiple of the operation's wrench that acts.
+    /// The applied multiple of the operation's wrench.
     pub load_factor: f64,
-    /// The tool's wrench on the board about the tool point, world axes.
+    /// The tool's wrench on the board about the tool point, W axes.
     pub tool_wrench_w: Wrench,
     /// The board's pose.
     pub x_wo: Pose,
-    /// Position of the tool point on the board, in O, m: a knife travels.
+    /// Position in O of the tool point, m. It changes if the load is a `path`.
     pub p_ot_m: nalgebra::Vector3<f64>,
-    /// One entry an arm.
+    /// One entry per arm.
     pub arms: Vec<ArmSample>,
-    /// What the engine makes of the laws of mechanics.
+    /// How well the engine satisfied the laws of mechanics in this step.
     pub self_check: StepCheck,
-    /// Least distance of robot and board from the person, who stands still, m; the depth of an overlap as a negative number. Tool,
-    /// working hand and forearm may be at the board. Measured every 10 ms, in every step where it is below 1 cm, and held in
-    /// between. None when the plan has no person.
+    /// Least distance of robot and board from the person, who does not move, m; negative for an overlap: its depth. Tool,
+    /// working hand and forearm are not compared with the board. It is measured every 10 ms, and in every step while it
+    /// is below 1 cm; other samples repeat the last value. `None` if the plan has no person.
     pub person_distance_m: Option<f64>,
 }
 
-/// How far the engine is from the laws that it should keep, in one step.
+/// Deviations of one step from the laws of mechanics (`docs/method.md#75-self-checks`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepCheck {
     /// Deepest penetration of a pad that touches the board, m.
     pub penetration_m: f64,
-    /// What the board's change of momentum leaves unexplained: `|m dv/dt - (pads + tool + weight)|`, N. The pads' forces
-    /// are those of the last substep, so it is nothing at rest and no figure of merit while forces change quickly.
+    /// Residual of the board's momentum balance: `|m dv/dt - (pads + tool + weight)|`, N. The pads' forces are those of the
+    /// last substep, so the residual is meaningful only while forces change slowly.
     pub force_residual_n: f64,
-    /// How far the travels of two coupled fingers differ, m.
+    /// Difference between the travels of two coupled fingers, m.
     pub coupling_m: f64,
-    /// Energy that contacts and integration brought into the scene since the start, J: the kinetic energy less the work
-    /// of weight, servos, fingers and tool. Friction and damping make it fall; nothing real makes it rise, but for
-    /// the little that contacts store.
+    /// Energy that contacts and integration added to the scene since the start, J: the kinetic energy minus the work of
+    /// weight, servos, fingers and tool. Friction and damping decrease it. It can increase physically only by the
+    /// small elastic energy of the contacts.
     pub contact_energy_j: f64,
 }
 
 impl Sample {
-    /// True when some pad presses on the board.
-    pub fn is_touched(&self) -> bool {
+    /// True if at least one pad presses on the board.
+    pub fn has_contact(&self) -> bool {
         self.arms.iter().flat_map(|arm| &arm.pads).any(|pad| pad.normal_force_n > 0.0)
     }
 }
@@ -125,15 +125,15 @@ impl Sample {
 pub struct ArmSample {
     /// Joint angles, rad.
     pub q_rad: Vec<f64>,
-    /// Travel of each finger from its closed limit, m.
+    /// Travel of each finger from its closed position, m.
     pub finger_m: Vec<f64>,
-    /// Torque that the position control asked for, N m.
+    /// Joint torques demanded by the position control, N m.
     pub torque_demanded_nm: Vec<f64>,
-    /// Torque after the effort limit, N m.
+    /// Joint torques after the effort limit, N m.
     pub torque_applied_nm: Vec<f64>,
-    /// Pose of the hand on the board: the frame with the gripper's axes at the centre between its pads, in O.
+    /// Pose of the hand in O: G axes, origin at the centre between the pads.
     pub x_oc: Pose,
-    /// One entry a pad.
+    /// One entry per pad.
     pub pads: Vec<PadSample>,
 }
 
@@ -142,8 +142,8 @@ pub struct ArmSample {
 pub struct PadSample {
     /// Force of the pad on the board along the pad's normal, N.
     pub normal_force_n: f64,
-    /// Wrench of the pad on the board about the pad's centre, world axes.
+    /// Wrench of the pad on the board about the pad's centre, W axes.
     pub wrench_w: Wrench,
-    /// The pad's centre, world, m.
+    /// Position of the pad's centre in W, m.
     pub p_wp_m: nalgebra::Vector3<f64>,
 }

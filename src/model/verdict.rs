@@ -1,36 +1,36 @@
-//! The verdict: what became of a hold, with every figure that decided it.
+//! The verdict on a simulated hold, with every value that decided it.
 
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What became of a hold. The first limit that was crossed names it.
+/// The result of a scenario or plan. The first limit that was exceeded determines it (`docs/method.md#88-verdict`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum VerdictKind {
-    /// Every limit was kept.
+    /// No limit was exceeded.
     Holds,
-    /// A hand slid on the board.
+    /// A hand slipped on the board.
     Slips,
-    /// A hand turned on the board.
+    /// A hand rotated relative to the board.
     Pivots,
-    /// A pad lost its squeeze.
+    /// A pad lost its normal force.
     Opens,
     /// The board fell.
     Drops,
-    /// A joint was asked for more torque than it has.
+    /// The demanded torque of a joint exceeded its limit.
     Saturates,
-    /// The tool point of the board gave way.
+    /// The displacement of the tool point exceeded its limit.
     Deflects,
-    /// A hand kept sliding under the steady load.
+    /// A hand kept slipping under constant load.
     Creeps,
-    /// Bodies of the plan touch, or come closer to the person than they may, before anything moves; or robot or board
-    /// touch the person as the arms give way.
+    /// In the planned pose, bodies overlap or violate a clearance to the person; or robot or board touched the person during
+    /// the simulation.
     Touches,
-    /// There is no plan.
+    /// No feasible plan was found.
     Infeasible,
-    /// The simulation broke down, so nothing can be said.
+    /// The simulation is not valid: it broke down or failed a self-check.
     NoVerdict,
 }
 
@@ -67,41 +67,40 @@ pub struct Verdict {
     pub format: u32,
     /// The scenario's or plan's name.
     pub name: String,
-    /// What became of the hold.
+    /// The verdict.
     pub verdict: VerdictKind,
-    /// What the author expected.
+    /// The expected verdict.
     pub expected: VerdictKind,
-    /// True when the two agree and a verdict was possible.
+    /// True if the verdict is the expected one and not `no_verdict`.
     pub met: bool,
-    /// Every limit, with what was found; empty when there was nothing to simulate.
+    /// One entry per limit; empty if nothing was simulated.
     pub checks: Vec<Check>,
-    /// What the simulation made of the laws of mechanics; a verdict stands on all of them. Empty when nothing was
-    /// simulated.
+    /// Checks of the simulation itself. Without all of them passing there is no verdict. Empty if nothing was simulated.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub self_checks: Vec<Check>,
-    /// The first limit that was crossed.
+    /// The first limit that was exceeded.
     pub first_failure: Option<Failure>,
-    /// Largest torque over limit of each joint.
+    /// Largest torque ratio of each joint: demanded torque divided by its limit.
     pub peak_torque_ratio: BTreeMap<String, f64>,
-    /// Why there is no plan or no verdict, in words.
+    /// Why there is no plan or no valid simulation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Versions of Benchdog and of the engines that decided.
+    /// Versions of Benchdog and of the engines that the verdict depends on.
     pub versions: BTreeMap<String, String>,
     /// Seed of the planner.
     pub seed: u64,
-    /// SHA-256 of the trace: equal fingerprints, equal simulations, bit by bit. Empty when nothing was simulated.
+    /// SHA-256 of the trace. Simulations with equal fingerprints are equal bit by bit. Empty if nothing was simulated.
     pub fingerprint: String,
 }
 
 impl Verdict {
-    /// The check of this kind; none when it was not made.
+    /// The check of this kind; `None` if it was not made.
     pub fn check(&self, kind: CheckKind) -> Option<&Check> {
         self.checks.iter().find(|check| check.name == kind)
     }
 }
 
-/// What a hold is checked for (METHOD section 8), in the order of tables.
+/// The quantities that are checked, in the order of tables (`docs/method.md#8-judgement`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckKind {
@@ -109,28 +108,28 @@ pub enum CheckKind {
     Slip,
     /// Largest rotation of a hand on the board, degrees.
     SlipRotation,
-    /// Largest displacement of the tool point of the board, mm.
+    /// Largest displacement of the board's tool point, mm.
     Deflection,
     /// Rate of slip in the second half of the hold, mm/s.
     Creep,
-    /// Largest demanded joint torque over its limit.
+    /// Largest demanded joint torque divided by its limit.
     TorqueRatio,
-    /// Longest time that a pad went almost without squeeze, ms.
+    /// Longest time that a pad had almost no normal force, ms.
     PadOpen,
-    /// Longest time that no pad touched the board, ms.
+    /// Longest time without contact of any pad with the board, ms.
     ContactLost,
-    /// Slip beyond which the board counts as dropped, mm.
+    /// Largest slip, mm; beyond the limit the board counts as dropped.
     Drop,
-    /// Deepest overlap of robot or board with the person, who stands still, mm; while they are apart, their least distance
-    /// as a negative number. Not made when the plan has no person.
+    /// Deepest overlap of robot or board with the person, who does not move, mm; without an overlap, the negative of the
+    /// least distance. Not made if the plan has no person.
     PersonOverlap,
-    /// The simulation itself: deepest penetration of pad and board, mm.
+    /// Self-check: deepest penetration of pad and board, mm.
     Penetration,
-    /// The simulation itself: largest rise of the energy that contacts and integration brought in, J.
+    /// Self-check: largest increase of the energy that contacts and integration added, J.
     EnergyCreated,
-    /// The simulation itself: the board's momentum against the forces on it at the end of the hold, N.
+    /// Self-check: residual of the board's momentum balance at the end of the hold, N.
     ForceResidual,
-    /// The simulation itself: largest difference between the travels of coupled fingers, mm.
+    /// Self-check: largest difference between the travels of coupled fingers, mm.
     CouplingDrift,
 }
 
@@ -154,7 +153,7 @@ impl CheckKind {
         }
     }
 
-    /// The unit of its value, limit and margin; `1` for a ratio.
+    /// The unit of value, limit and margin; `1` for a ratio.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Slip
@@ -172,7 +171,7 @@ impl CheckKind {
         }
     }
 
-    /// The verdict on a hold whose first crossed limit this is.
+    /// The verdict if this is the first limit that was exceeded.
     pub fn verdict(self) -> VerdictKind {
         match self {
             Self::Slip => VerdictKind::Slips,
@@ -196,32 +195,32 @@ impl std::fmt::Display for CheckKind {
     }
 }
 
-/// One limit and what was found.
+/// A measured value and its limit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Check {
-    /// What was measured.
+    /// The measured quantity.
     pub name: CheckKind,
-    /// The worst value found.
+    /// The worst value.
     pub value: f64,
     /// The limit.
     pub limit: f64,
-    /// `limit - value`: how much is left.
+    /// `limit - value`.
     pub margin: f64,
-    /// The unit of all three.
+    /// The unit of value, limit and margin.
     pub unit: String,
-    /// True when the limit was kept.
+    /// True if the value does not exceed the limit.
     pub passed: bool,
 }
 
-/// The first crossing of a limit.
+/// The first time that a limit was exceeded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Failure {
     /// The check that failed.
     pub check: CheckKind,
-    /// When, since the start of the simulation, s.
+    /// Time since the start of the simulation, s.
     pub time_s: f64,
-    /// The multiple of the operation's wrench that acted then.
+    /// The multiple of the operation's wrench that was applied then.
     pub load_factor: f64,
 }

@@ -1,11 +1,11 @@
-//! A force and a moment, about a stated point in stated axes.
+//! Force and moment.
 
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::frames::Pose;
 
-/// A wrench: force and the moment about a point; the owner of the value says which point and which axes.
+/// A force and its moment about a point. The field or function that holds the value states the point and the axes.
 /// In files: `[fx, fy, fz, mx, my, mz]`, N and N m.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 6]", into = "[f64; 6]")]
@@ -17,23 +17,23 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// A wrench of these parts.
+    /// A wrench from force and moment.
     pub fn new(force_n: Vector3<f64>, moment_nm: Vector3<f64>) -> Self {
         Self { force_n, moment_nm }
     }
 
-    /// A force through the reference point.
+    /// A force through the reference point: no moment.
     pub fn from_force(force_n: Vector3<f64>) -> Self {
         Self::new(force_n, Vector3::zeros())
     }
 
-    /// The same wrench about another point: `m_q = m_p + p_qp x f`, where `p_qp` leads from the new point to the old
-    /// one, in the wrench's axes.
+    /// The same wrench about another point Q: `m_q = m_p + p_qp x f`, where `p_qp` is the position of the old point P
+    /// relative to Q, in the wrench's axes.
     pub fn about(&self, p_qp: &Vector3<f64>) -> Self {
         Self::new(self.force_n, self.moment_nm + p_qp.cross(&self.force_n))
     }
 
-    /// The same wrench about the origin of A in the axes of A, for a wrench about the origin of B in the axes of B.
+    /// The same wrench about the origin of A in A axes, for a wrench about the origin of B in B axes.
     pub fn moved(&self, x_ab: &Pose) -> Self {
         Self::new(x_ab.rotation * self.force_n, x_ab.rotation * self.moment_nm).about(&x_ab.translation.vector)
     }
@@ -49,7 +49,7 @@ impl Wrench {
         Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
     }
 
-    /// True when all six components are finite numbers.
+    /// True if all six components are finite.
     pub fn is_finite(&self) -> bool {
         self.to_vector().iter().all(|v| v.is_finite())
     }
@@ -101,7 +101,7 @@ mod tests {
         let wrench_a = wrench_b.moved(&x_ab);
         let power_b = wrench_b.force_n.dot(&velocity_b) + wrench_b.moment_nm.dot(&omega_b);
         let power_a = wrench_a.force_n.dot(&velocity_at_a) + wrench_a.moment_nm.dot(&omega_a);
-        // Ten products of numbers of order one: rounding stays below 1e-14.
+        // Ten products of numbers of order one: rounding errors stay below 1e-14.
         assert!((power_a - power_b).abs() < 1e-14);
     }
 }

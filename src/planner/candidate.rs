@@ -1,132 +1,116 @@
-//! A candidate: the numbers that the search chooses, and the poses that follow from them.
+//! A candidate: the decision variables of the search, and the poses that follow from them
+//! (docs/method.md#31-decision-variables).
 
-use arrayvec::ArrayVec;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
-use super::Problem;
-use crate::model::{
-    frames::Pose,
-    grasp::{Edge, EdgeGrasp},
+use super::{
+    library::{ArmGrasp, BoardGrasp, GraspPattern, pattern},
+    problem::Problem,
+};
+use crate::{
+    human::ArmAngles,
+    model::{frames::Pose, grasp::Edge},
 };
 
-/// One hold and one answer of the person to it.
+/// A grasp of the board and a response of the person to it.
 #[derive(Clone, Debug)]
 pub struct Candidate {
+    /// Person, tool and place of the board.
+    pub work: WorkPose,
+    /// One entry per arm of the robot.
+    pub arms: Vec<ArmGrasp>,
+}
+
+/// The person's posture, the tool's roll and the board's place.
+#[derive(Clone, Copy, Debug)]
+pub struct WorkPose {
     /// Angles of the person's working arm, rad.
-    pub q_h_rad: [f64; 7],
+    pub q_h_rad: ArmAngles,
     /// The person's heading: direction of x_B in W, rad from x_W.
     pub heading_rad: f64,
     /// Roll of the tool about its axis, rad; zero unless the operation leaves it free.
     pub roll_rad: f64,
-    /// Position of the board's centre in W along x and y, m. Its height follows from the posture.
-    pub p_wo_xy_m: [f64; 2],
-    /// One entry an arm of the robot.
-    pub holds: Vec<Hold>,
-}
-
-/// One arm's grasp and configuration.
-#[derive(Clone, Debug)]
-pub struct Hold {
-    /// Where the gripper holds.
-    pub grasp: EdgeGrasp,
-    /// The arm's joint angles, rad.
-    pub q_rad: Vec<f64>,
-}
-
-/// What a candidate says of the person, the tool and the board's place: all but how the robot holds it.
-#[derive(Clone, Copy, Debug)]
-pub struct Stance {
-    pub q_h_rad: [f64; 7],
-    pub heading_rad: f64,
-    pub roll_rad: f64,
+    /// The board's centre in W along x and y, m. Its height follows from the posture.
     pub p_wo_xy_m: [f64; 2],
 }
 
-/// Where board and person are.
+/// The poses of board and person.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed {
+pub struct Placement {
     pub x_wo: Pose,
     pub x_wb: Pose,
 }
 
-impl Stance {
-    /// The board's pose in the world, whose height follows from the floor that the person stands on, and the person's,
-    /// upright on that floor: `X_WB = X_WO X_BO^-1`, whose tilt is zero.
-    pub fn placed(&self, problem: &Problem<'_>) -> Placed {
-        // The board's pose relative to the person: X_BO = X_BT X_OT^-1.
+impl WorkPose {
+    /// The poses that follow from the posture: the person stands upright on the floor, which gives the board's height and
+    /// rotation, `X_WO = X_WB X_BT X_OT^-1`.
+    pub fn placement(&self, problem: &Problem<'_>) -> Placement {
         let x_ot = problem.scenario.operation.rolled(self.roll_rad).x_ot;
         let x_bo = problem.human.tool_pose_b(&self.q_h_rad) * x_ot.inverse();
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.heading_rad);
-        let floor_z_m = problem.map.robot.floor_z_m;
+        let floor_z_m = problem.robot.robot.floor_z_m;
         let p_bo_w = turn * x_bo.translation.vector;
         let [x_m, y_m] = self.p_wo_xy_m;
-        Placed {
+        Placement {
             x_wo: Isometry3::from_parts(Vector3::new(x_m, y_m, floor_z_m + p_bo_w.z).into(), turn * x_bo.rotation),
             x_wb: Isometry3::from_parts(Vector3::new(x_m - p_bo_w.x, y_m - p_bo_w.y, floor_z_m).into(), turn),
         }
     }
 }
 
-/// What a climb does not change about a hold: for each hand the edge that it holds and which way up it is. Hands beyond the
-/// fourth do not count.
-pub type HoldKind = ArrayVec<(Edge, bool), 4>;
-
-/// The kind of a hold.
-pub fn hold_kind(holds: &[Hold]) -> HoldKind {
-    holds.iter().take(4).map(|hold| (hold.grasp.edge, hold.grasp.flipped)).collect()
-}
-
 impl Candidate {
-    /// See [`hold_kind`].
-    pub fn kind(&self) -> HoldKind {
-        hold_kind(&self.holds)
+    /// A grasp without a response of the person.
+    pub fn without_person(grasp: &BoardGrasp) -> Self {
+        let p_wo = grasp.x_wo.translation.vector;
+        let work = WorkPose { q_h_rad: [0.0; 7], heading_rad: 0.0, roll_rad: 0.0, p_wo_xy_m: [p_wo.x, p_wo.y] };
+        Self { work, arms: grasp.arms.clone() }
     }
 
-    /// The kind of a hold with the board turned by quarters until the first hand is at +x_O.
-    pub fn kind_unturned(&self) -> HoldKind {
-        let mut kind = self.kind();
-        while kind.first().is_some_and(|(edge, _)| *edge != Edge::PlusX) {
-            kind.iter_mut().for_each(|(edge, _)| *edge = edge.turned(1));
+    /// The pattern of the grasp.
+    pub fn pattern(&self) -> GraspPattern {
+        pattern(&self.arms)
+    }
+
+    /// The pattern with the board turned by quarters until the first arm is at +x_O.
+    pub fn normalised_pattern(&self) -> GraspPattern {
+        let mut pattern = self.pattern();
+        while pattern.first().is_some_and(|(edge, _)| *edge != Edge::PlusX) {
+            pattern.iter_mut().for_each(|(edge, _)| *edge = edge.turned(1));
         }
-        kind
+        pattern
     }
 
-    /// All but how the robot holds the board.
-    pub fn stance(&self) -> Stance {
-        let Self { q_h_rad, heading_rad, roll_rad, p_wo_xy_m, .. } = *self;
-        Stance { q_h_rad, heading_rad, roll_rad, p_wo_xy_m }
-    }
-
-    /// Where board and person are.
-    pub fn placed(&self, problem: &Problem<'_>) -> Placed {
-        self.stance().placed(problem)
+    /// The poses of board and person.
+    pub fn placement(&self, problem: &Problem<'_>) -> Placement {
+        self.work.placement(problem)
     }
 
     /// The board's pose in the world.
     pub fn x_wo(&self, problem: &Problem<'_>) -> Pose {
-        self.placed(problem).x_wo
+        self.placement(problem).x_wo
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::grasp::EdgeGrasp;
 
     #[test]
-    fn a_kind_unturned_is_the_same_for_all_turns_of_the_board() {
-        let hold = |edge, flipped| Hold {
+    fn a_normalised_pattern_is_the_same_for_all_turns_of_the_board() {
+        let arm = |edge, flipped| ArmGrasp {
             grasp: EdgeGrasp { edge, along_m: 0.0, depth_m: 0.03, angle_rad: 0.0, flipped },
             q_rad: Vec::new(),
         };
-        let kind = |edges: [Edge; 2]| {
-            let holds = vec![hold(edges[0], true), hold(edges[1], false)];
-            Candidate { q_h_rad: [0.0; 7], heading_rad: 0.0, roll_rad: 0.0, p_wo_xy_m: [0.0; 2], holds }.kind_unturned()
+        let pattern = |edges: [Edge; 2]| {
+            let arms = vec![arm(edges[0], true), arm(edges[1], false)];
+            Candidate::without_person(&BoardGrasp { x_wo: Pose::identity(), arms }).normalised_pattern()
         };
         for quarters in 0..4 {
             let turned = |edge: Edge| edge.turned(quarters);
-            assert_eq!(kind([Edge::PlusY, Edge::PlusY].map(turned)), kind([Edge::PlusX, Edge::PlusX]));
-            assert_eq!(kind([Edge::PlusX, Edge::MinusX].map(turned)), kind([Edge::MinusY, Edge::PlusY]));
+            assert_eq!(pattern([Edge::PlusY, Edge::PlusY].map(turned)), pattern([Edge::PlusX, Edge::PlusX]));
+            assert_eq!(pattern([Edge::PlusX, Edge::MinusX].map(turned)), pattern([Edge::MinusY, Edge::PlusY]));
         }
-        assert_ne!(kind([Edge::PlusX, Edge::PlusX]), kind([Edge::PlusX, Edge::MinusX]));
+        assert_ne!(pattern([Edge::PlusX, Edge::PlusX]), pattern([Edge::PlusX, Edge::MinusX]));
     }
 }

@@ -1,105 +1,97 @@
-//! The random planner: what the others are measured against (METHOD section 3).
+//! The random planner, the baseline of the others (docs/method.md#38-random-planner).
 //!
-//! The board's pose is drawn uniformly from the domain of the search, its rotation uniformly from all that face the person's
-//! side, and a grasp for each hand; again and again until the arms reach, nothing touches and the hold stands the load.
-//! The arms take the first configuration that is found, and the person then answers as best they can.
+//! The board's pose is drawn uniformly from the search domain, and one grasp for each arm; all are drawn again until the arms
+//! reach, nothing collides and the grasp is stable. The arms take the first configuration that is found, and the person
+//! gives the best response.
 
 use nalgebra::Vector3;
 use rand_pcg::Pcg64;
 
 use super::{
-    Problem,
-    assess::{self, Configured, Feasible, Rejection, Tally},
-    bank::{draw_edge, draw_grasp, other_edge},
-    candidate::{Candidate, Hold},
+    candidate::{Candidate, WorkPose},
+    domain::{draw_edge, draw_other_edge},
+    evaluate::{self, Configuration, Evaluator, Feasible},
+    library::{ArmGrasp, BoardGrasp, draw_grasp},
+    outcome::Rejection,
+    params::screening::RANDOM_DRAWS,
 };
 use crate::{comfort, model::frames::Pose};
 
-/// Holds that are drawn before the search is given up.
-const DRAWS: u64 = 2_000_000;
-
-/// The first hold that keeps every constraint and that the person has an answer to.
-pub fn draw(problem: &mut Problem<'_>, random: &mut Pcg64, tally: &mut Tally) -> Option<Feasible> {
-    for _ in 0..DRAWS {
-        if tally.is_exhausted() {
+/// The first draw that satisfies every constraint and has a response.
+pub fn draw(evaluator: &mut Evaluator<'_>, random: &mut Pcg64) -> Option<Feasible> {
+    for _ in 0..RANDOM_DRAWS {
+        if evaluator.stats.is_exhausted() {
             break;
         }
-        tally.draw();
-        if !problem.watch.allows() {
+        evaluator.stats.count();
+        if !evaluator.stats.may_evaluate() {
             break;
         }
-        match draw_once(problem, random) {
+        match draw_once(evaluator, random) {
             Ok(found) => return Some(found),
-            Err(why) => tally.remove(why),
+            Err(why) => evaluator.stats.reject(why),
         }
     }
     None
 }
 
-fn draw_once(problem: &mut Problem<'_>, random: &mut Pcg64) -> Result<Feasible, Rejection> {
-    let map = problem.map;
-    let x_wo = assess::draw_board(random);
+fn draw_once(evaluator: &mut Evaluator<'_>, random: &mut Pcg64) -> Result<Feasible, Rejection> {
+    let robot = evaluator.problem.robot;
+    let x_wo = robot.domain.draw_board(random);
     let mut edge = draw_edge(random);
-    let mut grasps = Vec::with_capacity(map.arms.len());
-    for (number, arm) in map.arms.iter().enumerate() {
+    let mut grasps = Vec::with_capacity(robot.arms.len());
+    for (number, arm) in robot.arms.iter().enumerate() {
         if number > 0 {
-            edge = other_edge(edge, random);
+            edge = draw_other_edge(edge, random);
         }
-        // One grasp an arm: where it is not within reach the whole hold is drawn again, lest the draw be biased.
-        let grasp = draw_grasp(map, arm, edge, |_| true, random).ok_or(Rejection::RobotReach)?;
-        if !arm.reach.reaches(&arm.chain, &(x_wo * grasp.x_og(map.size_m))) {
+        // One grasp per arm: if it is out of reach everything is drawn again, so that the draw is not biased.
+        let grasp = draw_grasp(robot, arm, edge, |_| true, random).ok_or(Rejection::RobotReach)?;
+        if !arm.reach.reaches(&arm.chain, &(x_wo * grasp.x_og(robot.size_m))) {
             return Err(Rejection::RobotReach);
         }
         grasps.push(grasp);
     }
-    let mut holds = Vec::with_capacity(grasps.len());
-    for (arm, grasp) in map.arms.iter().zip(grasps) {
-        let x_wg = x_wo * grasp.x_og(map.size_m);
+    let mut arms = Vec::with_capacity(grasps.len());
+    for (arm, grasp) in robot.arms.iter().zip(grasps) {
+        let x_wg = x_wo * grasp.x_og(robot.size_m);
         let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
         let found = seeds.find_map(|seed| arm.inverse.local(&x_wg, &seed).found());
-        holds.push(Hold { grasp, q_rad: found.ok_or(Rejection::RobotReach)? });
+        arms.push(ArmGrasp { grasp, q_rad: found.ok_or(Rejection::RobotReach)? });
     }
-    let poses = map.link_poses(&holds);
-    if map.collision.first_violation(&map.scene(&poses, x_wo)).is_some() {
+    let link_poses = robot.link_poses(&arms);
+    if robot.collision.first_violation(&robot.scene(&link_poses, x_wo)).is_some() {
         return Err(Rejection::Collision);
     }
-    answered(problem, &x_wo, holds, &poses)
+    with_response(evaluator, &BoardGrasp { x_wo, arms }, &link_poses)
 }
 
-/// The hold with the person's best answer, when it stands the load.
-fn answered(
-    problem: &mut Problem<'_>,
-    x_wo: &Pose,
-    holds: Vec<Hold>,
+/// The grasp with the person's best response, if it is stable.
+fn with_response(
+    evaluator: &mut Evaluator<'_>,
+    grasp: &BoardGrasp,
     link_poses: &[Pose],
 ) -> Result<Feasible, Rejection> {
-    let p_wo = x_wo.translation.vector;
-    let mut candidate =
-        Candidate { q_h_rad: [0.0; 7], heading_rad: 0.0, roll_rad: 0.0, p_wo_xy_m: [p_wo.x, p_wo.y], holds };
-    // Stability hardly costs more than a thousandth of the person's answer.
-    if assess::utilisation(problem, &candidate, x_wo) > 1.0 {
+    let mut candidate = Candidate::without_person(grasp);
+    // Stability costs about a thousandth of the person's response.
+    if evaluator.utilisation(&candidate, &grasp.x_wo) > 1.0 {
         return Err(Rejection::Stability);
     }
-    let points = comfort::robot_points_w(&problem.map.robot, link_poses);
-    let answer = comfort::most(&comfort::Hold {
-        human: &problem.human,
-        collision: &problem.map.collision,
-        settings: problem.objective,
-        operation: problem.scenario.operation,
-        floor_z_m: problem.map.robot.floor_z_m,
-        robot_points_w: &points,
-        scene: problem.map.scene(link_poses, *x_wo),
-    })
-    .ok_or(Rejection::PersonReach)?;
-    let ahead = answer.x_wb.rotation * Vector3::x();
-    candidate.q_h_rad = answer.q_rad;
-    candidate.heading_rad = ahead.y.atan2(ahead.x);
-    candidate.roll_rad = answer.roll_rad();
-    assess::place(problem, &candidate)?;
-    let configured = Configured::new(problem, &candidate);
-    assess::collisions(problem, &configured)?;
-    let comfort = assess::comfort(problem, &candidate, &configured);
-    problem.watch.found(&comfort);
-    let utilisation = assess::utilisation(problem, &candidate, x_wo);
-    Ok(Feasible { candidate, configured, comfort, worth: comfort.objective, utilisation })
+    let problem = &evaluator.problem;
+    let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
+    let query = evaluate::response_query(problem, problem.scenario.operation, link_poses, grasp.x_wo, &points_w);
+    let response = comfort::most(&query).ok_or(Rejection::PersonReach)?;
+    let ahead = response.x_wb.rotation * Vector3::x();
+    candidate.work = WorkPose {
+        q_h_rad: response.q_rad,
+        heading_rad: ahead.y.atan2(ahead.x),
+        roll_rad: response.roll_rad(),
+        ..candidate.work
+    };
+    evaluate::test_placement(problem, &candidate)?;
+    let configuration = Configuration::new(problem, &candidate);
+    evaluate::test_collisions(problem, &configuration)?;
+    let comfort = evaluate::comfort(problem, &candidate, &configuration);
+    // The roll is now the response's.
+    let utilisation = evaluator.utilisation(&candidate, &grasp.x_wo);
+    Ok(evaluator.feasible(candidate, configuration, comfort, utilisation))
 }

@@ -6,19 +6,20 @@
 
 use nalgebra::Vector3;
 
+use super::outcome::PlanError;
 use crate::{
     collision::{CollisionModel, PersonPart, Scene},
     comfort,
     human::{Human, HumanError},
     model::{
-        plan::{AverageComfort, Comfort, HumanPosture, Plan},
-        scenario::{PersonAnswer, Scenario, StabilityKind, Tool},
+        plan::{Comfort, HumanPosture, MeanComfort, Plan},
+        scenario::{ResponseKind, Scenario, StabilityKind, Tool},
     },
     robot::{Chain, Robot},
-    statics::{Hold, StabilityWorkspace},
+    statics::{ContactModel, StabilityWorkspace},
 };
 
-/// How exact inverse kinematics must be, m and rad (METHOD section 3).
+/// How exact inverse kinematics must be, m and rad (docs/method.md#34-constraints).
 const POSE_TOLERANCE: f64 = 1e-6;
 /// How far a figure of the plan may be from the one computed again: rounding, relative.
 const FIGURE_TOLERANCE: f64 = 1e-6;
@@ -37,7 +38,7 @@ impl std::fmt::Display for Flaw {
 ///
 /// # Errors
 /// When the scenario's person or tool is none.
-pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Vec<Flaw>, HumanError> {
+pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Vec<Flaw>, PlanError> {
     let mut flaws = Vec::new();
     arms(plan, robot, &mut flaws);
     stability(plan, scenario, robot, &mut flaws);
@@ -110,7 +111,7 @@ fn figures(
     let mut found = comfort::of_posture(human, &scenario.comfort, &surface, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
     expect(strongest <= 1.0, flaws, || format!("an activation is {strongest}, more than the person has"));
-    if scenario.comfort.person == PersonAnswer::Average {
+    if scenario.comfort.person == ResponseKind::Mean {
         match average(plan, scenario, robot, human) {
             Some(average) => comfort::rate_by_average(&mut found, average, &scenario.comfort),
             None => flaws.push(Flaw("the person has no answer on the grid of the average".into())),
@@ -123,7 +124,7 @@ fn figures(
         ("objective", written.objective, found.objective),
     ];
     if let (Some(written), Some(found)) = (written.average, found.average) {
-        let AverageComfort { muscular_regularised, peripersonal_m, .. } = found;
+        let MeanComfort { muscular_regularised, peripersonal_m, .. } = found;
         compared.push(("average.muscular_regularised", written.muscular_regularised, muscular_regularised));
         compared.push(("average.peripersonal_m", written.peripersonal_m, peripersonal_m));
     }
@@ -133,7 +134,7 @@ fn figures(
 }
 
 /// The mean comfort of the person's answers to the plan's hold.
-fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<AverageComfort> {
+fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<MeanComfort> {
     let poses = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
     comfort::average(&comfort::Hold {
@@ -153,7 +154,7 @@ fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Op
     })
 }
 
-/// The first two bodies of a plan that touch, or come closer to the person than METHOD section 3 allows; the person is
+/// The first two bodies of a plan that touch, or come closer to the person than docs/method.md#35-clearances allows; the person is
 /// left out where the plan has none.
 ///
 /// # Errors
@@ -178,7 +179,7 @@ pub fn first_touch(plan: &Plan, tool: &Tool, robot: &Robot) -> Result<Option<Str
 }
 
 fn stability(plan: &Plan, scenario: &Scenario, robot: &Robot, flaws: &mut Vec<Flaw>) {
-    let found = Hold::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)
+    let found = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)
         .and_then(|hold| StabilityWorkspace::new().predict(&hold, &scenario.limits));
     let (found, written) = match (found, &plan.stability) {
         (Ok(Some(found)), Some(written)) => (found, written),

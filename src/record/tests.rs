@@ -77,7 +77,7 @@ fn example() -> Example {
         palm_w: Point3::new(0.78, 0.15, 0.27),
         points_w: vec![Point3::new(1.2, 0.0, 0.3)],
     };
-    let scenario = crate::scenario::for_plan(&plan, &robot);
+    let scenario = crate::scenario::default_for_plan(&plan, &robot);
     Example { robot, scenario, plan, trace, measures, events, verdict, person }
 }
 

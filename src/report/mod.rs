@@ -12,6 +12,7 @@ pub mod file;
 pub mod front;
 pub mod html;
 pub mod json;
+#[cfg(feature = "cli")]
 pub mod junit;
 mod picture;
 pub mod plans;

@@ -107,6 +107,7 @@ recording     out/cut-03.rrd
     assert_eq!(console::details(&deflecting(), Some(Path::new("out/cut-03.rrd"))), expected);
 }
 
+#[cfg(feature = "cli")]
 #[test]
 fn junit_tells_failures_from_errors() {
     let expected = r#"<?xml version="1.0" encoding="UTF-8"?>

@@ -1,4 +1,4 @@
-//! The checks that scenario and plan files share; each names the key and finds its line when it fails.
+//! Checks of values in scenario and plan files. An error names the key and its line.
 
 use std::path::Path;
 
@@ -8,37 +8,37 @@ use crate::{
     robot::{Arm, RobotError},
 };
 
-/// How far from the face's rectangle an operation point may be, m: rounding of written figures.
+/// Largest distance of a tool point outside the board, m: rounding of written numbers.
 const ON_BOARD_TOLERANCE_M: f64 = 1e-9;
 
-/// The one key that is read before the rest: a file of another format has other keys.
+/// Reads `format` before the other keys: a file of another format may have other keys.
 #[derive(serde::Deserialize)]
 pub struct FormatProbe {
-    /// The number that the file gives.
+    /// The file's format.
     pub format: u32,
 }
 
-/// Checks values of one file.
+/// Checks the values of one file.
 pub struct Checker<'a> {
     path: &'a Path,
     text: &'a str,
     line_of: fn(&str, &str) -> Option<usize>,
-    /// What stands before every key.
+    /// Prefix of every key.
     prefix: &'static str,
 }
 
 impl<'a> Checker<'a> {
-    /// Checks of a TOML file.
+    /// A checker for a TOML file.
     pub fn toml(path: &'a Path, text: &'a str) -> Self {
         Self { path, text, line_of: locate::toml_line, prefix: "" }
     }
 
-    /// Checks of a JSON file.
+    /// A checker for a JSON file.
     pub fn json(path: &'a Path, text: &'a str) -> Self {
         Self { path, text, line_of: locate::json_line, prefix: "" }
     }
 
-    /// The same checks on what stands under a key of the file, `prefix` ending in a dot.
+    /// A checker for the values below a key; `prefix` ends in a dot.
     pub fn under(&self, prefix: &'static str) -> Self {
         Self { prefix, ..*self }
     }
@@ -48,27 +48,27 @@ impl<'a> Checker<'a> {
         InputError { file: self.path.to_owned(), line: (self.line_of)(self.text, &key), key: Some(key), kind }
     }
 
-    /// An error that says what was found and what was expected.
+    /// An error "found ..., expected ...".
     pub fn value(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> InputError {
         self.error(key, InputErrorKind::Value { found: found.into(), expected: expected.into() })
     }
 
-    /// An error whose message already says both.
+    /// An error with a complete message.
     pub fn syntax(&self, key: &str, problem: String) -> InputError {
         self.error(key, InputErrorKind::Syntax(problem))
     }
 
-    /// A robot that cannot be loaded.
+    /// An error of a robot that cannot be loaded.
     pub fn robot(&self, key: &str, error: RobotError) -> InputError {
         self.error(key, InputErrorKind::Robot(error))
     }
 
-    /// `ok`, or an error about this key.
+    /// Requires `ok`.
     pub fn that(&self, ok: bool, key: &str, found: impl Into<String>, expected: &str) -> Result<(), InputError> {
         if ok { Ok(()) } else { Err(self.value(key, found, expected)) }
     }
 
-    /// A name that files and folders can have.
+    /// Requires a name that is valid in file names.
     pub fn name(&self, name: &str) -> Result<(), InputError> {
         let fits = !name.is_empty()
             && !name.starts_with('.')
@@ -77,47 +77,47 @@ impl<'a> Checker<'a> {
         self.that(fits, "name", format!("\"{name}\""), expected)
     }
 
-    /// The format number that this build reads.
+    /// Requires the supported format.
     pub fn format(&self, found: u32) -> Result<(), InputError> {
         let expected = format!("{FORMAT}, the only format that benchdog {} reads", env!("CARGO_PKG_VERSION"));
         self.that(found == FORMAT, "format", found.to_string(), &expected)
     }
 
-    /// A number between two others, both included.
+    /// Requires a number in `low..=high`.
     pub fn within(&self, key: &str, found: f64, low: f64, high: f64, unit: &str) -> Result<(), InputError> {
         let expected = format!("a number from {low} to {high} ({unit})");
         self.that((low..=high).contains(&found), key, found.to_string(), &expected)
     }
 
-    /// A finite number above zero.
+    /// Requires a finite number greater than zero.
     pub fn positive(&self, key: &str, found: f64, unit: &str) -> Result<(), InputError> {
         let expected = format!("a positive number ({unit})");
         self.that(found.is_finite() && found > 0.0, key, found.to_string(), &expected)
     }
 
-    /// A finite number of at least zero.
+    /// Requires a finite number that is not negative.
     pub fn not_negative(&self, key: &str, found: f64, unit: &str) -> Result<(), InputError> {
         let expected = format!("zero or a positive number ({unit})");
         self.that(found.is_finite() && found >= 0.0, key, found.to_string(), &expected)
     }
 
-    /// Finite numbers.
+    /// Requires finite numbers.
     pub fn finite(&self, key: &str, found: &[f64]) -> Result<(), InputError> {
         let ok = found.iter().all(|value| value.is_finite());
         self.that(ok, key, format!("{found:?}"), "finite numbers")
     }
 
-    /// A key that must be given.
+    /// Requires a key.
     pub fn present<T>(&self, key: &str, found: Option<T>, expected: &str) -> Result<T, InputError> {
         found.ok_or_else(|| self.value(key, "nothing", expected))
     }
 
-    /// A key that has no meaning here.
+    /// Rejects a key that is not allowed here.
     pub fn absent(&self, key: &str, found: bool, belongs_to: &str) -> Result<(), InputError> {
         self.that(!found, key, "a value", &format!("none: it belongs to {belongs_to}"))
     }
 
-    /// A board that every one of these grippers can close on.
+    /// Requires a board whose thickness is within the opening of all grippers.
     pub fn board_size<'r>(
         &self,
         key: &str,
@@ -137,7 +137,7 @@ impl<'a> Checker<'a> {
         Ok(())
     }
 
-    /// A grip force that every one of these grippers can give.
+    /// Requires a grip force that all grippers can exert.
     pub fn grip_force<'r>(
         &self,
         key: &str,
@@ -153,7 +153,7 @@ impl<'a> Checker<'a> {
         Ok(())
     }
 
-    /// A tool point on the board: within the outline of the face and the thickness.
+    /// Requires a tool point inside or on the board.
     pub fn on_board(&self, key: &str, x_ot: &Pose, size_m: [f64; 3]) -> Result<(), InputError> {
         let p_ot = x_ot.translation.vector;
         let [x, y, z] = size_m.map(|side| side / 2.0);

@@ -1,38 +1,38 @@
-//! What is wrong with an input file, and where.
+//! Errors of input files.
 
 use std::{
     fmt,
     path::{Path, PathBuf},
 };
 
-/// An input that cannot be used: the file, and where known the line and the key.
+/// An error of an input file.
 #[derive(Debug)]
 pub struct InputError {
     /// The file.
     pub file: PathBuf,
-    /// The line, from 1.
+    /// The line, from 1, if known.
     pub line: Option<usize>,
-    /// The key, such as `grip.force_n` or `arms[0].q_rad[3]`.
+    /// The key, if known, such as `grip.force_n` or `arms[0].q_rad[3]`.
     pub key: Option<String>,
-    /// What is wrong with it.
+    /// The kind of error.
     pub kind: InputErrorKind,
 }
 
-/// What is wrong with an input.
+/// The kind of an [`InputError`].
 #[derive(Debug, thiserror::Error)]
 pub enum InputErrorKind {
     /// The file cannot be read.
     #[error("failed to read the file: {0}")]
     Read(#[from] std::io::Error),
-    /// The text is not TOML or JSON of the expected form.
+    /// The text is not valid TOML or JSON, or has an unknown or missing key or a value of the wrong type.
     #[error("{0}")]
     Syntax(String),
-    /// A value that makes no sense.
+    /// A value is not allowed.
     #[error("found {found}, expected {expected}")]
     Value {
-        /// What stands there.
+        /// The value found.
         found: String,
-        /// What may stand there.
+        /// The values allowed.
         expected: String,
     },
     /// The robot cannot be loaded.
@@ -41,7 +41,7 @@ pub enum InputErrorKind {
 }
 
 impl InputError {
-    /// An error about a file as a whole.
+    /// An error of a file as a whole.
     pub fn file(file: &Path, kind: impl Into<InputErrorKind>) -> Self {
         Self { file: file.to_owned(), line: None, key: None, kind: kind.into() }
     }
@@ -62,7 +62,7 @@ impl fmt::Display for InputError {
 
 impl std::error::Error for InputError {}
 
-/// The text of a file.
+/// Reads a text file.
 pub(super) fn read_text(path: &Path) -> Result<String, InputError> {
     std::fs::read_to_string(path).map_err(|e| InputError::file(path, e))
 }

@@ -1,41 +1,41 @@
-//! From a key to its line and back, in TOML and JSON text.
+//! Finds the line of a key in TOML and JSON text, and the key at a position in TOML text.
 
 use std::{collections::BTreeMap, ops::Range};
 
 use serde_json::value::RawValue;
 use toml::de::{DeTable, DeValue};
 
-/// One step of a key path such as `arms[0].q_rad[3]`.
+/// One part of a key path such as `arms[0].q_rad[3]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Segment<'a> {
+enum KeyPart<'a> {
     Key(&'a str),
     Index(usize),
 }
 
-fn segments(path: &str) -> impl Iterator<Item = Segment<'_>> {
+fn key_parts(path: &str) -> impl Iterator<Item = KeyPart<'_>> {
     path.split(['.', '[']).filter(|part| !part.is_empty()).map(|part| match part.strip_suffix(']').map(str::parse) {
-        Some(Ok(index)) => Segment::Index(index),
-        _ => Segment::Key(part),
+        Some(Ok(index)) => KeyPart::Index(index),
+        _ => KeyPart::Key(part),
     })
 }
 
-/// The line, from 1, that holds the byte at `offset`.
+/// The line, from 1, of the byte at `offset`.
 pub fn line_at(text: &str, offset: usize) -> usize {
     text.as_bytes()[..offset.min(text.len())].iter().filter(|&&byte| byte == b'\n').count() + 1
 }
 
-/// The line of a key in TOML text, or of the closest table that would hold it.
+/// The line of a key in TOML text; if the key is missing, that of the innermost table on its path.
 pub fn toml_line(text: &str, path: &str) -> Option<usize> {
     let document = DeTable::parse(text).ok()?;
     let mut place: Option<usize> = None;
     let mut table: Option<&DeTable<'_>> = Some(document.get_ref());
     let mut value: Option<&DeValue<'_>> = None;
-    for segment in segments(path) {
-        let next = match segment {
-            Segment::Key(key) => {
+    for part in key_parts(path) {
+        let next = match part {
+            KeyPart::Key(key) => {
                 table.and_then(|table| table.get_key_value(key)).map(|(key, value)| (key.span().start, value.get_ref()))
             }
-            Segment::Index(index) => value
+            KeyPart::Index(index) => value
                 .and_then(DeValue::as_array)
                 .and_then(|array| array.get(index))
                 .map(|element| (element.span().start, element.get_ref())),
@@ -48,7 +48,7 @@ pub fn toml_line(text: &str, path: &str) -> Option<usize> {
     place.map(|offset| line_at(text, offset))
 }
 
-/// The key path of the value or key that stands at `span` in TOML text.
+/// The path of the value or key at `span` in TOML text.
 pub fn toml_key_at(text: &str, span: &Range<usize>) -> Option<String> {
     let document = DeTable::parse(text).ok()?;
     key_in_table(document.get_ref(), span, "")
@@ -76,22 +76,22 @@ fn key_in_value(value: &toml::Spanned<DeValue<'_>>, span: &Range<usize>, path: S
     inner.or_else(|| (value.span() == *span).then_some(path))
 }
 
-/// The line of a key in JSON text, or of the closest value that would hold it.
+/// The line of a key in JSON text; if the key is missing, that of the innermost value on its path.
 pub fn json_line(text: &str, path: &str) -> Option<usize> {
     let mut here: &RawValue = serde_json::from_str(text).ok()?;
-    for segment in segments(path) {
-        let next = match segment {
-            Segment::Key(key) => serde_json::from_str::<BTreeMap<String, &RawValue>>(here.get())
+    for part in key_parts(path) {
+        let next = match part {
+            KeyPart::Key(key) => serde_json::from_str::<BTreeMap<String, &RawValue>>(here.get())
                 .ok()
                 .and_then(|object| object.get(key).copied()),
-            Segment::Index(index) => {
+            KeyPart::Index(index) => {
                 serde_json::from_str::<Vec<&RawValue>>(here.get()).ok().and_then(|array| array.get(index).copied())
             }
         };
         let Some(found) = next else { break };
         here = found;
     }
-    // The raw values borrow from `text`, so the distance between the two is where the value stands.
+    // The raw values borrow from `text`, so the distance of the pointers is the value's offset.
     let offset = (here.get().as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
     Some(line_at(text, offset))
 }
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_span_gives_back_its_key() {
+    fn a_span_gives_its_key() {
         let start = TOML.find("30.0").unwrap();
         assert_eq!(toml_key_at(TOML, &(start..start + 4)).as_deref(), Some("grip.force_n"));
         let start = TOML.find("0.4").unwrap();

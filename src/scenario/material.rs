@@ -1,14 +1,14 @@
-//! Board materials: a name and the density that goes with it.
+//! Board materials and their densities.
 
 use std::collections::BTreeMap;
 
-/// The shipped table, `assets/materials.toml`: name to density, kg/m^3.
+/// The built-in table: name to density, kg/m^3.
 const TABLE: &str = include_str!("../../assets/materials.toml");
 
-/// Density of a material, kg/m^3.
+/// The density of a material, kg/m^3.
 ///
 /// # Errors
-/// For an unknown name: the names that are known, in one line.
+/// If the name is unknown: a text that lists the known names.
 pub fn density_kg_m3(name: &str) -> Result<f64, String> {
     let table = table();
     table.get(name).copied().ok_or_else(|| {
@@ -18,7 +18,7 @@ pub fn density_kg_m3(name: &str) -> Result<f64, String> {
 }
 
 fn table() -> BTreeMap<String, f64> {
-    // The table is part of the program, and a test parses it.
+    // The table is compiled in, and a test parses it.
     toml::from_str(TABLE).expect("assets/materials.toml is a table of numbers")
 }
 
@@ -28,7 +28,7 @@ mod tests {
 
     #[test]
     fn every_density_is_that_of_a_board() {
-        // Between the lightest foam and stone.
+        // From the lightest foam to stone.
         assert!(table().values().all(|density| (10.0..3000.0).contains(density)));
         assert_eq!(density_kg_m3("foam"), Ok(35.0));
     }

@@ -1,16 +1,16 @@
-//! Scenario and plan files: read, checked, completed with defaults.
+//! Reads scenario and plan files, checks them and fills in defaults.
 //!
-//! Whatever a file gets wrong is found here, before anything is planned or written, and said with the file, the line,
-//! the key, what was found and what was expected. This module knows files and figures; it never plans or simulates.
+//! All errors of input files are found here, before anything is planned or written. Each error names the file, the line,
+//! the key, the value found and the value expected. This module does not plan or simulate.
 
 mod check;
 pub mod error;
 pub mod file;
+pub mod load_section;
 mod locate;
 pub mod material;
 pub mod paper;
 pub mod plan_file;
-pub mod profile;
 mod resolve;
 
 use std::path::{Path, PathBuf};
@@ -21,33 +21,33 @@ pub use plan_file::read_plan;
 use crate::{
     model::{
         plan::Plan,
-        scenario::{ArmFigures, PadFigures, RobotFigures, Scenario},
+        scenario::{ArmParameters, PadParameters, RobotParameters, Scenario},
     },
     robot::{BUILTIN, Robot, RobotError},
 };
 
-/// A scenario that can be run: resolved, with its robot and, where the file names one, the plan to judge.
+/// A resolved scenario with its robot and, if the file names one, its plan.
 #[derive(Clone, Debug)]
 pub struct LoadedScenario {
-    /// Where it was read from.
+    /// The file that it was read from.
     pub path: PathBuf,
-    /// Every figure, defaults filled in.
+    /// The resolved scenario.
     pub scenario: Scenario,
     /// The robot.
     pub robot: Robot,
-    /// The plan of `planner.plan`.
+    /// The plan that `planner.plan` names.
     pub plan: Option<Plan>,
 }
 
 /// Reads, checks and completes a scenario file.
 ///
 /// # Errors
-/// When the file, the robot or the plan that it names cannot be read, or any value is not what the format asks for.
+/// If the file, or a robot or plan that it names, cannot be read or contains an invalid value.
 pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
     load_text(path, &error::read_text(path)?)
 }
 
-/// Checks and completes the text of a scenario file; files that it names are relative to `path`'s folder.
+/// Checks and completes the text of a scenario file. Files that it names are relative to the folder of `path`.
 ///
 /// # Errors
 /// As for [`load`].
@@ -61,7 +61,7 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     let plan = match &scenario.planner.plan {
         Some(plan) => {
             let plan = read_plan(&folder.join(plan), Some(&robot))?.0;
-            resolve::plan_answers(path, text, &scenario, &plan)?;
+            resolve::check_plan_matches(path, text, &scenario, &plan)?;
             Some(plan)
         }
         None => None,
@@ -69,11 +69,11 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan })
 }
 
-/// Loads a robot for a file in `folder`. One that comes from a path is named by its whole path from then on, since the
-/// plan that names it may be written to another folder.
+/// Loads a robot for a file in `folder`. If the description is a path, the robot's `description` becomes the absolute
+/// path, because a plan that names it may be written to another folder.
 ///
 /// # Errors
-/// When there is no such robot or its files cannot be used.
+/// If there is no such robot or its files are invalid.
 fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
     let mut robot = Robot::load(description, folder)?;
     if !BUILTIN.contains(&description)
@@ -84,12 +84,12 @@ fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
     Ok(robot)
 }
 
-/// The figures of a robot that a plan's result depends on.
-pub fn robot_figures(robot: &Robot) -> RobotFigures {
+/// The parameters of a robot that results depend on.
+pub fn robot_parameters(robot: &Robot) -> RobotParameters {
     let arms = robot
         .arms
         .iter()
-        .map(|arm| ArmFigures {
+        .map(|arm| ArmParameters {
             name: arm.name.clone(),
             joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
             stiffness_nm_rad: arm.stiffness_nm_rad.clone(),
@@ -99,7 +99,7 @@ pub fn robot_figures(robot: &Robot) -> RobotFigures {
                 .gripper
                 .fingers
                 .iter()
-                .map(|finger| PadFigures {
+                .map(|finger| PadParameters {
                     name: finger.pad.name.clone(),
                     size_m: finger.pad.size_m,
                     centre_m: finger.pad.centre_m,
@@ -107,36 +107,36 @@ pub fn robot_figures(robot: &Robot) -> RobotFigures {
                 .collect(),
         })
         .collect();
-    RobotFigures { description: robot.description.clone(), arms }
+    RobotParameters { description: robot.description.clone(), arms }
 }
 
-/// The scenario of a file for a plan that is given, which must be one for its robot, board and operation.
+/// Reads a scenario file for a given plan, which must have the same robot, board and operation.
 ///
 /// # Errors
-/// As [`load`], and when the plan answers another scenario.
-pub fn load_for(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
+/// As [`load`], and if the plan is for another robot, board, operation or grip force.
+pub fn load_for_plan(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
     let scenario = load(path)?.scenario;
-    resolve::plan_answers(path, &error::read_text(path)?, &scenario, plan)?;
+    resolve::check_plan_matches(path, &error::read_text(path)?, &scenario, plan)?;
     Ok(scenario)
 }
 
-/// A plan file, its robot, and what it is to be judged under: the scenario given, the one in the plan, or the defaults
-/// for its operation; named after the plan.
+/// Reads a plan file and returns the plan, its robot and the scenario to judge it by: that of the file `scenario`, or the
+/// one in the plan, or the defaults for its operation. The scenario gets the plan's name.
 ///
 /// # Errors
-/// As [`read_plan`] and [`load_for`].
-pub fn plan_and_scenario(plan: &Path, scenario: Option<&Path>) -> Result<(Plan, Robot, Scenario), InputError> {
+/// As [`read_plan`] and [`load_for_plan`].
+pub fn load_plan_and_scenario(plan: &Path, scenario: Option<&Path>) -> Result<(Plan, Robot, Scenario), InputError> {
     let (plan, robot) = read_plan(plan, None)?;
     let mut scenario = match (scenario, &plan.scenario) {
-        (Some(path), _) => load_for(path, &plan)?,
+        (Some(path), _) => load_for_plan(path, &plan)?,
         (None, Some(scenario)) => scenario.clone(),
-        (None, None) => for_plan(&plan, &robot),
+        (None, None) => default_for_plan(&plan, &robot),
     };
     scenario.name.clone_from(&plan.name);
     Ok((plan, robot, scenario))
 }
 
-/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
-pub fn for_plan(plan: &Plan, robot: &Robot) -> Scenario {
-    resolve::defaults_for_plan(plan, robot)
+/// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
+pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
+    resolve::default_for_plan(plan, robot)
 }

@@ -1,4 +1,4 @@
-//! Plan files, ours or anybody's: read and checked against the robot that they name.
+//! Reads plan files and checks them against the robot that they name.
 
 use std::path::Path;
 
@@ -16,16 +16,16 @@ use crate::{
     robot::{Arm, Chain, Robot},
 };
 
-/// How far a joint angle may lie beyond its limit, rad: rounding of written figures.
+/// Largest excess of a joint angle over its limit, rad: rounding of written numbers.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-6;
 
-/// How far a hand may be from where the plan puts it on the board: 1 mm and 0.1 degrees.
+/// Largest deviation of a hand's pose from `x_wo x_og`, m and rad: 1 mm and 0.1 degrees.
 const HAND_TOLERANCE: (f64, f64) = (1e-3, 0.1 * std::f64::consts::PI / 180.0);
 
-/// Reads and checks a plan file. The robot that it names is loaded, unless it is the one given.
+/// Reads and checks a plan file. The robot that it names is loaded, unless it is `robot`.
 ///
 /// # Errors
-/// When the file cannot be read, is not a plan of this format, or asks for what the robot is not or cannot do.
+/// If the file cannot be read, is not a plan of the supported format, or does not fit the robot.
 pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), InputError> {
     let text = read_text(path)?;
     let check = Checker::json(path, &text);
@@ -48,7 +48,7 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
     if let Some(scenario) = &plan.scenario {
         let check = check.under("scenario.");
         check.format(scenario.format)?;
-        resolve::check_figures(&check, scenario, &robot)?;
+        resolve::check_values(&check, scenario, &robot)?;
     }
     Ok((plan, robot))
 }
@@ -67,7 +67,7 @@ fn parse(path: &Path, text: &str) -> Result<Plan, InputError> {
     })
 }
 
-/// serde_json ends its messages with the line and column, which we say in front.
+/// Removes the line and column at the end of a message of serde_json: the error states the line itself.
 fn without_position(message: &str) -> String {
     message.split(" at line ").next().unwrap_or(message).to_owned()
 }
@@ -78,7 +78,7 @@ fn check_object(check: &Checker<'_>, plan: &Plan) -> Result<(), InputError> {
     check.on_board("operation.x_ot", &plan.operation.x_ot, plan.object.size_m)
 }
 
-/// The person must be one, in a posture that they can take.
+/// Requires a valid person whose joint angles are within their limits.
 fn check_human(check: &Checker<'_>, plan: &Plan) -> Result<(), InputError> {
     let Some(posture) = &plan.human else { return Ok(()) };
     let person = posture.person();
@@ -134,7 +134,7 @@ fn check_joints(check: &Checker<'_>, index: usize, hold: &ArmHold, arm: &Arm, ro
     Ok(())
 }
 
-/// The fingers must close on the two faces of the board, which must lie between them.
+/// Requires fingers that close across the board's thickness, centred on it.
 fn check_straddle(check: &Checker<'_>, key: &str, hold: &ArmHold) -> Result<(), InputError> {
     let off_m = hold.x_og.translation.vector.z.abs();
     let off_rad = (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos();
@@ -144,7 +144,7 @@ fn check_straddle(check: &Checker<'_>, key: &str, hold: &ArmHold) -> Result<(), 
     check.that(astride, key, found, "fingers that close across the thickness, within 1 mm and 0.1 degrees")
 }
 
-/// The joint angles must put the hand where `x_og` says that it holds the board.
+/// Requires joint angles whose forward kinematics agree with `x_wo x_og`.
 fn check_hand(check: &Checker<'_>, key: &str, hold: &ArmHold, plan: &Plan, chain: &Chain) -> Result<(), InputError> {
     let reached = chain.gripper_pose(&hold.q_rad);
     let meant = plan.object.x_wo * hold.x_og;

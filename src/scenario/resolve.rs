@@ -1,4 +1,4 @@
-//! From a scenario file to the resolved scenario: defaults filled in, every figure checked.
+//! Resolves a scenario file: fills in defaults and checks every value.
 
 use std::path::Path;
 
@@ -8,9 +8,9 @@ use super::{
     InputError,
     check::Checker,
     file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
-    load_robot, material,
-    profile::{self, check_load, check_uncertainty},
-    robot_figures,
+    load_robot,
+    load_section::{self, check_load, check_uncertainty},
+    material, robot_parameters,
 };
 use crate::{
     human::{body::MAX_LEAN_DEG, tools::default_tool},
@@ -32,7 +32,7 @@ use crate::{
 /// The resolved scenario of a file, and its robot.
 ///
 /// # Errors
-/// When the robot cannot be loaded or a figure is not what it must be.
+/// If the robot cannot be loaded or a value is invalid.
 pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario, Robot), InputError> {
     let check = Checker::toml(path, text);
     check.name(&file.name)?;
@@ -43,26 +43,26 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     let scenario = Scenario {
         format: FORMAT,
         name: file.name.clone(),
-        robot: robot_figures(&robot),
-        human: typical_person(&file.human),
+        robot: robot_parameters(&robot),
+        human: person_with_defaults(&file.human),
         tool: file.tool.unwrap_or_else(|| default_tool(operation.kind)),
-        limits: typical_limits(&file.limits, operation.kind),
+        limits: limits_with_defaults(&file.limits, operation.kind),
         object,
         operation,
         comfort: file.comfort,
         planner: file.planner.clone(),
         grip: file.grip,
         simulation: file.simulation,
-        load: profile::load(&check, &file.load, folder)?,
+        load: load_section::load(&check, &file.load, folder)?,
         uncertainty: file.uncertainty,
         expect: file.expect,
     };
-    check_figures(&check, &scenario, &robot)?;
+    check_values(&check, &scenario, &robot)?;
     Ok((scenario, robot))
 }
 
-/// Checks the figures of a scenario that do not depend on how its file is written: all but board and operation.
-pub fn check_figures(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> Result<(), InputError> {
+/// Checks all values of a resolved scenario but those of board and operation, which depend on the form of the file.
+pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> Result<(), InputError> {
     check_person(check, &scenario.human)?;
     check_tool(check, &scenario.tool)?;
     grip(check, &scenario.grip, robot)?;
@@ -73,15 +73,15 @@ pub fn check_figures(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) ->
     check_limits(check, &scenario.limits)
 }
 
-/// The person of a file, with the height and mass of typical adults (`assets/human/`) where it gives none.
-fn typical_person(section: &HumanSection) -> Person {
-    let (typical_height_m, typical_mass_kg) = match section.sex {
+/// The person of a file. The default height and mass are those of typical adults (`docs/method.md#43-body-dimensions`).
+fn person_with_defaults(section: &HumanSection) -> Person {
+    let (default_height_m, default_mass_kg) = match section.sex {
         Sex::Male => (1.75, 75.0),
         Sex::Female => (1.62, 62.0),
     };
     Person {
-        height_m: section.height_m.unwrap_or(typical_height_m),
-        mass_kg: section.mass_kg.unwrap_or(typical_mass_kg),
+        height_m: section.height_m.unwrap_or(default_height_m),
+        mass_kg: section.mass_kg.unwrap_or(default_mass_kg),
         sex: section.sex,
         hand: section.hand,
         percentile: section.percentile,
@@ -89,11 +89,11 @@ fn typical_person(section: &HumanSection) -> Person {
     }
 }
 
-/// Checks a person's figures.
+/// Checks a person's values.
 pub fn check_person(check: &Checker<'_>, person: &Person) -> Result<(), InputError> {
     check.within("human.height_m", person.height_m, 1.2, 2.3, "m")?;
     check.within("human.mass_kg", person.mass_kg, 30.0, 250.0, "kg")?;
-    // Outside these the normal distribution of strength would reach zero torque.
+    // Outside this range the normal distribution of strength could reach zero torque.
     check.within("human.percentile", person.percentile, 0.1, 99.9, "%")?;
     check.within("human.lean_deg", person.lean_deg, 0.0, MAX_LEAN_DEG, "degrees")
 }
@@ -108,9 +108,9 @@ fn check_tool(check: &Checker<'_>, tool: &Tool) -> Result<(), InputError> {
 }
 
 fn board(check: &Checker<'_>, section: &ObjectSection, robot: &Robot) -> Result<Board, InputError> {
-    let typical = material::density_kg_m3(&section.material)
+    let material_density = material::density_kg_m3(&section.material)
         .map_err(|expected| check.value("object.material", format!("\"{}\"", section.material), expected))?;
-    let density_kg_m3 = section.density_kg_m3.unwrap_or(typical);
+    let density_kg_m3 = section.density_kg_m3.unwrap_or(material_density);
     check.within("object.density_kg_m3", density_kg_m3, 1.0, 25_000.0, "kg/m^3")?;
     check.board_size("object.size_m", section.size_m, robot.arms.iter())?;
     Ok(Board { size_m: section.size_m, density_kg_m3, material: section.material.clone() })
@@ -175,10 +175,10 @@ fn comfort(check: &Checker<'_>, comfort: &ComfortSettings) -> Result<(), InputEr
         return check.absent("comfort.optima", comfort.optima.is_some(), "comfort.peripersonal_share");
     };
     check.within("comfort.peripersonal_share", share, 0.0, 1.0, "a share")?;
-    let as_it_is = ComfortSettings::default();
+    let defaults = ComfortSettings::default();
     for (key, weight, unchanged) in [
-        ("comfort.weight_muscular", comfort.weight_muscular, as_it_is.weight_muscular),
-        ("comfort.weight_peripersonal", comfort.weight_peripersonal, as_it_is.weight_peripersonal),
+        ("comfort.weight_muscular", comfort.weight_muscular, defaults.weight_muscular),
+        ("comfort.weight_peripersonal", comfort.weight_peripersonal, defaults.weight_peripersonal),
     ] {
         check.that(weight == unchanged, key, "a weight beside comfort.peripersonal_share", "one or the other")?;
     }
@@ -199,17 +199,18 @@ fn simulation(check: &Checker<'_>, settings: &SimulationSettings) -> Result<(), 
     let expected = format!("at most {most} steps in all phases together");
     check.that(steps <= most, "simulation", format!("{steps:.0} steps"), &expected)?;
     let least_s = SimulationSettings::MIN_HOLD_STEPS as f64 * timestep_s;
-    let expected = format!("at least {} time steps, for creep to be seen", SimulationSettings::MIN_HOLD_STEPS);
+    let expected = format!("at least {} time steps, to measure creep", SimulationSettings::MIN_HOLD_STEPS);
     check.that(hold_s >= least_s, "simulation.hold_s", hold_s.to_string(), &expected)
 }
 
-/// The limits of a file, with the deflection that suits the operation where it gives none (METHOD section 8).
-fn typical_limits(section: &LimitsSection, kind: OperationKind) -> Limits {
-    let typical_mm = if kind == OperationKind::Cut { 15.0 } else { 5.0 };
+/// The limits of a file. The default deflection depends on the kind of operation
+/// (`docs/method.md#810-default-limits`).
+fn limits_with_defaults(section: &LimitsSection, kind: OperationKind) -> Limits {
+    let default_mm = if kind == OperationKind::Cut { 15.0 } else { 5.0 };
     Limits {
         slip_mm: section.slip_mm,
         slip_deg: section.slip_deg,
-        deflection_mm: section.deflection_mm.unwrap_or(typical_mm),
+        deflection_mm: section.deflection_mm.unwrap_or(default_mm),
         creep_mm_s: section.creep_mm_s,
         torque_ratio: section.torque_ratio,
         load_factor: section.load_factor,
@@ -222,20 +223,21 @@ fn check_limits(check: &Checker<'_>, limits: &Limits) -> Result<(), InputError> 
     check.positive("limits.deflection_mm", limits.deflection_mm, "mm")?;
     check.positive("limits.creep_mm_s", limits.creep_mm_s, "mm/s")?;
     check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
-    // The solvers look no further than 100, and the planner asks for a reserve on top.
+    // The solvers stop at 100, and the planner applies a safety factor.
     check.within("limits.load_factor", limits.load_factor, 0.0, 50.0, "a multiple of the load")
 }
 
-/// How far a plan's board or operation may be from the scenario's, m, N and N m: rounding of written figures.
-const SAME: f64 = 1e-6;
+/// Largest deviation of a plan's board, operation and grip force from the scenario's, m, kg, N and N m: rounding of
+/// written numbers.
+const SAME_TOLERANCE: f64 = 1e-6;
 
-/// Checks that the plan which a scenario names is one for its robot, board and operation; the tool's roll is the plan's.
+/// Checks that a plan has a scenario's robot, board, operation and grip force. The roll of a drill may differ.
 ///
 /// # Errors
-/// When it answers another scenario.
-pub fn plan_answers(path: &Path, text: &str, scenario: &Scenario, plan: &Plan) -> Result<(), InputError> {
+/// If one of them differs.
+pub fn check_plan_matches(path: &Path, text: &str, scenario: &Scenario, plan: &Plan) -> Result<(), InputError> {
     let check = Checker::toml(path, text);
-    let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
+    let close = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME_TOLERANCE);
     let same_robot = plan.robot == scenario.robot.description;
     let found = format!("a plan for the robot \"{}\"", plan.robot);
     check.that(same_robot, "planner.plan", found, &format!("one for \"{}\"", scenario.robot.description))?;
@@ -247,8 +249,8 @@ pub fn plan_answers(path: &Path, text: &str, scenario: &Scenario, plan: &Plan) -
     let (found, expected) = (&plan.operation, &scenario.operation);
     let (tip, meant) = (found.x_ot.translation.vector, expected.x_ot.translation.vector);
     let (turned, unrolled) = (found.x_ot.rotation, expected.x_ot.rotation);
-    let same_axis = (turned * Vector3::z() - unrolled * Vector3::z()).norm() <= SAME;
-    let same_turn = same_axis && (found.kind.roll_is_free() || turned.angle_to(&unrolled) <= SAME);
+    let same_axis = (turned * Vector3::z() - unrolled * Vector3::z()).norm() <= SAME_TOLERANCE;
+    let same_turn = same_axis && (found.kind.roll_is_free() || turned.angle_to(&unrolled) <= SAME_TOLERANCE);
     let same_operation = found.kind == expected.kind
         && same_turn
         && close(tip.as_slice(), meant.as_slice())
@@ -261,21 +263,21 @@ pub fn plan_answers(path: &Path, text: &str, scenario: &Scenario, plan: &Plan) -
     let found = format!("a plan for {}", describe(found, tip.as_slice()));
     check.that(same_operation, "planner.plan", found, &describe(expected, meant.as_slice()))?;
     let force_n = scenario.grip.force_n;
-    let other = plan.arms.iter().find(|hold| (hold.grip_force_n - force_n).abs() > SAME);
+    let other = plan.arms.iter().find(|hold| (hold.grip_force_n - force_n).abs() > SAME_TOLERANCE);
     let found = other.map_or(force_n, |hold| hold.grip_force_n);
     let expected = format!("{force_n} N, the scenario's grip.force_n");
     check.that(other.is_none(), "planner.plan", format!("a plan that grips with {found} N"), &expected)
 }
 
-/// The scenario of a plan that carries none: its own figures, and the defaults for its kind of operation.
-pub fn defaults_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
+/// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
+pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
     let kind = plan.operation.kind;
     let size_m = plan.object.size_m;
     Scenario {
         format: FORMAT,
         name: plan.name.clone(),
-        robot: robot_figures(robot),
-        human: plan.human.map_or_else(|| typical_person(&HumanSection::default()), |posture| posture.person()),
+        robot: robot_parameters(robot),
+        human: plan.human.map_or_else(|| person_with_defaults(&HumanSection::default()), |posture| posture.person()),
         tool: default_tool(kind),
         object: Board {
             size_m,
@@ -289,7 +291,7 @@ pub fn defaults_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         simulation: SimulationSettings::default(),
         load: Load::default(),
         uncertainty: Uncertainty::default(),
-        limits: typical_limits(&LimitsSection::default(), kind),
+        limits: limits_with_defaults(&LimitsSection::default(), kind),
         expect: Expectation::default(),
     }
 }

@@ -4,12 +4,12 @@ use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, Rigid
 
 use super::{
     Conditions, SimError,
+    balance::{JointState, drive_work_j, mechanical_energy_j},
     bodies::ArmBodies,
     body_chain::{BodyChain, ChainLink},
     gripper::SimGripper,
     pad::PadContact,
-    pad_shape::{Hand, Pressing},
-    self_check::{JointState, drive_work_j, mechanical_energy_j},
+    pad_shape::{GraspingHand, PadLoading},
     servo::Servo,
     world::contact_softness_s2,
 };
@@ -58,12 +58,12 @@ impl SimArm {
         let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
         let merged = ArmBodies::new(robot, arm);
         let chain = BodyChain::insert(world, robot, &merged.bodies)?;
-        let place = |joint: usize| chain.links[merged.of_joint[joint]];
+        let place = |joint: usize| chain.links[merged.body_of_joint[joint]];
         let arm_joints: Vec<_> = (0..arm.joints.len()).map(place).collect();
         let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
-        let hand = Hand { arm, bodies: &merged, x_og: hold.x_og };
-        let pressing = Pressing::new(&hand, object, grip_force_n, contact_softness_s2(world));
-        let contact = PadContact { friction: conditions.real_friction(), pressing };
+        let hand = GraspingHand { arm, bodies: &merged, x_og: hold.x_og };
+        let loading = PadLoading::new(&hand, object, grip_force_n, contact_softness_s2(world));
+        let contact = PadContact { friction: conditions.real_friction(), loading };
         let mut gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
         let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
 
@@ -71,7 +71,7 @@ impl SimArm {
         let placed = arm_joints.iter().chain(&fingers).zip(hold.q_rad.iter().chain(&finger_m));
         placed.for_each(|(link, position)| positions[link.dof] = *position);
         let multibody = fingers[0].joint;
-        let engine = take_posture(world, multibody, &positions)?;
+        let engine = set_joint_positions(world, multibody, &positions)?;
         gripper.close(engine, grip_force_n, finger_m, object.mass_kg);
         let weight_nm = weight_torque_nm(robot, arm_index, &hold.q_rad, object.size_m[2]);
         let joints = driven_joints(arm, hold, &arm_joints, &weight_nm, conditions.uncertainty.joint_stiffness_scale);
@@ -91,7 +91,7 @@ impl SimArm {
             joint.rest_rad = joint.servo.rest_rad(q_rad, velocity_rad_s, timestep_s);
             joint.place.set_spring(multibody, joint.servo.stiffness_nm_rad, joint.rest_rad);
         }
-        self.gripper.remember(multibody);
+        self.gripper.store_state(multibody);
     }
 
     /// Kinetic energy and weight's potential of the arm, J.
@@ -134,7 +134,7 @@ impl SimArm {
 }
 
 /// Moves a chain from position zero to these joint positions, its bodies and pads with it.
-fn take_posture<'a>(
+fn set_joint_positions<'a>(
     world: &'a mut PhysicsWorld,
     handle: MultibodyJointHandle,
     positions: &[f64],

@@ -16,12 +16,12 @@ pub(super) struct MovingBody {
     /// Pose of the joint's frame in the parent body, or in W.
     pub x_pj: Pose,
     /// Mass and its distribution in the frame of the joint's child link.
-    pub mass: MassSum,
+    pub mass: CompositeInertia,
 }
 
 /// Mass, centre of mass and inertia of several links together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MassSum {
+pub(super) struct CompositeInertia {
     /// Mass, kg.
     pub mass_kg: f64,
     /// Centre of mass in the body's frame, m.
@@ -30,8 +30,8 @@ pub(super) struct MassSum {
     pub inertia_b: Matrix3<f64>,
 }
 
-impl MassSum {
-    const NOTHING: Self = Self {
+impl CompositeInertia {
+    const ZERO: Self = Self {
         mass_kg: 0.0,
         com_b: Vector3::new(0.0, 0.0, 0.0),
         inertia_b: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -62,7 +62,7 @@ fn steiner(mass_kg: f64, r: &Vector3<f64>) -> Matrix3<f64> {
 
 /// Where a link sits: in a moving body, or in the world.
 #[derive(Clone, Copy)]
-pub(super) struct Seat {
+pub(super) struct LinkPlacement {
     /// An index into [`ArmBodies::bodies`]; none for the world.
     pub body: Option<usize>,
     /// Pose of the link in that body, or in W.
@@ -74,9 +74,9 @@ pub(super) struct ArmBodies {
     /// Parents before children.
     pub bodies: Vec<MovingBody>,
     /// The body of each joint of the arm, then of each finger.
-    pub of_joint: Vec<usize>,
-    /// The seat of every link of the robot, in the robot's order.
-    pub seats: Vec<Seat>,
+    pub body_of_joint: Vec<usize>,
+    /// The placement of every link of the robot, in the robot's order.
+    pub placements: Vec<LinkPlacement>,
 }
 
 impl ArmBodies {
@@ -87,31 +87,36 @@ impl ArmBodies {
             arm.joints.iter().copied().chain(arm.gripper.fingers.iter().map(|finger| finger.joint)).collect();
         let at_rest = robot.positions(&[]);
         let mut bodies: Vec<MovingBody> = Vec::new();
-        let mut of_joint = vec![0; moving.len()];
-        let mut seats: Vec<Seat> = Vec::with_capacity(robot.links.len());
+        let mut body_of_joint = vec![0; moving.len()];
+        let mut placements: Vec<LinkPlacement> = Vec::with_capacity(robot.links.len());
         for link in &robot.links {
-            let seat = match link.parent_joint {
-                None => Seat { body: None, x_bl: Isometry3::identity() },
+            let placement = match link.parent_joint {
+                None => LinkPlacement { body: None, x_bl: Isometry3::identity() },
                 Some(joint) => {
                     let hinge = &robot.joints[joint];
-                    let parent = seats[hinge.parent_link];
+                    let parent = placements[hinge.parent_link];
                     let x_bj = parent.x_bl * hinge.x_pj;
                     match moving.iter().position(|&m| m == joint) {
-                        None => Seat { body: parent.body, x_bl: parent.x_bl * hinge.x_pc(at_rest[joint]) },
+                        None => LinkPlacement { body: parent.body, x_bl: parent.x_bl * hinge.x_pc(at_rest[joint]) },
                         Some(place) => {
-                            of_joint[place] = bodies.len();
-                            bodies.push(MovingBody { joint, parent: parent.body, x_pj: x_bj, mass: MassSum::NOTHING });
-                            Seat { body: Some(bodies.len() - 1), x_bl: Isometry3::identity() }
+                            body_of_joint[place] = bodies.len();
+                            bodies.push(MovingBody {
+                                joint,
+                                parent: parent.body,
+                                x_pj: x_bj,
+                                mass: CompositeInertia::ZERO,
+                            });
+                            LinkPlacement { body: Some(bodies.len() - 1), x_bl: Isometry3::identity() }
                         }
                     }
                 }
             };
-            if let Some(body) = seat.body {
-                bodies[body].mass = bodies[body].mass.with_link(link, &seat.x_bl);
+            if let Some(body) = placement.body {
+                bodies[body].mass = bodies[body].mass.with_link(link, &placement.x_bl);
             }
-            seats.push(seat);
+            placements.push(placement);
         }
-        Self { bodies, of_joint, seats }
+        Self { bodies, body_of_joint, placements }
     }
 }
 
@@ -134,7 +139,7 @@ mod tests {
         let x_bl = |x: f64| Isometry3::from_parts(Vector3::new(x, 0.0, 0.0).into(), turn);
         // Turned by a quarter about z, the half's long side lies along y_L, and x_B is -y_L.
         let half = box_link(1.5, [0.1, 0.2, 0.3], Vector3::new(0.0, -0.05, 0.0));
-        let merged = MassSum::NOTHING.with_link(&half, &x_bl(-0.15)).with_link(&half, &x_bl(0.05));
+        let merged = CompositeInertia::ZERO.with_link(&half, &x_bl(-0.15)).with_link(&half, &x_bl(0.05));
         let whole = box_link(3.0, [0.4, 0.1, 0.3], Vector3::zeros());
         assert_eq!(merged.mass_kg, 3.0);
         // Rounding of products of numbers below one.

@@ -6,7 +6,7 @@ use rapier3d_f64::prelude::{
     PhysicsWorld, RigidBodyBuilder, RigidBodyHandle,
 };
 
-use super::{SimError, bodies::MovingBody, border};
+use super::{SimError, bodies::MovingBody, convert};
 use crate::robot::{JointKind, Robot};
 
 /// A moving body in the engine and the joint that moves it.
@@ -103,9 +103,9 @@ fn insert_body(
         return Err(SimError::Massless { link: robot.links[joint.child_link].name.clone() });
     }
     let properties = MassProperties::with_inertia_matrix(
-        border::vector(&mass.com_b),
+        convert::to_engine_vector(&mass.com_b),
         mass.mass_kg,
-        border::symmetric(&mass.inertia_b),
+        convert::to_engine_matrix(&mass.inertia_b),
     );
     let builder = RigidBodyBuilder::dynamic().additional_mass_properties(properties).can_sleep(false);
     let body = world.bodies.insert(builder);
@@ -129,8 +129,8 @@ fn engine_joint(kind: JointKind, axis_j: &Vector3<f64>, moving: &MovingBody) -> 
         JointKind::Revolute | JointKind::Fixed => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
     };
     let data = GenericJointBuilder::new(locked)
-        .local_frame1(border::engine_pose(&(moving.x_pj * x_ja)))
-        .local_frame2(border::engine_pose(&x_ja))
+        .local_frame1(convert::to_engine_pose(&(moving.x_pj * x_ja)))
+        .local_frame2(convert::to_engine_pose(&x_ja))
         .contacts_enabled(false)
         .build();
     (data, axis)

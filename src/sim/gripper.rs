@@ -4,11 +4,11 @@ use nalgebra::{Isometry3, Translation3};
 use rapier3d_f64::prelude::{Multibody, MultibodyDofCoupling, PhysicsWorld, RigidBodyHandle};
 
 use super::{
+    balance::{JointState, drive_work_j},
     bodies::ArmBodies,
     body_chain::{BodyChain, ChainLink},
-    border,
+    convert,
     pad::{PadContact, SimPad},
-    self_check::{JointState, drive_work_j},
 };
 use crate::{
     model::frames::Pose,
@@ -64,10 +64,10 @@ impl SimGripper {
         chain: &BodyChain,
         contact: PadContact,
     ) -> Self {
-        let seat = merged.seats[arm.gripper.frame_link];
+        let placement = merged.placements[arm.gripper.frame_link];
         let parts = [0, 1].map(|k| {
-            let body = merged.of_joint[arm.joints.len() + k];
-            let x_gj = seat.x_bl.inverse() * merged.bodies[body].x_pj;
+            let body = merged.body_of_joint[arm.joints.len() + k];
+            let x_gj = placement.x_bl.inverse() * merged.bodies[body].x_pj;
             let joint = &robot.joints[arm.gripper.fingers[k].joint];
             let finger = arm.gripper.fingers[k].clone();
             let place = chain.links[body];
@@ -88,9 +88,9 @@ impl SimGripper {
         Self {
             fingers: [first, second],
             pads: [first_pad, second_pad],
-            hand: chain.body(seat.body),
-            x_bc: seat.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
-            x_bg: seat.x_bl,
+            hand: chain.body(placement.body),
+            x_bc: placement.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
+            x_bg: placement.x_bl,
         }
     }
 
@@ -130,7 +130,7 @@ impl SimGripper {
     }
 
     /// Keeps the fingers' state before a step.
-    pub fn remember(&mut self, multibody: &Multibody) {
+    pub fn store_state(&mut self, multibody: &Multibody) {
         for finger in &mut self.fingers {
             finger.before = finger.state(multibody);
         }
@@ -161,11 +161,11 @@ impl SimGripper {
 
     /// Pose of G in the world.
     pub fn x_wg(&self, world: &PhysicsWorld) -> Pose {
-        border::from_engine_pose(world.bodies[self.hand].position()) * self.x_bg
+        convert::from_engine_pose(world.bodies[self.hand].position()) * self.x_bg
     }
 
     /// Pose of the frame with the axes of G at the centre between the pads, in the world.
     pub fn x_wc(&self, world: &PhysicsWorld) -> Pose {
-        border::from_engine_pose(world.bodies[self.hand].position()) * self.x_bc
+        convert::from_engine_pose(world.bodies[self.hand].position()) * self.x_bc
     }
 }

@@ -27,7 +27,7 @@ use super::{
     check,
     gripper::FINGER_DAMPING_N_S_M,
     pad::x_gp,
-    pad_shape::{Hand, PadPart, Pressing, Solid, pad_parts},
+    pad_shape::{GraspingHand, PadLoading, PadPart, Solid, pad_parts},
 };
 use crate::{
     model::{
@@ -55,7 +55,7 @@ struct ExportedArm<'a> {
     bodies: ArmBodies,
     weight_nm: Vec<f64>,
     finger_m: [f64; 2],
-    pressing: Pressing,
+    loading: PadLoading,
 }
 
 /// Writes the scene of a plan as MJCF.
@@ -75,10 +75,10 @@ pub fn mjcf(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Strin
             let weight_nm = weight_torque_nm(robot, holding.arm_index, &holding.hold.q_rad, gap_m);
             let hold = holding.hold;
             let bodies = ArmBodies::new(robot, arm);
-            let hand = Hand { arm, bodies: &bodies, x_og: hold.x_og };
+            let hand = GraspingHand { arm, bodies: &bodies, x_og: hold.x_og };
             let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
-            let pressing = Pressing::new(&hand, &plan.object, grip_force_n, SOFTNESS_S2);
-            ExportedArm { arm, hold, bodies, weight_nm, finger_m, pressing }
+            let loading = PadLoading::new(&hand, &plan.object, grip_force_n, SOFTNESS_S2);
+            ExportedArm { arm, hold, bodies, weight_nm, finger_m, loading }
         })
         .collect();
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
@@ -160,7 +160,7 @@ fn children(
     for (index, body) in arm.bodies.bodies.iter().enumerate().filter(|(_, body)| body.parent == parent) {
         let joint = &robot.joints[body.joint];
         let name = robot.links[joint.child_link].name.as_str();
-        let place = arm.bodies.of_joint.iter().position(|&of| of == index).unwrap_or_default();
+        let place = arm.bodies.body_of_joint.iter().position(|&of| of == index).unwrap_or_default();
         let element = with(xml.create_element("body").with_attribute(("name", name)), &pose_attributes(&body.x_pj));
         element.write_inner_content(|xml| {
             inertial(xml, body)?;
@@ -206,11 +206,11 @@ fn pad_geom_name(arm: &ExportedArm<'_>, k: usize, part: &PadPart) -> String {
 /// The parts of a finger's pad, in the finger's body.
 fn pads(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, k: usize, body: &MovingBody) -> io::Result<()> {
     let finger: &Finger = &arm.arm.gripper.fingers[k];
-    let seat = arm.bodies.seats[arm.arm.gripper.frame_link];
+    let placement = arm.bodies.placements[arm.arm.gripper.frame_link];
     let axis_j: Vector3<f64> = robot.joints[finger.joint].axis_j.into_inner();
-    let x_gf = seat.x_bl.inverse() * body.x_pj * Translation3::from(axis_j * finger.closed_m);
+    let x_gf = placement.x_bl.inverse() * body.x_pj * Translation3::from(axis_j * finger.closed_m);
     let x_fp = x_gf.inverse() * x_gp(&finger.pad, k);
-    for part in pad_parts(&finger.pad, &arm.pressing) {
+    for part in pad_parts(&finger.pad, &arm.loading) {
         geom(xml, &pad_geom_name(arm, k, &part), &part.solid, &(x_fp * part.x_pc))?;
     }
     Ok(())
@@ -253,7 +253,7 @@ fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], friction: f64) -> io::
     xml.create_element("contact").write_inner_content(|xml| {
         for arm in arms {
             let fingers = arm.arm.gripper.fingers.iter().enumerate();
-            let parts = fingers.flat_map(|(k, finger)| pad_parts(&finger.pad, &arm.pressing).map(|part| (k, part)));
+            let parts = fingers.flat_map(|(k, finger)| pad_parts(&finger.pad, &arm.loading).map(|part| (k, part)));
             for (k, part) in parts {
                 let mut attributes = vec![
                     ("geom1", pad_geom_name(arm, k, &part)),

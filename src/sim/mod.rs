@@ -66,30 +66,30 @@
 //! The engine makes a contact as stiff as the lighter of its bodies is heavy, so light boards sit softer.
 
 mod arm;
+mod balance;
 mod bodies;
 mod body_chain;
-mod border;
 mod check;
 mod conditions;
+mod convert;
 mod error;
 mod gripper;
-mod load;
 mod mjcf;
 mod pad;
 mod pad_shape;
-mod person;
+mod person_monitor;
+mod phases;
 mod scene;
-mod self_check;
 mod servo;
-mod tool;
+mod tool_load;
 mod world;
 
 pub use conditions::Conditions;
 pub use error::SimError;
 pub use mjcf::mjcf;
-use person::Bystander;
-pub use scene::{Scene, blank_sample};
-use tool::ToolLoad;
+use person_monitor::PersonMonitor;
+pub use scene::{SimScene, blank_sample};
+use tool_load::ToolLoad;
 
 use crate::{
     model::{
@@ -118,8 +118,8 @@ const LOST_AFTER_S: f64 = 0.1;
 pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Trace, SimError> {
     let tool = ToolLoad::new(plan, conditions)?;
     let timestep_s = conditions.settings.timestep_s;
-    let mut scene = Scene::new(robot, plan, conditions)?;
-    let mut person = Bystander::of(robot, plan, conditions)?;
+    let mut scene = SimScene::new(robot, plan, conditions)?;
+    let mut person = PersonMonitor::of(robot, plan, conditions)?;
     let mut trace = empty_trace(robot, plan, conditions, tool.steps() + 1);
     let mut untouched_s = 0.0;
     for step in 0..=tool.steps() {
@@ -138,7 +138,7 @@ pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<T
         scene.observe(sample);
         sample.person_distance_m = person.as_mut().map(|person| person.distance_m(step, sample));
         // Before the first step there are no forces yet.
-        untouched_s = if step == 0 || sample.is_touched() { 0.0 } else { untouched_s + timestep_s };
+        untouched_s = if step == 0 || sample.has_contact() { 0.0 } else { untouched_s + timestep_s };
         if untouched_s > LOST_AFTER_S {
             trace.samples.truncate(step + 1);
             break;

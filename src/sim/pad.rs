@@ -6,8 +6,8 @@ use rapier3d_f64::prelude::{
 };
 
 use super::{
-    border,
-    pad_shape::{PadPart, Pressing, Solid, pad_parts},
+    convert,
+    pad_shape::{PadLoading, PadPart, Solid, pad_parts},
     world::{pad_groups, substep_s},
 };
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
 
 /// The board, as the pads see it.
 #[derive(Clone, Copy)]
-pub(super) struct TouchedBoard {
+pub(super) struct BoardHandles {
     /// The body.
     pub body: RigidBodyHandle,
     /// Its shape.
@@ -30,7 +30,7 @@ pub(super) struct PadContact {
     /// Coulomb coefficient.
     pub friction: f64,
     /// What presses it.
-    pub pressing: Pressing,
+    pub loading: PadLoading,
 }
 
 /// Pose of the pad of finger `k` (0 on the +y_G side) in G when its travel is 0: x_P along x_G, z_P into the object.
@@ -64,7 +64,7 @@ impl SimPad {
         contact: PadContact,
     ) -> Self {
         let x_fp = x_gf.inverse() * x_gp(pad, k);
-        let colliders = pad_parts(pad, &contact.pressing).map(|PadPart { solid, x_pc, .. }| {
+        let colliders = pad_parts(pad, &contact.loading).map(|PadPart { solid, x_pc, .. }| {
             let collider = match solid {
                 Solid::Box { half_m: [x, y, z] } => ColliderBuilder::cuboid(x, y, z),
                 Solid::Ball { radius_m } => ColliderBuilder::ball(radius_m),
@@ -72,7 +72,7 @@ impl SimPad {
             let collider = collider
                 .density(0.0)
                 .friction(contact.friction)
-                .position(border::engine_pose(&(x_fp * x_pc)))
+                .position(convert::to_engine_pose(&(x_fp * x_pc)))
                 .collision_groups(pad_groups());
             world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
         });
@@ -80,15 +80,15 @@ impl SimPad {
     }
 
     /// How deep the pad's contacts with the board sank in before the last step, m: nothing where it does not touch.
-    pub fn penetration_m(&self, world: &PhysicsWorld, board: TouchedBoard) -> f64 {
+    pub fn penetration_m(&self, world: &PhysicsWorld, board: BoardHandles) -> f64 {
         let pairs = self.colliders.iter().filter_map(|part| world.narrow_phase.contact_pair(*part, board.collider));
         let points = pairs.flat_map(|pair| pair.solver_manifolds()).flat_map(|manifold| &manifold.points);
         points.map(|point| -point.dist).fold(0.0, f64::max)
     }
 
     /// What the pad does to the board in the last substep: the engine keeps the friction of no other.
-    pub fn observe(&self, world: &PhysicsWorld, board: TouchedBoard) -> PadSample {
-        let x_wp = border::from_engine_pose(world.bodies[self.finger].position()) * self.x_fp;
+    pub fn observe(&self, world: &PhysicsWorld, board: BoardHandles) -> PadSample {
+        let x_wp = convert::from_engine_pose(world.bodies[self.finger].position()) * self.x_fp;
         let p_wp_m = x_wp.translation.vector;
         let mut wrench_w = Wrench::default();
         for collider in &self.colliders {
@@ -119,8 +119,8 @@ fn impulse_on_board(
         let on_first = point.data.warmstart_tangent_world - data.normal * point.data.warmstart_impulse;
         let (impulse, arm) =
             if board_is_first { (on_first, point.data.solver_dp1) } else { (-on_first, point.data.solver_dp2) };
-        let p_w = border::from_vector(com_w + arm);
-        total = total + Wrench::from_force(border::from_vector(impulse)).about(&(p_w - about_w));
+        let p_w = convert::from_engine_vector(com_w + arm);
+        total = total + Wrench::from_force(convert::from_engine_vector(impulse)).about(&(p_w - about_w));
     }
     total
 }

@@ -31,7 +31,7 @@ fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
 }
 
 /// A hand, and where it holds.
-pub(super) struct Hand<'a> {
+pub(super) struct GraspingHand<'a> {
     /// The arm that it ends.
     pub arm: &'a Arm,
     /// What of it moves.
@@ -42,7 +42,7 @@ pub(super) struct Hand<'a> {
 
 /// What presses a pad on a board, and what gives way there.
 #[derive(Clone, Copy)]
-pub(super) struct Pressing {
+pub(super) struct PadLoading {
     /// The grip force, N.
     force_n: f64,
     /// Mass of a finger with its drive, kg.
@@ -57,11 +57,11 @@ pub(super) struct Pressing {
     softness_s2: f64,
 }
 
-impl Pressing {
+impl PadLoading {
     /// Pads of a robot's hand on a board, by contacts of the softness `1 / omega^2`.
-    pub fn new(hand: &Hand<'_>, object: &PlacedObject, force_n: f64, softness_s2: f64) -> Self {
-        let Hand { arm, bodies, x_og } = hand;
-        let finger = &bodies.bodies[bodies.of_joint[arm.joints.len()]];
+    pub fn new(hand: &GraspingHand<'_>, object: &PlacedObject, force_n: f64, softness_s2: f64) -> Self {
+        let GraspingHand { arm, bodies, x_og } = hand;
+        let finger = &bodies.bodies[bodies.body_of_joint[arm.joints.len()]];
         Self {
             force_n,
             // The drive has the inertia of the board: see the gripper.
@@ -84,7 +84,7 @@ impl Pressing {
     }
 
     /// How far the corners of a core with these half sides sink in, and a ball at the centre that carries its share, m.
-    fn sinks_m(&self, [x, z]: [f64; 2]) -> [f64; 2] {
+    fn penetrations_m(&self, [x, z]: [f64; 2]) -> [f64; 2] {
         let corners = [[x, z], [x, -z], [-x, z], [-x, -z]];
         let corner_m_n = corners.iter().map(|corner| self.compliance_m_n(*corner)).sum::<f64>() / 4.0;
         let corner_n = (1.0 - CENTRE_SHARE) / 4.0 * self.force_n;
@@ -124,11 +124,11 @@ pub(super) struct PadPart {
 /// exactly as hard as an evenly pressed face when the mean distance from the centre, each point counted by its share of
 /// the force, is the face's: `(1 - share) r = e`. Four corners alone would give too little when the pad turns about one
 /// of them. The whole face, recessed, comes to bear where the pad tilts.
-pub(super) fn pad_parts(pad: &Pad, pressing: &Pressing) -> [PadPart; 3] {
+pub(super) fn pad_parts(pad: &Pad, loading: &PadLoading) -> [PadPart; 3] {
     let half_m = pad.size_m.map(|side| side / 2.0);
     let corner_m = mean_radius_m(half_m) / (1.0 - CENTRE_SHARE);
     let core_m = half_m.map(|half| half * corner_m / half_m[0].hypot(half_m[1]));
-    let [core_sink_m, ball_sink_m] = pressing.sinks_m(core_m);
+    let [core_penetration_m, ball_penetration_m] = loading.penetrations_m(core_m);
     let part = |name, solid, recess_m: f64| PadPart {
         name,
         solid,
@@ -137,8 +137,8 @@ pub(super) fn pad_parts(pad: &Pad, pressing: &Pressing) -> [PadPart; 3] {
     let flat = |[x, y]: [f64; 2]| Solid::Box { half_m: [x, y, DEPTH_M / 2.0] };
     [
         part("core", flat(core_m), 0.0),
-        part("ball", Solid::Ball { radius_m: DEPTH_M / 2.0 }, core_sink_m - ball_sink_m),
-        part("face", flat(half_m), FACE_RECESS * core_sink_m),
+        part("ball", Solid::Ball { radius_m: DEPTH_M / 2.0 }, core_penetration_m - ball_penetration_m),
+        part("face", flat(half_m), FACE_RECESS * core_penetration_m),
     ]
 }
 
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_contact_gives_way_as_the_masses_that_meet_there() {
-        let at = |x: f64| Pressing {
+        let at = |x: f64| PadLoading {
             force_n: 30.0,
             finger_kg: 0.2,
             board_kg: 0.2,

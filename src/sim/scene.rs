@@ -6,10 +6,10 @@ use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use super::{
     Conditions, SimError,
     arm::SimArm,
-    border, check,
-    pad::TouchedBoard,
-    self_check::{Books, mechanical_energy_j},
-    tool::{ToolState, wrench_w},
+    balance::{Balance, mechanical_energy_j},
+    check, convert,
+    pad::BoardHandles,
+    tool_load::{ToolState, wrench_w},
     world::{board_groups, new_world},
 };
 use crate::{
@@ -34,10 +34,10 @@ const LOST_RAD_S: f64 = 100.0;
 const HAND_OVER_S: f64 = 0.15;
 
 /// A board held by arms, stepped by hand. `sim::simulate` runs one through a plan's load; tests load it as they like.
-pub struct Scene {
+pub struct SimScene {
     world: PhysicsWorld,
     arms: Vec<SimArm>,
-    board: TouchedBoard,
+    board: BoardHandles,
     /// The operation's wrench about the tool point, O axes.
     wrench_o: Wrench,
     /// The tool point in O, m.
@@ -53,10 +53,10 @@ pub struct Scene {
     /// Steps until now, and those in which the board is handed over.
     steps: [usize; 2],
     /// Momentum and energy.
-    books: Books,
+    balance: Balance,
 }
 
-impl Scene {
+impl SimScene {
     /// Builds the scene of a plan: the arms that hold, standing still at the planned angles with their pads on the
     /// board, and the board.
     ///
@@ -78,7 +78,7 @@ impl Scene {
         let p_ot_m = plan.operation.x_ot.translation.vector;
         let hand_over_s = HAND_OVER_S.min(conditions.settings.settle_s / 2.0);
         Ok(Self {
-            books: Books::new(&world, board.body, energy_j),
+            balance: Balance::new(&world, board.body, energy_j),
             world,
             arms,
             board,
@@ -109,7 +109,7 @@ impl Scene {
         self.world.step();
         let worked_j = self.arms.iter().map(|arm| arm.work_j(&self.world)).sum();
         let energy_j = energy_j(&self.world, &self.arms, self.board);
-        self.books.close_step(&self.world, energy_j, worked_j);
+        self.balance.end_step(&self.world, energy_j, worked_j);
     }
 
     /// Lays the tool's wrench on the board for one step.
@@ -120,15 +120,19 @@ impl Scene {
         let body = &self.world.bodies[self.board.body];
         let com_w = body.center_of_mass();
         let support = Wrench::from_force(GRAVITY_W * (-body.mass() * self.supported_share()));
-        let outer_w = self.tool_wrench_w + support.about(&(border::from_vector(com_w) - tip_w.coords));
-        self.books.open_step(&self.world, &outer_w, &tip_w.coords);
+        let outer_w = self.tool_wrench_w + support.about(&(convert::from_engine_vector(com_w) - tip_w.coords));
+        self.balance.begin_step(&self.world, &outer_w, &tip_w.coords);
         self.steps[0] += 1;
         let body = &mut self.world.bodies[self.board.body];
         body.reset_forces(false);
         body.reset_torques(false);
-        body.add_force_at_point(border::vector(&self.tool_wrench_w.force_n), border::vector(&tip_w.coords), false);
-        body.add_torque(border::vector(&self.tool_wrench_w.moment_nm), false);
-        body.add_force_at_point(border::vector(&support.force_n), com_w, false);
+        body.add_force_at_point(
+            convert::to_engine_vector(&self.tool_wrench_w.force_n),
+            convert::to_engine_vector(&tip_w.coords),
+            false,
+        );
+        body.add_torque(convert::to_engine_vector(&self.tool_wrench_w.moment_nm), false);
+        body.add_force_at_point(convert::to_engine_vector(&support.force_n), com_w, false);
     }
 
     /// The part of the board's weight that whoever hands it over still carries in this step.
@@ -139,7 +143,7 @@ impl Scene {
 
     /// Pose of the board.
     pub fn x_wo(&self) -> Pose {
-        border::from_engine_pose(self.world.bodies[self.board.body].position())
+        convert::from_engine_pose(self.world.bodies[self.board.body].position())
     }
 
     /// Writes the state, and the forces of the last step, into a sample of [`blank_sample`]'s shape. Time and phase are
@@ -166,9 +170,9 @@ impl Scene {
         let apart_m = |arm: &ArmSample| (arm.finger_m[0] - arm.finger_m[1]).abs();
         StepCheck {
             penetration_m: pads.map(|pad| pad.penetration_m(&self.world, self.board)).fold(0.0, f64::max),
-            force_residual_n: self.books.force_residual_n(&self.world, &pads_w_n),
+            force_residual_n: self.balance.force_residual_n(&self.world, &pads_w_n),
             coupling_m: observed.iter().map(apart_m).fold(0.0, f64::max),
-            contact_energy_j: self.books.contact_energy_j,
+            contact_energy_j: self.balance.contact_energy_j,
         }
     }
 
@@ -183,21 +187,21 @@ impl Scene {
 }
 
 /// Kinetic energy and weight's potential of arms and board, J.
-fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: TouchedBoard) -> f64 {
+fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: BoardHandles) -> f64 {
     arms.iter().map(|arm| arm.energy_j(world)).sum::<f64>() + mechanical_energy_j(&world.bodies[board.body])
 }
 
 /// The board as a free body of evenly spread mass.
-fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) -> TouchedBoard {
+fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) -> BoardHandles {
     let [hx, hy, hz] = object.size_m.map(|side| side / 2.0);
     // A sleeping board would ignore a load until it is woken.
-    let body = RigidBodyBuilder::dynamic().pose(border::engine_pose(&object.x_wo)).can_sleep(false);
+    let body = RigidBodyBuilder::dynamic().pose(convert::to_engine_pose(&object.x_wo)).can_sleep(false);
     let body = world.bodies.insert(body);
     let collider =
         ColliderBuilder::cuboid(hx, hy, hz).mass(object.mass_kg).friction(friction).collision_groups(board_groups());
     let collider = world.colliders.insert_with_parent(collider, body, &mut world.bodies);
     world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
-    TouchedBoard { body, collider }
+    BoardHandles { body, collider }
 }
 
 /// A sample of the right shape, with nothing observed yet.

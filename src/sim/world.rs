@@ -4,7 +4,7 @@ use rapier3d_f64::prelude::{
     Group, IntegrationParameters, InteractionGroups, InteractionTestMode, PhysicsWorld, SpringCoefficients,
 };
 
-use super::border;
+use super::convert;
 use crate::model::GRAVITY_W;
 
 /// Substeps of the engine's solver in a step.
@@ -21,11 +21,11 @@ const CONTACT_FREQUENCY_HZ: f64 = 2000.0;
 
 /// Mass of the lightest board that contacts of that frequency hold, kg. Lighter ones, between arms a hundred times as
 /// heavy, would ring: theirs falls with the root of the mass.
-const FIRM_BOARD_KG: f64 = 0.1;
+const NOMINAL_BOARD_KG: f64 = 0.1;
 
 /// The largest number of a contact's oscillations in a substep: reached at a time step of 2 ms. Longer steps get softer
 /// contacts, for they would ring too.
-const MOST_OSCILLATIONS: f64 = 1.0;
+const MAX_OSCILLATIONS: f64 = 1.0;
 
 /// Damping of the contacts, as a multiple of the critical one.
 const CONTACT_DAMPING_RATIO: f64 = 10.0;
@@ -42,7 +42,7 @@ pub(super) fn new_world(timestep_s: f64, contact_stiffness_scale: f64, board_kg:
     let frequency_hz = contact_frequency_hz(timestep_s / SUBSTEPS as f64, board_kg) * contact_stiffness_scale.sqrt();
     let softness = SpringCoefficients::new(frequency_hz, CONTACT_DAMPING_RATIO);
     PhysicsWorld {
-        gravity: border::vector(&GRAVITY_W),
+        gravity: convert::to_engine_vector(&GRAVITY_W),
         integration_parameters: IntegrationParameters {
             dt: timestep_s,
             num_solver_iterations: SUBSTEPS,
@@ -71,8 +71,8 @@ pub(super) fn substep_s(world: &PhysicsWorld) -> f64 {
 
 /// Stiffness of the contacts as a frequency, Hz.
 fn contact_frequency_hz(substep_s: f64, board_kg: f64) -> f64 {
-    let of_board_hz = CONTACT_FREQUENCY_HZ * (board_kg / FIRM_BOARD_KG).sqrt().min(1.0);
-    of_board_hz.min(MOST_OSCILLATIONS / substep_s)
+    let of_board_hz = CONTACT_FREQUENCY_HZ * (board_kg / NOMINAL_BOARD_KG).sqrt().min(1.0);
+    of_board_hz.min(MAX_OSCILLATIONS / substep_s)
 }
 
 /// Softness of the contacts, `1 / omega^2` with `omega` their angular frequency, s^2: two bodies that oppose the mass

@@ -1,19 +1,24 @@
-//! Dual vectors of the load program: proofs that need no trust in a solver.
+//! Certificates of the load factor: dual vectors whose bounds hold whatever the solver did
+//! (docs/method.md#66-certificate).
 //!
-//! For any `z` in the dual cone and any feasible `x = (v, lambda)`, `z'(b - A x) >= 0`. With `r = q + A'z` and
-//! `q'x = -lambda` that is `lambda <= b'z - r'x`, and every variable is bounded by the grip: `fn <= 2 F`, the others
-//! by friction and the pad's size. So any `z` gives a bound, and a good one a tight bound.
+//! For any `z` in the dual cone and any feasible `x = (v, lambda)`, `z'(b - A x) >= 0`. With `r = q + A'z` and `q'x =
+//! -lambda` this is `lambda <= b'z - r'x`, and every variable is bounded: `fn <= 2 F`, the others by friction and the
+//! pad's size. So any `z` gives an upper bound, and an optimal one a tight bound.
 
 use clarabel::solver::SupportedConeT;
 use nalgebra::Vector6;
 
 use super::{
-    hold::{HandModel, Hold, HoldError},
-    layout::{HandLayout, Layout},
-    program::{FORCE_UNIT_N, MAX_LOAD_FACTOR, Program, ProgramKind, wrench_units},
+    contact_model::{ContactModel, ContactModelError},
+    hand::HandModel,
+    solvers::{
+        cone_program::{ConeProgram, MAX_LOAD_FACTOR},
+        layout::{Layout, ProgramKind},
+        units::{FORCE_UNIT_N, wrench_units},
+    },
 };
 
-/// A dual vector of a hold's load program, with or without torque limits, in the program's scaled rows.
+/// A dual vector of a load program, with or without torque limits, in the program's scaled rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DualVector {
     kind: ProgramKind,
@@ -21,45 +26,45 @@ pub struct DualVector {
 }
 
 impl DualVector {
-    pub(super) fn new(program: &Program, z: &[f64]) -> Self {
+    pub(super) fn new(program: &ConeProgram, z: &[f64]) -> Self {
         Self { kind: program.layout.kind(), z: z.to_vec() }
     }
 
-    /// An upper bound of the load factor of this hold, by weak duality, true up to rounding whatever the vector: its
-    /// inequality parts are first moved into the dual cone, and what is left of `q + A'z` is charged at the largest
-    /// size that each variable can have. Infinite when the vector is that of a hold with other dimensions.
+    /// An upper bound of the load factor of this contact model by weak duality, valid up to rounding for any vector:
+    /// its inequality parts are first projected into the dual cone, and the residual of `q + A'z` is multiplied by the
+    /// largest value of each variable. Infinite if the vector belongs to a model of other dimensions.
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn upper_bound(&self, hold: &Hold) -> Result<f64, HoldError> {
-        hold.check()?;
-        let program = Program::load(hold, self.kind);
-        Ok(self.bound(hold, &program, &program.q))
+    /// If the contact model is invalid.
+    pub fn upper_bound(&self, model: &ContactModel) -> Result<f64, ContactModelError> {
+        model.check()?;
+        let program = ConeProgram::load(model, self.kind);
+        Ok(self.bound(model, &program, &program.q))
     }
 
-    /// True when this vector proves that no load factor from 0 to 100 can be held, so in particular not the weight
-    /// alone: `A'z = 0`, `z in K*`, `b'z < 0`, with what is left of `A'z` charged as in [`DualVector::upper_bound`].
+    /// True if this vector proves that no load factor from 0 to 100 can be held, and so not the weight alone: `A'z =
+    /// 0`, `z in K*`, `b'z < 0`, with the residual of `A'z` treated as in [`DualVector::upper_bound`].
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn proves_infeasible(&self, hold: &Hold) -> Result<bool, HoldError> {
-        hold.check()?;
-        let program = Program::load(hold, self.kind);
-        Ok(self.refutes(hold, &program))
+    /// If the contact model is invalid.
+    pub fn proves_infeasible(&self, model: &ContactModel) -> Result<bool, ContactModelError> {
+        model.check()?;
+        let program = ConeProgram::load(model, self.kind);
+        Ok(self.refutes(model, &program))
     }
 
-    /// True when this vector proves that the program has no feasible point.
-    pub(super) fn refutes(&self, hold: &Hold, program: &Program) -> bool {
-        self.bound(hold, program, &vec![0.0; program.q.len()]) < 0.0
+    /// True if this vector proves that the program has no feasible point.
+    pub(super) fn refutes(&self, model: &ContactModel, program: &ConeProgram) -> bool {
+        self.bound(model, program, &vec![0.0; program.q.len()]) < 0.0
     }
 
-    /// `b'z + sum |q + A'z|_i x_i,max` for the vector moved into the dual cone.
-    fn bound(&self, hold: &Hold, program: &Program, q: &[f64]) -> f64 {
+    /// `b'z + sum |q + A'z|_i x_i,max` for the vector projected into the dual cone.
+    fn bound(&self, model: &ContactModel, program: &ConeProgram, q: &[f64]) -> f64 {
         if self.z.len() != program.b.len() {
             return f64::INFINITY;
         }
         let z = self.in_dual_cone(&program.layout);
-        let largest = largest_variables(hold, program);
+        let largest = largest_variables(model, program);
         let value: f64 = program.b.iter().zip(&z).map(|(b, z)| b * z).sum();
         let residual = |column: usize| {
             let entries = program.a.colptr[column]..program.a.colptr[column + 1];
@@ -80,7 +85,7 @@ impl DualVector {
                     let rows = split_off(&mut rest, rows);
                     rows[0] = rows[0].max(rows[1..].iter().fold(0.0, |norm: f64, value| norm.hypot(*value)));
                 }
-                // The dual of an equality is free; there are no other cones.
+                // The multiplier of an equality is free; there are no other cones.
                 SupportedConeT::ZeroConeT(rows) => _ = split_off(&mut rest, rows),
                 _ => {}
             }
@@ -89,60 +94,39 @@ impl DualVector {
     }
 }
 
-/// The first entries of what is left, which is then left without them.
+/// Removes the first `count` entries from the slice and returns them.
 fn split_off<'a>(rest: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
     let (first, others) = std::mem::take(rest).split_at_mut(count);
     *rest = others;
     first
 }
 
-/// The largest size of each scaled variable at any feasible point.
-fn largest_variables(hold: &Hold, program: &Program) -> Vec<f64> {
+/// An upper bound of the absolute value of each scaled variable at any feasible point.
+fn largest_variables(model: &ContactModel, program: &ConeProgram) -> Vec<f64> {
     let mut largest = Vec::with_capacity(program.q.len());
-    for (hand, place) in hold.hands.iter().zip(program.layout.hands()) {
+    for hand in &model.hands {
         let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-        for pad in place.pads().into_iter().flat_map(|_| &hand.pads) {
+        for pad in &hand.pads {
             let friction = pad.friction * normal;
-            let [a, b] = pad.half_sides_m;
-            let [about_x, about_y, about_z] = pad.levers_m();
-            let torsion = friction * (about_z / pad.torsion_radius_m());
-            largest.extend([friction, friction, normal, normal * (about_x / b), normal * (about_y / a), torsion]);
+            largest.extend([friction, friction, normal, normal, normal, friction]);
         }
         largest.extend(largest_wrench(hand).iter());
-    }
-    for (hand, place) in hold.hands.iter().zip(program.layout.hands()) {
-        largest.extend(largest_point_forces(hand, place));
     }
     largest.push(MAX_LOAD_FACTOR * program.load_scale);
     largest
 }
 
-/// A point of a pad carries no more than the whole grip.
-fn largest_point_forces(hand: &HandModel, place: &HandLayout) -> impl Iterator<Item = f64> {
-    let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-    let pads = hand.pads.iter().zip(place.pads().into_iter().flatten());
-    pads.flat_map(move |(pad, place)| {
-        let friction = pad.friction * normal;
-        let count = place.points.map_or(0, |points| points.count);
-        std::iter::repeat_n([friction, friction, normal], count).flatten()
-    })
-}
-
-/// Bounds of the components of a hand's scaled wrench: each pad's force is at most `(1 + mu) 2 F`, and its moment about
-/// the grasp point that times the distance, plus its own; measured limits bound what they limit.
+/// Bounds of the components of a hand's scaled wrench: each pad's force is at most `(1 + mu) 2 F`, its moment about the
+/// grasp point at most that times the distance, plus its own.
 fn largest_wrench(hand: &HandModel) -> Vector6<f64> {
     let (mut force_n, mut moment_nm) = (0.0, 0.0);
-    if let Some(limits) = &hand.wrench_limits {
-        (force_n, moment_nm) = (limits.most.force_n.norm(), limits.most.moment_nm.norm());
-    } else {
-        let normal_n = 2.0 * hand.grip_force_n;
-        for pad in &hand.pads {
-            let pad_force_n = normal_n * (1.0 + pad.friction);
-            let [about_x, about_y, about_z] = pad.levers_m();
-            let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
-            force_n += pad_force_n;
-            moment_nm += pad_force_n * lever_m + normal_n * (about_x + about_y + pad.friction * about_z);
-        }
+    let normal_n = 2.0 * hand.grip_force_n;
+    for pad in &hand.pads {
+        let pad_force_n = normal_n * (1.0 + pad.friction);
+        let [a, b] = pad.half_sides_m;
+        let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
+        force_n += pad_force_n;
+        moment_nm += pad_force_n * lever_m + normal_n * (b + a + pad.friction * pad.torsion_radius_m());
     }
     Vector6::new(force_n, force_n, force_n, moment_nm, moment_nm, moment_nm).component_div(&wrench_units())
 }

@@ -1,119 +1,39 @@
-//! The compliant load factor: how far the load can be raised before the arms, as they really hold, cross a limit.
+//! The compliant load factor: how far the load can be raised before the compliant equilibrium crosses a limit.
 
 use super::{
-    StabilityWorkspace,
-    compliance::WeldedHold,
+    contact_model::{ContactModel, ContactModelError},
     equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome},
-    hold::Hold,
+    limit_crossing::LimitCrossing,
     load_factor::LoadFactorOutcome,
-    program::{HandEnergy, MAX_LOAD_FACTOR},
-    workspace::hand_energies,
+    solvers::{cone_program::MAX_LOAD_FACTOR, energy::HandEnergy},
+    welded::WeldedStiffness,
+    workspace::StabilityWorkspace,
 };
 use crate::model::scenario::Limits;
 
-/// Load factors are found to this; relative above 1.
+/// Accuracy of the load factor; relative above 1.
 const TOLERANCE: f64 = 1e-3;
 
-/// A bracket shrinks to the tolerance in fewer solves than this: bisection alone takes 17 from 100 to 1e-3.
+/// Limit of solves: bisection alone takes 17 from 100 to 1e-3.
 const MAX_SOLVES: usize = 60;
 
-/// The first thing that goes wrong as the load grows.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Crossing {
-    /// No forces within the pads' limits balance the object any more.
-    NoEquilibrium {
-        /// The pads' limits that bind, strongest first; empty when the weight alone cannot be held.
-        binding: Vec<String>,
-    },
-    /// A joint is asked for more than its torque limit times the allowed ratio.
-    Torque {
-        /// The joint.
-        joint: String,
-    },
-    /// The tool point of the board gives way.
-    Deflection,
-    /// A hand slides on the board.
-    Slip {
-        /// The hand.
-        hand: String,
-    },
-    /// A hand turns on the board.
-    SlipRotation {
-        /// The hand.
-        hand: String,
-    },
-    /// The solver stopped early, so nothing is known from here on.
-    Unknown {
-        /// The solver's own word.
-        status: String,
-    },
-}
-
-impl std::fmt::Display for Crossing {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::NoEquilibrium { binding } if binding.is_empty() => f.write_str("weight: no equilibrium"),
-            Self::NoEquilibrium { binding } => f.write_str(&binding.join(", ")),
-            Self::Torque { joint } => write!(f, "{joint}: torque"),
-            Self::Deflection => f.write_str("deflection"),
-            Self::Slip { hand } => write!(f, "{hand} hand: slip"),
-            Self::SlipRotation { hand } => write!(f, "{hand} hand: slip rotation"),
-            Self::Unknown { status } => write!(f, "unknown: {status}"),
-        }
-    }
-}
-
-/// The compliant load factor and what ends it.
+/// The compliant load factor and the limit that ends it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompliantLoadFactor {
-    /// The load factor, 0 to 100: every limit is kept there.
+    /// The load factor, 0 to 100; every limit is kept there.
     pub load_factor: f64,
-    /// What is crossed within a thousandth above it; none when the cap of 100 was reached.
-    pub first_limit: Option<Crossing>,
-    /// How many equilibria were solved for.
+    /// The limit that is crossed within a thousandth above it; `None` at the cap of 100.
+    pub first_limit: Option<LimitCrossing>,
+    /// The number of equilibria solved.
     pub equilibria: usize,
 }
 
-impl CompliantResponse {
-    /// The limit that is exceeded most, relative to its size; none when all are kept. Creep needs time and is no part
-    /// of this.
-    pub fn crossing(&self, hold: &Hold, limits: &Limits) -> Option<Crossing> {
-        let (ratio, crossing) = self.worst(hold, limits);
-        (ratio > 1.0).then_some(crossing)
-    }
-
-    /// The largest ratio of a torque, deflection or slip to its limit.
-    pub fn utilisation(&self, hold: &Hold, limits: &Limits) -> f64 {
-        self.worst(hold, limits).0
-    }
-
-    /// The largest ratio of a value to its limit, and the crossing that it would be.
-    fn worst(&self, hold: &Hold, limits: &Limits) -> (f64, Crossing) {
-        let (hand, joint, torque) = self.equilibrium.largest_torque_ratio(hold);
-        let joint = hold.hands[hand].joints.get(joint).cloned().unwrap_or_default();
-        let mut worst = (torque / limits.torque_ratio, Crossing::Torque { joint });
-        let mut consider = |ratio: f64, crossing: &dyn Fn() -> Crossing| {
-            if ratio > worst.0 {
-                worst = (ratio, crossing());
-            }
-        };
-        consider(self.deflection_mm() / limits.deflection_mm, &|| Crossing::Deflection);
-        for (hand, slip) in hold.hands.iter().zip(&self.slip) {
-            let name = || hand.name.clone();
-            consider(slip.linear.norm() * 1e3 / limits.slip_mm, &|| Crossing::Slip { hand: name() });
-            let turned = slip.angular.norm().to_degrees() / limits.slip_deg;
-            consider(turned, &|| Crossing::SlipRotation { hand: name() });
-        }
-        worst
-    }
-}
-
-/// One end of the bracket: a load factor and the worst ratio there, infinite without an equilibrium.
+/// An end of the bracket: a load factor and the largest ratio there, infinite without an equilibrium.
 #[derive(Clone, Debug)]
 struct Probe {
     load_factor: f64,
     ratio: f64,
-    crossing: Crossing,
+    crossing: LimitCrossing,
 }
 
 impl Probe {
@@ -121,56 +41,67 @@ impl Probe {
         self.ratio <= 1.0
     }
 
-    /// The ratio's distance from 1 on a bounded scale, -1 to 1, so that no end outweighs the other.
+    /// The ratio minus 1, on a bounded scale from -1 to 1, so that neither end dominates.
     fn residual(&self) -> f64 {
         if self.ratio.is_finite() { (self.ratio - 1.0) / (self.ratio + 1.0) } else { 1.0 }
     }
 }
 
-/// The search's state.
+/// The state of the search.
 struct Search<'a> {
     workspace: &'a mut StabilityWorkspace,
-    hold: &'a Hold,
+    model: &'a ContactModel,
     limits: &'a Limits,
     energies: Vec<HandEnergy>,
     solves: usize,
 }
 
-/// See [`StabilityWorkspace::compliant_load_factor`].
-///
-/// A bracket: everything is kept at its lower end, something is crossed at its upper end, at first the load factor
-/// without torque limits, where equilibria end. The welded hold says where it expects the first crossing: while no pad
-/// slips that is exact, and two solves there end the search. Otherwise the bracket is closed by the Illinois method. The
-/// work done by the load grows with it, since the complementary energy is convex; that each limit's own measure grows as
-/// well is taken for granted.
-pub(super) fn search(workspace: &mut StabilityWorkspace, hold: &Hold, limits: &Limits) -> CompliantLoadFactor {
-    let energies = hand_energies(hold);
-    let mut search = Search { workspace, hold, limits, energies, solves: 0 };
-    match search.run() {
-        Ok((load_factor, first_limit)) => CompliantLoadFactor { load_factor, first_limit, equilibria: search.solves },
-        Err(crossing) => {
-            CompliantLoadFactor { load_factor: 0.0, first_limit: Some(crossing), equilibria: search.solves }
-        }
+impl StabilityWorkspace {
+    /// The compliant load factor (docs/method.md#69-compliant-load-factor): the smallest load factor at which no
+    /// compliant equilibrium exists or a limit of torque ratio, deflection or slip is crossed, at most 100; accurate to
+    /// a thousandth, from below.
+    ///
+    /// A bracket is closed: every limit is kept at its lower end; its upper end is at first the load factor without
+    /// torque limits, beyond which there is no equilibrium. The welded stiffness predicts the first crossing. While no
+    /// pad slips the prediction is exact, and two solves end the search; otherwise the Illinois method closes the
+    /// bracket. The work of the load increases with the load factor, as the complementary energy is convex; that each
+    /// ratio to a limit increases too is assumed.
+    ///
+    /// # Errors
+    /// If the contact model is invalid.
+    pub fn compliant_load_factor(
+        &mut self,
+        model: &ContactModel,
+        limits: &Limits,
+    ) -> Result<CompliantLoadFactor, ContactModelError> {
+        model.check()?;
+        let energies = HandEnergy::of_hands(model);
+        let mut search = Search { workspace: self, model, limits, energies, solves: 0 };
+        let (load_factor, first_limit) = match search.run() {
+            Ok((load_factor, first_limit)) => (load_factor, first_limit),
+            Err(crossing) => (0.0, Some(crossing)),
+        };
+        Ok(CompliantLoadFactor { load_factor, first_limit, equilibria: search.solves })
     }
 }
 
 impl Search<'_> {
-    /// The load factor and what ends it; `Err` when something is crossed already under the weight alone.
-    fn run(&mut self) -> Result<(f64, Option<Crossing>), Crossing> {
+    /// The load factor and what ends it; `Err` if a limit is crossed under the weight alone.
+    fn run(&mut self) -> Result<(f64, Option<LimitCrossing>), LimitCrossing> {
         let unloaded = self.unloaded()?;
         let (last, binding) = self.last_equilibrium()?;
-        let at_rest = CompliantResponse::between(self.hold, &unloaded, unloaded.clone());
-        let (ratio, crossing) = at_rest.worst(self.hold, self.limits);
+        let at_rest = CompliantResponse::between(self.model, &unloaded, unloaded.clone());
+        let (ratio, crossing) = at_rest.worst_limit(self.model, self.limits);
         let mut low = Probe { load_factor: 0.0, ratio, crossing };
         if !low.is_kept() {
             return Err(low.crossing);
         }
-        // A little inside: at the very end the feasible set has no interior and the solver no solution to trust.
+        // Slightly inside: at the end the feasible set has no interior and the solver is unreliable.
         let end = if last < MAX_LOAD_FACTOR { last - TOLERANCE / 2.0 * last.max(1.0) } else { last };
         let mut high = None;
-        let guess = welded_crossing(self.hold, self.limits, &unloaded);
+        let guess = welded_crossing(self.model, self.limits, &unloaded);
         for load_factor in [guess - self.tolerance(guess) / 3.0, guess + self.tolerance(guess) / 3.0, end] {
-            // Written so that a guess that is not a number is passed over.
+            // A NaN guess is skipped.
             if !(load_factor > low.load_factor && load_factor <= end) {
                 continue;
             }
@@ -185,7 +116,7 @@ impl Search<'_> {
         match high {
             Some(high) => Ok(self.close(&unloaded, low, high)),
             None if last >= MAX_LOAD_FACTOR => Ok((MAX_LOAD_FACTOR, None)),
-            None => Ok((low.load_factor, Some(Crossing::NoEquilibrium { binding }))),
+            None => Ok((low.load_factor, Some(LimitCrossing::NoEquilibrium { binding }))),
         }
     }
 
@@ -193,41 +124,41 @@ impl Search<'_> {
         TOLERANCE * load_factor.max(1.0)
     }
 
-    fn unloaded(&mut self) -> Result<Equilibrium, Crossing> {
+    fn unloaded(&mut self) -> Result<Equilibrium, LimitCrossing> {
         self.solves += 1;
-        match self.workspace.solve_equilibrium(self.hold, &self.energies, 0.0) {
+        match self.workspace.solve_equilibrium(self.model, &self.energies, 0.0) {
             EquilibriumOutcome::Found(unloaded) => Ok(unloaded),
-            EquilibriumOutcome::None => Err(Crossing::NoEquilibrium { binding: Vec::new() }),
-            EquilibriumOutcome::Unknown { status } => Err(Crossing::Unknown { status }),
+            EquilibriumOutcome::NoEquilibrium => Err(LimitCrossing::NoEquilibrium { binding: Vec::new() }),
+            EquilibriumOutcome::Unknown { status } => Err(LimitCrossing::Unknown { status }),
         }
     }
 
-    /// The load factor up to which equilibria exist, and the pads' limits that end them.
-    fn last_equilibrium(&mut self) -> Result<(f64, Vec<String>), Crossing> {
-        match self.workspace.solve_friction(self.hold) {
+    /// The load factor up to which equilibria exist, and the pads' limits that bind there.
+    fn last_equilibrium(&mut self) -> Result<(f64, Vec<String>), LimitCrossing> {
+        match self.workspace.solve_friction(self.model) {
             LoadFactorOutcome::Solved(solved) => Ok((solved.load_factor, solved.binding)),
-            LoadFactorOutcome::GravityInfeasible { .. } => Err(Crossing::NoEquilibrium { binding: Vec::new() }),
-            LoadFactorOutcome::Unknown { status } => Err(Crossing::Unknown { status }),
+            LoadFactorOutcome::GravityInfeasible { .. } => Err(LimitCrossing::NoEquilibrium { binding: Vec::new() }),
+            LoadFactorOutcome::Unknown { status } => Err(LimitCrossing::Unknown { status }),
         }
     }
 
     fn probe(&mut self, unloaded: &Equilibrium, load_factor: f64) -> Probe {
         self.solves += 1;
         let failed = |crossing| Probe { load_factor, ratio: f64::INFINITY, crossing };
-        match self.workspace.solve_equilibrium(self.hold, &self.energies, load_factor) {
+        match self.workspace.solve_equilibrium(self.model, &self.energies, load_factor) {
             EquilibriumOutcome::Found(loaded) => {
-                let response = CompliantResponse::between(self.hold, unloaded, loaded);
-                let (ratio, crossing) = response.worst(self.hold, self.limits);
+                let response = CompliantResponse::between(self.model, unloaded, loaded);
+                let (ratio, crossing) = response.worst_limit(self.model, self.limits);
                 Probe { load_factor, ratio, crossing }
             }
-            EquilibriumOutcome::None => failed(Crossing::NoEquilibrium { binding: Vec::new() }),
-            EquilibriumOutcome::Unknown { status } => failed(Crossing::Unknown { status }),
+            EquilibriumOutcome::NoEquilibrium => failed(LimitCrossing::NoEquilibrium { binding: Vec::new() }),
+            EquilibriumOutcome::Unknown { status } => failed(LimitCrossing::Unknown { status }),
         }
     }
 
-    /// Closes the bracket to the tolerance: regula falsi, the weight of an end that stays twice halved (Illinois), and
-    /// never closer to an end than a third of the tolerance.
-    fn close(&mut self, unloaded: &Equilibrium, mut low: Probe, mut high: Probe) -> (f64, Option<Crossing>) {
+    /// Closes the bracket to the tolerance: regula falsi with the weight of an end that stays twice halved (Illinois),
+    /// and steps at least a third of the tolerance away from both ends.
+    fn close(&mut self, unloaded: &Equilibrium, mut low: Probe, mut high: Probe) -> (f64, Option<LimitCrossing>) {
         let (mut low_weight, mut high_weight) = (low.residual(), high.residual());
         let mut last_was_kept = None;
         while high.load_factor - low.load_factor > self.tolerance(high.load_factor) && self.solves < MAX_SOLVES {
@@ -253,13 +184,13 @@ impl Search<'_> {
     }
 }
 
-/// Where the welded hold crosses its first limit of torque or deflection; not a number when it cannot be said.
-fn welded_crossing(hold: &Hold, limits: &Limits, unloaded: &Equilibrium) -> f64 {
-    let Some(welded) = WeldedHold::new(hold) else { return f64::NAN };
-    let deflection_mm = welded.twist_at_tip(&hold.load).linear.norm() * 1e3;
+/// The load factor at which the welded board crosses its first limit of torque or deflection; NaN if an arm is rigid.
+fn welded_crossing(model: &ContactModel, limits: &Limits, unloaded: &Equilibrium) -> f64 {
+    let Some(welded) = WeldedStiffness::new(model) else { return f64::NAN };
+    let deflection_mm = welded.twist_at_tip(&model.load).linear.norm() * 1e3;
     let mut first = limits.deflection_mm / deflection_mm;
     for ((hand, wrench), torque) in
-        hold.hands.iter().zip(welded.hand_wrenches(&hold.load)).zip(&unloaded.joint_torque_nm)
+        model.hands.iter().zip(welded.hand_wrenches(&model.load)).zip(&unloaded.joint_torque_nm)
     {
         let growth = hand.jacobian_o.tr_mul(&wrench.to_vector());
         for joint in 0..hand.dof() {

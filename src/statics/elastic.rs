@@ -1,63 +1,57 @@
-//! The equilibrium of a hold whose pads stay below their limits, in closed form.
+//! The equilibrium in closed form, for pads below their limits.
 //!
-//! As long as every hand's wrench can be shared between its pads within their limits, the pads do not matter: the hands
-//! are as good as welded to the board, and the least complementary energy is that of the welded hold. Whether the wrenches
-//! can be shared is asked of one way to share them, half and half but for the normal forces; where that fails the cone
-//! program must decide. The pads' own compliance, which only serves the program's uniqueness, is left out.
+//! If every hand's wrench can be shared between its pads within their limits, the hands are as good as welded to the
+//! board, and the minimum of the complementary energy is that of the welded board. One way of sharing is tried, equal
+//! except for the normal forces; if it fails, the equilibrium program decides. The pads' own compliance, which only
+//! makes that program's solution unique, is left out.
 
 use nalgebra::Vector3;
 
 use super::{
-    compliance::{Twist, WeldedHold},
-    contact::PadKind,
-    equilibrium::Equilibrium,
-    hold::{HandModel, Hold},
+    contact_model::ContactModel, equilibrium::Equilibrium, hand::HandModel, twist::Twist, welded::WeldedStiffness,
 };
 use crate::model::wrench::Wrench;
 
-/// The share of a pad's limits up to which it surely stays below them.
-const SURE: f64 = 0.99;
-/// How far two pads' normals may be from opposite: rounding.
-const OPPOSITE: f64 = 1e-9;
+/// Share of a pad's limits below which it is taken to be within them.
+const LIMIT_SHARE: f64 = 0.99;
+/// Tolerance of two pads' normals from opposite: rounding.
+const OPPOSITE_TOLERANCE: f64 = 1e-9;
 
-/// The equilibrium at a load factor when it is that of the welded hold and this can be shown cheaply.
-pub(super) fn equilibrium(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Equilibrium> {
-    let pads = shared(hold, welded, load_factor)?;
-    hold.hands.iter().zip(&pads).all(|(hand, pads)| is_kept(hand, pads)).then(|| {
-        let board = board(hold, welded, load_factor);
-        Equilibrium::of_pads(hold, load_factor, pads, board)
+/// The equilibrium at a load factor if it is that of the welded board and one way of sharing the wrenches proves it.
+pub(super) fn equilibrium(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
+    let pads = shared(model, welded, load_factor)?;
+    model.hands.iter().zip(&pads).all(|(hand, pads)| is_within_limits(hand, pads)).then(|| {
+        let board = board(model, welded, load_factor);
+        Equilibrium::of_pads(model, load_factor, pads, board)
     })
 }
 
-/// The equilibrium of a hold that differs a little from one whose equilibrium is that of the welded hold: its pads are
-/// below their limits too, or by a hair beyond.
-pub(super) fn of_neighbour(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Equilibrium> {
-    let pads = shared(hold, welded, load_factor)?;
-    Some(Equilibrium::of_pads(hold, load_factor, pads, board(hold, welded, load_factor)))
+/// The same for a contact model that differs slightly from one whose equilibrium is that of the welded board: its pads
+/// are within their limits too, up to first order.
+pub(super) fn first_order(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
+    let pads = shared(model, welded, load_factor)?;
+    Some(Equilibrium::of_pads(model, load_factor, pads, board(model, welded, load_factor)))
 }
 
-fn board(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Twist {
-    welded.twist_at_tip(&outer(hold, load_factor)).at(&-hold.p_ot)
+fn board(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Twist {
+    welded.twist_at_tip(&outer(model, load_factor)).at(&-model.p_ot)
 }
 
-fn outer(hold: &Hold, load_factor: f64) -> Wrench {
-    hold.weight + hold.load.scaled(load_factor)
+fn outer(model: &ContactModel, load_factor: f64) -> Wrench {
+    model.weight + model.load.scaled(load_factor)
 }
 
-/// The hands' wrenches when all are welded to the board, shared between their pads: each about its centre in pad axes. None
-/// where a hand has no such pads.
-fn shared(hold: &Hold, welded: &WeldedHold, load_factor: f64) -> Option<Vec<[Wrench; 2]>> {
-    let wrenches = welded.hand_wrenches(&outer(hold, load_factor));
-    hold.hands.iter().zip(&wrenches).map(|(hand, wrench)| shared_by_pads(hand, wrench)).collect()
+/// The welded hands' wrenches, shared between their pads: each about the pad's centre in pad axes. `None` if a hand's
+/// pads are not opposite.
+fn shared(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Vec<[Wrench; 2]>> {
+    let wrenches = welded.hand_wrenches(&outer(model, load_factor));
+    model.hands.iter().zip(&wrenches).map(|(hand, wrench)| shared_by_pads(hand, wrench)).collect()
 }
 
-/// A hand's wrench about its grasp point, shared between its pads: `fn_1 + fn_2 = 2 F`, what is tangential by halves.
+/// A hand's wrench about its grasp point, shared between its pads: `fn_1 + fn_2 = 2 F`, tangential parts equal.
 fn shared_by_pads(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
-    if hand.wrench_limits.is_some() {
-        return None;
-    }
     let normals = hand.pads.each_ref().map(|pad| pad.x_op.rotation * Vector3::z());
-    if (normals[0] + normals[1]).norm() > OPPOSITE {
+    if (normals[0] + normals[1]).norm() > OPPOSITE_TOLERANCE {
         return None;
     }
     let across_n = wrench.force_n.dot(&normals[0]);
@@ -75,14 +69,13 @@ fn shared_by_pads(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
     }))
 }
 
-/// True when each pad stays surely below its limits.
-fn is_kept(hand: &HandModel, pads: &[Wrench; 2]) -> bool {
+/// True if each pad is below its limits by the margin of [`LIMIT_SHARE`].
+fn is_within_limits(hand: &HandModel, pads: &[Wrench; 2]) -> bool {
     hand.pads.iter().zip(pads).all(|(pad, Wrench { force_n, moment_nm })| {
         let [a, b] = pad.half_sides_m;
         let tangential_n = force_n.x.hypot(force_n.y).hypot(moment_nm.z / pad.torsion_radius_m());
-        pad.kind == PadKind::SoftFinger
-            && tangential_n <= SURE * pad.friction * force_n.z
-            && moment_nm.x.abs() <= SURE * b * force_n.z
-            && moment_nm.y.abs() <= SURE * a * force_n.z
+        tangential_n <= LIMIT_SHARE * pad.friction * force_n.z
+            && moment_nm.x.abs() <= LIMIT_SHARE * b * force_n.z
+            && moment_nm.y.abs() <= LIMIT_SHARE * a * force_n.z
     })
 }

@@ -1,10 +1,10 @@
-//! A [`Hold`] from a plan: the one place of this module that knows what a robot is.
+//! Builds a [`ContactModel`] from a plan. The only file of this module that uses the robot model.
 
 use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 use super::{
-    contact::PadKind,
-    hold::{HandModel, Hold, HoldError, PadModel},
+    contact_model::{ContactModel, ContactModelError},
+    hand::{HandModel, PadModel},
     patch::clip_to_rectangle,
 };
 use crate::{
@@ -21,29 +21,30 @@ use crate::{
     },
 };
 
-/// How far the finger axis may lean from the board's normal, degrees: the pads lie flat on the faces, so a plan that asks
-/// for more describes another contact than ours.
+/// The largest angle between finger axis and board normal, degrees. The contact model has pads flat on the faces and is
+/// wrong for a gripper that leans more.
 const MAX_FINGER_LEAN_DEG: f64 = 2.0;
 
-impl Hold {
-    /// The hold that a plan describes. Board, pads and arms are taken at the plan's poses and angles; pads lie flat on
-    /// the two faces, and only their part on the face counts (see [`clip_to_rectangle`]).
+impl ContactModel {
+    /// The contact model of a plan. Board, pads and arms are at the plan's poses and angles. Pads lie flat on the two
+    /// faces; only the part of a pad that is on the face counts (see [`clip_to_rectangle`]).
     ///
     /// # Errors
-    /// When an arm is unknown, its joints are not the robot's, its angles are too few or too many, its fingers do not straddle the faces, or a pad does
-    /// not touch the board.
+    /// If an arm is unknown, its joints are not the robot's, the number of angles is wrong, the finger axis is not
+    /// along the board's normal, or a pad is off the board.
     pub fn from_plan(
         robot: &Robot,
         plan_arms: &[ArmHold],
         object: &PlacedObject,
         operation: &Operation,
         friction: f64,
-    ) -> Result<Self, HoldError> {
+    ) -> Result<Self, ContactModelError> {
         let hands: Result<Vec<_>, _> = plan_arms
             .iter()
             .map(|plan_arm| {
-                let index =
-                    robot.arm_index(&plan_arm.name).ok_or_else(|| HoldError::UnknownArm(plan_arm.name.clone()))?;
+                let index = robot
+                    .arm_index(&plan_arm.name)
+                    .ok_or_else(|| ContactModelError::UnknownArm(plan_arm.name.clone()))?;
                 let travel_m = robot.arms[index].gripper.travel_for_gap_m(0, object.size_m[2]);
                 HandModel::from_plan(robot, &Chain::new(robot, index, travel_m), plan_arm, object, friction)
             })
@@ -51,7 +52,8 @@ impl Hold {
         Ok(Self::from_hands(hands?, object, operation))
     }
 
-    /// A hold by hands at hand, see [`HandModel::from_plan`].
+    /// The contact model of these hands, see [`HandModel::from_plan`].
+    #[must_use]
     pub fn from_hands(hands: Vec<HandModel>, object: &PlacedObject, operation: &Operation) -> Self {
         let weight_o = object.x_wo.rotation.inverse() * (GRAVITY_W * object.mass_kg);
         Self {
@@ -64,28 +66,32 @@ impl Hold {
 }
 
 impl HandModel {
-    /// One arm's part of a hold, for a planner that keeps its chains. The chain must be that of the arm named in the
-    /// plan, its fingers at the board's thickness.
+    /// One arm's part of the contact model, for a planner that reuses its chains. The chain must be that of the plan's
+    /// arm with its fingers at the board's thickness.
     ///
     /// # Errors
-    /// See [`Hold::from_plan`].
+    /// See [`ContactModel::from_plan`].
     pub fn from_plan(
         robot: &Robot,
         chain: &Chain,
         plan_arm: &ArmHold,
         object: &PlacedObject,
         friction: f64,
-    ) -> Result<Self, HoldError> {
+    ) -> Result<Self, ContactModelError> {
         let name = &plan_arm.name;
-        let arm = robot.arms.iter().find(|arm| arm.name == *name).ok_or_else(|| HoldError::UnknownArm(name.clone()))?;
+        let arm = robot
+            .arms
+            .iter()
+            .find(|arm| arm.name == *name)
+            .ok_or_else(|| ContactModelError::UnknownArm(name.clone()))?;
         if plan_arm.q_rad.len() != chain.dof() {
             let (found, expected) = (plan_arm.q_rad.len(), chain.dof());
-            return Err(HoldError::JointCount { hand: name.clone(), what: "q_rad", found, expected });
+            return Err(ContactModelError::JointCount { hand: name.clone(), what: "q_rad", found, expected });
         }
         let joints: Vec<String> = arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect();
         if plan_arm.joints != joints {
             let found = plan_arm.joints.clone();
-            return Err(HoldError::JointNames { hand: name.clone(), found, expected: joints });
+            return Err(ContactModelError::JointNames { hand: name.clone(), found, expected: joints });
         }
         let pads = [0, 1].map(|finger| pad_model(&arm.gripper, finger, plan_arm, object, friction));
         let [first, second] = pads;
@@ -94,7 +100,6 @@ impl HandModel {
             name: name.clone(),
             joints,
             pads: [first?, second?],
-            wrench_limits: None,
             grip_force_n: plan_arm.grip_force_n,
             grasp_point_o: (plan_arm.x_og * nalgebra::Point3::from(grasp_point_g)).coords,
             jacobian_o: jacobian_o(chain, plan_arm, object, &grasp_point_g),
@@ -115,7 +120,7 @@ fn jacobian_o(
 ) -> Matrix6xX<f64> {
     let mut jacobian = chain.jacobian_w(&plan_arm.q_rad);
     let r_ow = object.x_wo.rotation.inverse();
-    // The board's pose and the plan's X_OG say where the hand is; the arm's angles agree with them.
+    // The hand is at the plan's X_WO X_OG; the arm's angles agree with it.
     let lever_o = plan_arm.x_og.rotation * grasp_point_g;
     for mut column in jacobian.column_iter_mut() {
         let angular = r_ow * Vector3::new(column[3], column[4], column[5]);
@@ -126,21 +131,21 @@ fn jacobian_o(
     jacobian
 }
 
-/// A finger's pad where it lies on the board.
+/// The pad of a finger on the board.
 fn pad_model(
     gripper: &Gripper,
     finger: usize,
     plan_arm: &ArmHold,
     object: &PlacedObject,
     friction: f64,
-) -> Result<PadModel, HoldError> {
+) -> Result<PadModel, ContactModelError> {
     let name = gripper.pad_name(finger, &plan_arm.x_og);
     let is_upper = name == "upper";
     let finger_axis_o = plan_arm.x_og.rotation * Vector3::y();
     let angle_deg = finger_axis_o.z.abs().min(1.0).acos().to_degrees();
     if angle_deg > MAX_FINGER_LEAN_DEG {
         let (hand, limit_deg) = (plan_arm.name.clone(), MAX_FINGER_LEAN_DEG);
-        return Err(HoldError::FingersNotAcross { hand, angle_deg, limit_deg });
+        return Err(ContactModelError::FingersNotAcross { hand, angle_deg, limit_deg });
     }
     let pad = &gripper.fingers[finger].pad;
     let normal_o = if is_upper { -Vector3::z() } else { Vector3::z() };
@@ -151,25 +156,19 @@ fn pad_model(
     let [width, height, thickness] = object.size_m;
     let half_sides = pad.size_m.map(|side| side / 2.0);
     let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
-        .ok_or_else(|| HoldError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
+        .ok_or_else(|| ContactModelError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
     let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
-    Ok(PadModel {
-        name: name.into(),
-        x_op: Pose::from_parts(place_o.into(), rotation),
-        half_sides_m,
-        friction,
-        kind: PadKind::SoftFinger,
-    })
+    Ok(PadModel { name: name.into(), x_op: Pose::from_parts(place_o.into(), rotation), half_sides_m, friction })
 }
 
-/// R_OP: z_P the normal into the board, x_P along x_G as far as it lies in the face.
+/// R_OP: z_P along the normal into the board, x_P along the projection of x_G on the face.
 fn pad_rotation(x_g_in_o: &Vector3<f64>, normal_o: &Vector3<f64>) -> UnitQuaternion<f64> {
     let x_p = (x_g_in_o - normal_o * normal_o.dot(x_g_in_o)).normalize();
     let rotation = Rotation3::from_basis_unchecked(&[x_p, normal_o.cross(&x_p), *normal_o]);
     UnitQuaternion::from_rotation_matrix(&rotation)
 }
 
-/// The pad's pose in the face seen from +z_O; the pad's rectangle is its own mirror image, so one side does for both.
+/// The pad's pose in the face, seen from +z_O. The rectangle is its own mirror image, so this serves both faces.
 fn face_pose(centre_o: &Vector3<f64>, rotation: &UnitQuaternion<f64>) -> Isometry2<f64> {
     let x_p: Isometry3<f64> = Isometry3::from_parts(Vector3::zeros().into(), *rotation);
     let x_p = x_p * Vector3::x();

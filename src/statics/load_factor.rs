@@ -1,76 +1,73 @@
-//! The load factor of a hold and what limits it.
+//! The load factor lambda* of a contact model and the limits that bind (docs/method.md#65-load-factor).
 
 use clarabel::solver::SolverStatus;
-use nalgebra::{DVector, Vector3};
+use nalgebra::DVector;
 
 use super::{
     certificate::DualVector,
-    compliance::Twist,
-    hold::{HandModel, Hold, PadModel},
-    layout::{Contact, HandLayout, MEASURED_CONE, PadLayout, PointLayout},
-    program::{FORCE_UNIT_N, LENGTH_UNIT_M, POINT_VARIABLES, Program, RawSolution, pad_wrenches},
+    contact_model::ContactModel,
+    hand::{HandModel, PadModel},
     sensitivity::{self, Sensitivity},
+    solvers::{
+        clarabel::RawSolution,
+        cone_program::{ConeProgram, MAX_LOAD_FACTOR, pad_wrenches},
+        layout::PadLayout,
+        units::FORCE_UNIT_N,
+    },
 };
 use crate::model::wrench::Wrench;
 
-/// What is taken off a load factor that was found with reduced accuracy.
+/// Subtracted from a load factor that was found with reduced accuracy.
 const ALMOST_SOLVED_MARGIN: f64 = 1e-3;
 
-/// A pad whose normal force is below this share of the grip force counts as open (METHOD section 8).
+/// A pad whose normal force is below this share of the grip force counts as open (docs/method.md#86-contact).
 const OPEN_PAD_RATIO: f64 = 0.05;
 
 /// Terms below this share of the largest are not named. A limit that does not bind has a multiplier at the solver's
-/// tolerance, 1e-8: the threshold is far above that, and is there for the reader, who wants to know what to
-/// strengthen: a limit below it would bring less than a twentieth of what the first one brings.
+/// tolerance, 1e-7, far below. Strengthening an unnamed limit gains less than a twentieth of what the first one gains.
 pub(super) const NAMED_SHARE: f64 = 0.05;
 
 /// The solution of the load program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadFactor {
-    /// lambda*, 0 to 100: the largest multiple of the load that some distribution of forces holds.
+    /// lambda*, 0 to 100: the largest multiple of the load that some distribution of forces balances within all limits.
     pub load_factor: f64,
-    /// What limits it, strongest first, such as `left upper pad: friction` or `left_w1: torque`; empty when nothing
-    /// but the cap of 100 does.
+    /// The binding limits, strongest first, such as `left upper pad: friction` or `left_w1: torque`; empty if only the
+    /// cap of 100 binds.
     ///
-    /// Each limit's term is `d lambda* / d ln(limit)`, what a relative increase of the limit brings: for the sliding,
-    /// torsion and tilt parts of a pad's limits their share of `z's`, for a joint `tau_max (z+ + z-)`. A pad that is
-    /// left with less than 5 % of its grip force is limited by the grip. For measured limits, such as
-    /// `left hand: measured limits`, it is what larger limits would bring. Named are the terms of at least a twentieth
-    /// of the largest.
+    /// They are ordered by `d lambda* / d ln(limit)`: for the friction, torsion and tilt limits of a pad their part of
+    /// `z's`, for a joint `tau_max (z+ + z-)`. A pad with less than 5 % of its grip force is limited by the grip. Terms
+    /// below a twentieth of the largest are left out.
     pub binding: Vec<String>,
-    /// What a stronger grip, rougher pads or stronger joints would bring.
+    /// Derivatives by grip force, friction and torque limits.
     pub sensitivity: Sensitivity,
-    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes; halves of the hand's wrench when
-    /// it has measured limits.
+    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes.
     pub pad_wrenches_p: Vec<[Wrench; 2]>,
     /// Torques of each arm's joints, `g + J' w`, N m.
     pub joint_torque_nm: Vec<DVector<f64>>,
-    /// The virtual twist that the failing load drives: `twist . load = 1` unless the cap of 100 limits; its linear part
-    /// in 1/N, its angular part in 1/(N m).
-    pub dual_twist: Twist,
-    /// The whole dual vector: a proof of the load factor, see [`DualVector::upper_bound`].
+    /// The dual vector: a certificate of the load factor, see [`DualVector::upper_bound`].
     pub dual: DualVector,
 }
 
-/// What became of the load program.
+/// The outcome of the load program.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoadFactorOutcome {
-    /// Solved, or almost solved with 1e-3 taken off.
+    /// Solved, or almost solved with 1e-3 subtracted.
     Solved(LoadFactor),
-    /// No load factor from 0 to 100 can be held, so not the weight alone either.
+    /// No load factor from 0 to 100 can be held, and so not the weight alone.
     GravityInfeasible {
         /// The proof, see [`DualVector::proves_infeasible`].
         certificate: DualVector,
     },
-    /// The solver stopped early: never to be taken for stable.
+    /// The solver stopped early; must not be taken for stable.
     Unknown {
-        /// The solver's own word.
+        /// The solver's status.
         status: String,
     },
 }
 
 impl LoadFactorOutcome {
-    /// The load factor; none unless solved.
+    /// The load factor; `None` unless solved.
     pub fn load_factor(&self) -> Option<f64> {
         match self {
             Self::Solved(solved) => Some(solved.load_factor),
@@ -84,9 +81,9 @@ impl LoadFactorOutcome {
 enum PadLimit {
     /// Sliding along the face.
     Friction,
-    /// Turning about the normal.
+    /// Rotation about the normal.
     Torsion,
-    /// The centre of pressure at the pad's rim.
+    /// Centre of pressure at the edge of the pad.
     Tilt,
     /// The pad is pulled off the face.
     Grip,
@@ -104,15 +101,15 @@ impl PadLimit {
     }
 }
 
-/// Reads clarabel's answer to a load program.
-pub(super) fn interpret(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> LoadFactorOutcome {
+/// Interprets clarabel's solution of a load program.
+pub(super) fn interpret(model: &ContactModel, program: &ConeProgram, raw: &RawSolution<'_>) -> LoadFactorOutcome {
     let margin = match raw.status {
         SolverStatus::Solved => 0.0,
         SolverStatus::AlmostSolved => ALMOST_SOLVED_MARGIN,
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
             let certificate = DualVector::new(program, raw.z);
-            // The solver's word is not enough: the proof must be one.
-            return if certificate.refutes(hold, program) {
+            // The solver's status is not trusted: the certificate is checked.
+            return if certificate.refutes(model, program) {
                 LoadFactorOutcome::GravityInfeasible { certificate }
             } else {
                 LoadFactorOutcome::Unknown { status: format!("{:?}", raw.status) }
@@ -122,44 +119,31 @@ pub(super) fn interpret(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -
     };
     let lambda = raw.x[raw.x.len() - 1] / program.load_scale;
     let pad_wrenches_p: Vec<_> =
-        hold.hands.iter().zip(program.layout.hands()).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
-    let joint_torque_nm = hold.hands.iter().zip(&pad_wrenches_p).map(|(hand, pads)| joint_torque(hand, pads)).collect();
+        model.hands.iter().zip(program.layout.hands()).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
+    let joint_torque_nm =
+        model.hands.iter().zip(&pad_wrenches_p).map(|(hand, pads)| hand.joint_torque_nm(pads)).collect();
     LoadFactorOutcome::Solved(LoadFactor {
-        load_factor: (lambda - margin).clamp(0.0, super::MAX_LOAD_FACTOR),
-        binding: binding(hold, program, raw),
-        sensitivity: sensitivity::of(hold, program, raw),
+        load_factor: (lambda - margin).clamp(0.0, MAX_LOAD_FACTOR),
+        binding: binding(model, program, raw),
+        sensitivity: sensitivity::of(model, program, raw),
         pad_wrenches_p,
         joint_torque_nm,
-        dual_twist: balance_twist(raw.z, 1.0),
         dual: DualVector::new(program, raw.z),
     })
 }
 
-/// `g + J' w`, N m.
-pub(super) fn joint_torque(hand: &HandModel, pads_p: &[Wrench; 2]) -> DVector<f64> {
-    let wrench = hand.wrench_about_grasp_point(pads_p).to_vector();
-    hand.jacobian_o.tr_mul(&wrench) + &hand.gravity_torque_nm
-}
-
-/// The dual of the balance rows as a twist, for an objective in units of `objective_unit`.
-pub(super) fn balance_twist(z: &[f64], objective_unit: f64) -> Twist {
-    let part = |first: usize| Vector3::new(z[first], z[first + 1], z[first + 2]) * (objective_unit / FORCE_UNIT_N);
-    Twist { linear: part(0), angular: part(3) / LENGTH_UNIT_M }
-}
-
 /// The names of the limits that bind, strongest first.
-fn binding(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Vec<String> {
+fn binding(model: &ContactModel, program: &ConeProgram, raw: &RawSolution<'_>) -> Vec<String> {
     let layout = &program.layout;
     let cap = raw.z[layout.load_rows() + 1];
     let mut terms: Vec<(f64, String)> = Vec::new();
-    for (hand, place) in hold.hands.iter().zip(layout.hands()) {
-        for (pad, pad_place) in hand.pads.iter().zip(place.pads().into_iter().flatten()) {
+    for (hand, place) in model.hands.iter().zip(layout.hands()) {
+        for (pad, pad_place) in hand.pads.iter().zip(&place.pads) {
             let of_pad = pad_terms(hand, pad, pad_place, raw);
             terms.extend(
                 of_pad.map(|(term, limit)| (term, format!("{} {} pad: {}", hand.name, pad.name, limit.name()))),
             );
         }
-        terms.extend(measured_term(place, raw).map(|term| (term, format!("{} hand: measured limits", hand.name))));
         if layout.has_torque_rows() {
             let row = place.torque_rows;
             // The rows are divided by the limit, so the multipliers are the terms.
@@ -170,26 +154,14 @@ fn binding(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Vec<String>
         }
     }
     let largest = terms.iter().map(|(term, _)| *term).fold(0.0, f64::max);
-    // The cap's own term, in the same measure.
+    // The cap's term, in the same measure.
     if cap > largest {
         return Vec::new();
     }
     terms.retain(|(term, _)| *term > 0.0 && *term >= NAMED_SHARE * largest);
-    // Stable: equal terms stay in the order of hands, pads and joints.
+    // A stable sort: equal terms stay in the order of hands, pads and joints.
     terms.sort_by(|left, right| right.0.total_cmp(&left.0));
     terms.into_iter().map(|(_, name)| name).collect()
-}
-
-/// `d lambda* / d ln(D)` of a hand's measured limits: `b'z` of their rows, which are divided by D.
-fn measured_term(place: &HandLayout, raw: &RawSolution<'_>) -> Option<f64> {
-    match place.contact {
-        Contact::Pads(_) => None,
-        Contact::Box { rows } => Some(raw.z[rows..rows + 12].iter().sum()),
-        Contact::Ellipsoid { rows } => {
-            let cone = rows..rows + MEASURED_CONE;
-            Some(-raw.z[cone.clone()].iter().zip(&raw.s[cone]).skip(1).map(|(z, s)| z * s).sum::<f64>())
-        }
-    }
 }
 
 /// `d lambda* / d ln(limit)` of a pad's four limits.
@@ -200,37 +172,21 @@ fn pad_terms(hand: &HandModel, pad: &PadModel, place: &PadLayout, raw: &RawSolut
         let pull = grip * pull_multiplier(pad, place, raw);
         return [(pull, PadLimit::Grip), (0.0, PadLimit::Friction), (0.0, PadLimit::Torsion), (0.0, PadLimit::Tilt)];
     }
-    let [friction, torsion, tilt] =
-        place.points.map_or_else(|| soft_terms(place, raw), |points| point_terms(pad, place, &points, raw));
+    let [friction, torsion, tilt] = soft_terms(place, raw);
     [(friction, PadLimit::Friction), (torsion, PadLimit::Torsion), (tilt, PadLimit::Tilt), (0.0, PadLimit::Grip)]
 }
 
-/// What a pad that is pulled off would gain from each unit of normal force.
+/// Derivative of the load factor by the normal force of a pad that is pulled off.
 fn pull_multiplier(pad: &PadModel, place: &PadLayout, raw: &RawSolution<'_>) -> f64 {
-    let (count, cone_rows) = place.points.map_or((1, 0), |points| (points.count, POINT_VARIABLES));
-    let friction = (0..count).map(|cone| raw.z[place.friction_rows + cone * cone_rows]).fold(0.0, f64::max);
-    let pressure = &raw.z[place.pressure_rows..place.pressure_rows + place.points.map_or(4, |points| points.count)];
+    let friction = f64::max(0.0, raw.z[place.friction_rows]);
+    let pressure = &raw.z[place.pressure_rows..place.pressure_rows + 4];
     pad.friction * friction + pressure.iter().sum::<f64>()
 }
 
-/// Sliding, torsion and tilt of a soft finger. `mu fn z_0 = -z_t . s_t` at the optimum is the friction cone's term,
+/// Friction, torsion and tilt terms of a pad. The friction cone's term, `mu fn z_0 = -z_t . s_t` at the optimum, is
 /// split into its sliding and its turning part.
 fn soft_terms(place: &PadLayout, raw: &RawSolution<'_>) -> [f64; 3] {
     let share = |row: usize| -raw.z[place.friction_rows + row] * raw.s[place.friction_rows + row];
     let tilt: f64 = raw.z[place.pressure_rows..place.pressure_rows + 4].iter().sum();
     [share(1) + share(2), share(3), raw.x[place.variables + 2] * tilt]
-}
-
-/// The same of a pad of points. The multipliers of the rows that sum up its moments are the pad's virtual rotation, and
-/// rotation times moment is what a larger pattern of points would bring: about the normal by its levers of friction,
-/// which the friction cones' terms contain, about the other axes by those of pressure.
-fn point_terms(pad: &PadModel, place: &PadLayout, points: &PointLayout, raw: &RawSolution<'_>) -> [f64; 3] {
-    let of_point = |point: usize| {
-        let normal = raw.x[points.variables + POINT_VARIABLES * point + 2];
-        pad.friction * normal * raw.z[place.friction_rows + POINT_VARIABLES * point]
-    };
-    let friction: f64 = (0..points.count).map(of_point).sum();
-    let of_moment = |row: usize| raw.z[points.sum_rows + row] * raw.x[place.variables + row];
-    let torsion = of_moment(5).clamp(0.0, friction);
-    [friction - torsion, torsion, (of_moment(3) + of_moment(4)).max(0.0)]
 }

@@ -1,22 +1,23 @@
-//! How much load a hold stands (METHOD section 6).
+//! Statics of a grasp under load: which multiple of a load the hands resist (docs/method.md#6-stability).
 //!
-//! A hold is two pads a hand, pressed on a board, at the end of arms with limited torque. Two questions are asked of it:
-//! which multiple of the operation *some* distribution of forces holds ([`StabilityWorkspace::load_factor`], a best
-//! case), and which multiple the arms hold with the forces that their joints' springs lead to
-//! ([`StabilityWorkspace::compliant_load_factor`]). The first comes with what limits it, what would help
-//! ([`Sensitivity`]) and a proof ([`DualVector`]), and can be asked for of several loads and frictions at once
-//! ([`StabilityWorkspace::robust_load_factor`]). Pads are soft fingers unless a [`PadKind`] or [`WrenchLimits`] says
-//! otherwise.
+//! A [`ContactModel`] is plain geometry: hands with two soft-finger pads each, on a board, at the end of compliant arms
+//! with torque limits. Two load factors are computed:
+//! - [`StabilityWorkspace::load_factor`], lambda*: the largest multiple of the load that *some* distribution of forces
+//!   balances. It comes with the binding limits, their [`Sensitivity`] and a certificate ([`DualVector`]), and there is
+//!   a variant for a set of loads and frictions, [`StabilityWorkspace::robust_load_factor`].
+//! - [`StabilityWorkspace::compliant_load_factor`]: the largest multiple at which the equilibrium of the compliant arms
+//!   keeps every limit.
 //!
-//! Both are cone programs, and clarabel is used here alone; equilibria that are asked for by the thousand have a quicker
-//! solver of their own (`interior_point`), held to clarabel by a test. What a small change of a hold does to them is
-//! [`NearbyResponse`]. The module must never know how a hold was found, nor what a
-//! simulation made of it. Its input, a [`Hold`], is plain geometry: the robot is met in `from_plan` only.
+//! Both are cone programs. clarabel is used in this module alone; equilibria, which planners solve by the thousand,
+//! have a faster solver of our own (`solvers::interior_point`), compared with clarabel by a test. [`LocalEquilibrium`]
+//! gives the first-order effect of small changes of the contact model. This module depends neither on how a grasp was
+//! found nor on its simulation. Only `from_plan` uses the robot model.
 //!
 //! # Accuracy
-//! Ten plans of `benchdog plan` for the foam board of METHOD section 2, against the simulation (`tests/prediction.rs`):
-//! five points of the circle cut with 30 N, five of the grid drilled with 15 N. Deflection at a tenth of the load, and
-//! the load factor at failure with the limit that ends it; the simulation's by bisection to 0.1 %.
+//! Ten plans of `benchdog plan` for the foam board (docs/method.md#24-board) against the simulation
+//! (`tests/prediction.rs`): five points of the circle cut with 30 N, five of the grid drilled with 15 N. Deflection at
+//! a tenth of the load, and the load factor at failure with the limit that ends it; the simulation's by bisection to
+//! 0.1 %.
 //!
 //! | plan | deflection, mm | simulated | off by | load factor, ended by | simulated | off by |
 //! |---|---|---|---|---|---|---|
@@ -31,53 +32,56 @@
 //! | drill-7 | 0.203 | 0.211 | -4.0 % | 1.16, deflection | 1.17 | -1.1 % |
 //! | drill-9 | 0.124 | 0.131 | -4.9 % | 1.40, deflection | 1.42 | -1.4 % |
 //!
-//! Which limit ends the hold is predicted in all ten. What lies behind the larger differences:
-//! - Light boards sit softly in the simulation's contacts: pads that tilt, as under a drill, give way by up to 5 %, or
+//! The limit that ends the grasp is predicted in all ten. Sources of the larger differences:
+//! - Contacts of light boards are soft in the simulation: pads that tilt, as under a drill, yield by up to 5 %, or
 //!   0.006 mm, more than predicted.
-//! - In cut-04 and cut-13 a hand turns on the board already under a tenth of the load: with welded hands the deflection
-//!   would be 0.387 and 0.593 mm. How far depends on how the hands came to rest, of which the statics know nothing: here
-//!   they are loaded gently, and so they are in the simulation, which hands the board's weight over slowly.
-//! - Once a hand of cut-04 turns, its rotation grows fast, and with it the difference between the two.
+//! - In cut-04 and cut-13 a hand turns on the board at a tenth of the load already: with welded hands the deflection
+//!   would be 0.387 and 0.593 mm. How far depends on how the hands came to rest, which the statics do not model: they
+//!   assume a slowly applied weight, and the simulation applies the board's weight slowly, too.
+//! - Once a hand of cut-04 turns, its rotation grows fast, and with it the difference.
 //!
-//! How gravity on the arms changes with their angles (`dg/dq`) is part of the compliance; without it these load factors
-//! would differ by half a per cent or less.
+//! The change of the arms' gravity torque with their angles (`dg/dq`) is part of the compliance; without it these load
+//! factors would change by half a per cent or less.
 //!
 //! # Conventions
-//! Wrenches are those of the hands on the object unless said otherwise; axes and origin are O's. A twist is the pair of
-//! the translation of O's origin (m) and the rotation vector (rad), in O axes, small.
+//! Wrenches are those of the hands on the object unless noted, about O's origin in O axes. A twist is a small
+//! displacement: the translation of O's origin (m) and the rotation vector (rad), in O axes.
 
-mod bound;
 mod certificate;
-mod compliance;
 mod compliant_load;
-mod contact;
+mod contact_model;
 mod elastic;
 mod equilibrium;
 mod from_plan;
-mod hold;
-mod interior_point;
-mod layout;
+mod hand;
+mod infeasibility;
+mod limit_crossing;
 mod load_factor;
-mod nearby;
-mod pad_cone;
+mod local_equilibrium;
 mod patch;
 mod prediction;
-mod program;
 mod robust;
 mod sensitivity;
+mod solvers;
+#[cfg(test)]
+mod tests;
+mod twist;
+mod welded;
 mod workspace;
 
-pub use bound::{CannotHold, LostMotion};
 pub use certificate::DualVector;
-pub use compliance::{Twist, WeldedHold};
-pub use compliant_load::{CompliantLoadFactor, Crossing};
-pub use contact::{LimitShape, PadKind, WrenchLimits};
+pub use compliant_load::CompliantLoadFactor;
+pub use contact_model::{ContactModel, ContactModelError};
 pub use equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome};
-pub use hold::{HandModel, Hold, HoldError, PadModel};
+pub use hand::{HandModel, PadModel};
+pub use infeasibility::{Infeasibility, Mechanism};
+pub use limit_crossing::LimitCrossing;
 pub use load_factor::{LoadFactor, LoadFactorOutcome};
-pub use nearby::NearbyResponse;
-pub use patch::{clip_to_rectangle, mean_distance_from_centre_m};
-pub use program::MAX_LOAD_FACTOR;
+pub use local_equilibrium::LocalEquilibrium;
+pub use patch::mean_distance_from_centre_m;
 pub use robust::{InternalForces, RobustLoadFactor, RobustOutcome, Variation};
 pub use sensitivity::{HandSensitivity, Sensitivity};
-pub use workspace::StabilityWorkspace;
+pub use solvers::cone_program::MAX_LOAD_FACTOR;
+pub use twist::Twist;
+pub use welded::WeldedStiffness;
+pub use workspace::{EquilibriumSolver, StabilityWorkspace};

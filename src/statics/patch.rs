@@ -1,4 +1,4 @@
-//! The rectangular patch in which a pad touches a face.
+//! The rectangular contact patch between a pad and a face.
 
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -8,21 +8,22 @@ use nalgebra::{Isometry2, Point2, Vector2};
 ///
 /// A patch under uniform pressure with total normal force N holds the torsion `mu e N` about its centre. Both half
 /// sides must be positive.
+#[must_use]
 pub fn mean_distance_from_centre_m(half_sides_m: [f64; 2]) -> f64 {
     let [a, b] = half_sides_m;
     a.hypot(b) / 3.0 + a * a / (6.0 * b) * (b / a).asinh() + b * b / (6.0 * a) * (a / b).asinh()
 }
 
-/// The part of a pad that counts when it overhangs a face: a rectangle with the pad's own axes that lies in both.
+/// Clips a pad that overhangs a face to a rectangle along the pad's axes inside both.
 ///
 /// The face is the rectangle of half sides `face_half_m` about its own centre; `x_fp` is the pad's pose in the face.
-/// The face's edges are taken one after the other: where a corner of the pad lies beyond one, one of the pad's sides is
-/// moved inward until none does; of the two sides that could be, the one whose move leaves the larger area. What remains
-/// is never more than the true intersection, so what is computed with it errs on the safe side; for a pad with its
-/// sides along the face's it is the intersection itself.
+/// For each edge of the face with a corner of the pad beyond it, one side of the pad is moved inward until no corner
+/// is: the side whose move leaves the larger area. The result is inside the true intersection, so it errs on the safe
+/// side; for a pad with sides parallel to the face's it is the intersection.
 ///
-/// Returns the remaining rectangle's centre in the face and its half sides along the pad's axes, m; none when nothing
-/// remains.
+/// Returns the clipped rectangle's centre in the face and its half sides along the pad's axes, m; `None` if it is
+/// empty.
+#[must_use]
 pub fn clip_to_rectangle(
     face_half_m: [f64; 2],
     x_fp: &Isometry2<f64>,
@@ -45,14 +46,15 @@ pub fn clip_to_rectangle(
     Some((x_fp * Point2::from(centre_p), [half.x, half.y]))
 }
 
-/// Moves one side of the box inward until it lies in the half plane `outward . p <= reach_m`; none when that empties it.
+/// Moves one side of the box inward until it lies in the half plane `outward . p <= reach_m`; `None` if it becomes
+/// empty.
 fn trim(low: &mut Vector2<f64>, high: &mut Vector2<f64>, outward: &Vector2<f64>, reach_m: f64) -> Option<()> {
     let farthest = |axis: usize| if outward[axis] > 0.0 { high[axis] } else { low[axis] };
     let excess_m = outward[0] * farthest(0) + outward[1] * farthest(1) - reach_m;
     if excess_m <= 0.0 {
         return Some(());
     }
-    // The share of the box that is left when this axis gives way; an axis along the edge cannot help.
+    // The share of the box that remains if this axis is cut; cutting an axis along the edge has no effect.
     let remaining = |axis: usize| 1.0 - excess_m / (outward[axis].abs() * (high[axis] - low[axis]));
     let axis = if remaining(0) >= remaining(1) { 0 } else { 1 };
     if remaining(axis).is_nan() || remaining(axis) <= 0.0 {
@@ -79,13 +81,14 @@ mod tests {
             let sum: f64 =
                 (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))).map(|(i, j)| at(0, i).hypot(at(1, j))).sum();
             let quadrature = sum / (cells * cells) as f64;
-            // The midpoint rule on 400 x 400 cells is good to about 1e-6 (second order, but for the cone's tip).
+            // The midpoint rule on 400 x 400 cells is accurate to about 1e-6 (second order except at the tip of the
+            // cone).
             approx::assert_relative_eq!(mean_distance_from_centre_m(half), quadrature, max_relative = 3e-6);
         }
     }
 
     #[test]
-    fn the_reference_pad_has_its_published_lever() {
+    fn the_reference_pad_has_its_published_radius() {
         // 40.4 x 36.0 mm: 14.63 mm as four figures.
         assert!((mean_distance_from_centre_m([0.0202, 0.0180]) - 14.63e-3).abs() < 0.5e-5);
     }
@@ -100,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pad_inside_is_left_alone_and_one_outside_is_gone() {
+    fn a_pad_inside_is_unchanged_and_one_outside_is_empty() {
         let inside = Isometry2::new(Vector2::new(0.1, -0.1), 0.7);
         let (centre, half) = clip_to_rectangle([0.25, 0.20], &inside, [0.02, 0.018]).unwrap();
         assert_eq!((centre, half), (Point2::new(0.1, -0.1), [0.02, 0.018]));

@@ -1,63 +1,66 @@
-//! The stability that a plan carries, from the solvers of this module.
+//! The stability figures of a plan.
 
-use super::{Hold, HoldError, LoadFactorOutcome, ResponseOutcome, StabilityWorkspace};
+use super::{
+    contact_model::{ContactModel, ContactModelError},
+    equilibrium::ResponseOutcome,
+    load_factor::LoadFactorOutcome,
+    workspace::StabilityWorkspace,
+};
 use crate::model::{
     plan::Stability,
     scenario::{Limits, StabilityKind},
 };
 
 impl StabilityWorkspace {
-    /// True when a hold keeps `limits` in the sense of `kind`: its [`StabilityWorkspace::utilisation`] is at most 1.
+    /// Utilisation of `limits` under the stability criterion `kind` (docs/method.md#34-constraints): at most 1 if the
+    /// grasp is stable, infinite if no equilibrium exists.
     ///
-    /// # Errors
-    /// When the hold is broken.
-    pub fn stands(&mut self, hold: &Hold, limits: &Limits, kind: StabilityKind) -> Result<bool, HoldError> {
-        Ok(self.utilisation(hold, limits, kind)? <= 1.0)
-    }
-
-    /// The share that a hold uses of what `limits` allow it in the sense of `kind` (METHOD section 3), at most 1 when it
-    /// stands and infinite when no equilibrium exists:
-    ///
-    /// - paper: `limits.load_factor` over the load factor of the cone program;
+    /// - paper: `limits.load_factor` over the load factor lambda*;
     /// - compliant: the largest ratio of torque, deflection and slip to their limits in the equilibrium at that load
-    ///   factor, and of the deflection at load 1. An equilibrium within the torque limits is a point of the cone program,
-    ///   whose load factor is therefore no less; only where `limits.torque_ratio` allows more than those it is asked too.
+    ///   factor, and of the deflection at load 1. An equilibrium within the torque limits is feasible for the load
+    ///   program, so lambda* is at least as large; lambda* is computed only if `limits.torque_ratio` allows more than
+    ///   the torque limits.
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn utilisation(&mut self, hold: &Hold, limits: &Limits, kind: StabilityKind) -> Result<f64, HoldError> {
+    /// If the contact model is invalid.
+    pub fn utilisation(
+        &mut self,
+        model: &ContactModel,
+        limits: &Limits,
+        kind: StabilityKind,
+    ) -> Result<f64, ContactModelError> {
         let least = limits.load_factor;
-        if hold.cannot_hold(least).is_some() {
+        if model.infeasibility(least).is_some() {
             return Ok(f64::INFINITY);
         }
         let mut utilisation = 0.0;
         if kind == StabilityKind::Paper || limits.torque_ratio > 1.0 {
-            let Some(load_factor) = self.load_factor(hold)?.load_factor() else { return Ok(f64::INFINITY) };
+            let Some(load_factor) = self.load_factor(model)?.load_factor() else { return Ok(f64::INFINITY) };
             utilisation = if least == 0.0 { 0.0 } else { least / load_factor };
         }
         if kind == StabilityKind::Paper {
             return Ok(utilisation);
         }
-        let ResponseOutcome::Found(response) = self.response(hold, least)? else { return Ok(f64::INFINITY) };
-        utilisation = response.utilisation(hold, limits).max(utilisation);
+        let ResponseOutcome::Found(response) = self.response(model, least)? else { return Ok(f64::INFINITY) };
+        utilisation = response.utilisation(model, limits).max(utilisation);
         if least < 1.0 {
-            let ResponseOutcome::Found(response) = self.response(hold, 1.0)? else { return Ok(f64::INFINITY) };
+            let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(f64::INFINITY) };
             utilisation = utilisation.max(response.deflection_mm() / limits.deflection_mm);
         }
         Ok(utilisation)
     }
 
-    /// The figures of a plan; none when the hold has no load factor or no compliant equilibrium at load 1.
+    /// The stability figures of a plan; `None` without a load factor or without a compliant equilibrium at load 1.
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn predict(&mut self, hold: &Hold, limits: &Limits) -> Result<Option<Stability>, HoldError> {
-        let LoadFactorOutcome::Solved(best_case) = self.load_factor(hold)? else { return Ok(None) };
-        let ResponseOutcome::Found(response) = self.response(hold, 1.0)? else { return Ok(None) };
-        let torques = hold.hands.iter().zip(&response.equilibrium.joint_torque_nm);
+    /// If the contact model is invalid.
+    pub fn predict(&mut self, model: &ContactModel, limits: &Limits) -> Result<Option<Stability>, ContactModelError> {
+        let LoadFactorOutcome::Solved(best_case) = self.load_factor(model)? else { return Ok(None) };
+        let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(None) };
+        let torques = model.hands.iter().zip(&response.equilibrium.joint_torque_nm);
         Ok(Some(Stability {
             load_factor: best_case.load_factor,
-            compliant_load_factor: self.compliant_load_factor(hold, limits)?.load_factor,
+            compliant_load_factor: self.compliant_load_factor(model, limits)?.load_factor,
             binding: best_case.binding,
             joint_torque_nm: torques.map(|(hand, nm)| (hand.name.clone(), nm.as_slice().to_vec())).collect(),
             predicted_deflection_mm: response.deflection_mm(),

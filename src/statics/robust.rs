@@ -1,19 +1,21 @@
-//! The load factor that stands a whole set of loads and frictions: what a hold is worth when neither is known exactly.
+//! The robust load factor: the largest one for every load and friction of a set
+//! (docs/method.md#611-uncertain-friction-and-loads).
 //!
-//! # Which forces may answer a variation
-//! [`InternalForces::Adapt`]: for every variation some distribution of forces exists. The programs share nothing but
-//! lambda, and the load factors that one of them holds are an interval from 0, since it is convex and the weight alone
-//! is required to be held. So the largest common load factor is the smallest of theirs, exactly, and each is solved for itself.
+//! # Internal forces
+//! [`InternalForces::Adapt`]: some distribution of forces exists for every variation. The variations share only lambda,
+//! and the feasible load factors of each are an interval from 0, since its program is convex and the weight alone is
+//! held. So the robust load factor is the smallest of theirs, and each is solved separately.
 //!
-//! [`InternalForces::Fixed`]: position-controlled arms do not know which variation it is. With what they press against
-//! each other they have to serve all of them, and the difference between two loads is shared by their stiffness: hand
-//! i's wrenches under the loads k and 1 differ by `lambda (a_i(load_k) - a_i(load_1))`, `a_i` the welded hold's answer
-//! (METHOD section 6). That is one program: a copy of the load program for each variation, lambda and these rows in
-//! common. Never more than the minimum; for a single hand the same, as it has nothing to press against.
+//! [`InternalForces::Fixed`]: position-controlled arms do not measure the variation. Their internal force is the same
+//! in all variations, and the difference between two loads is shared by their stiffness: hand i's wrenches under the
+//! loads k and 1 differ by `lambda (a_i(load_k) - a_i(load_1))`, with `a_i` hand i's share of a load by the welded
+//! stiffness (docs/method.md#67-welded-stiffness). This is one program: a copy of the load program for each variation,
+//! coupled by lambda and by these rows. Its load factor is at most the minimum above, and equal to it for a single
+//! hand, which has no internal force.
 //!
 //! # More than the listed variations
-//! A hold that stands several loads at one friction stands every mixture of them: mix the forces the same way, which
-//! stay in the cones, and the answers `a_i` are linear. A hold that stands a load at one friction stands it at any
+//! A grasp that resists several loads at one friction resists every convex combination of them: the same combination of
+//! the forces stays in the cones, and `a_i` is linear. A grasp that resists a load at one friction resists it at any
 //! higher one. So for a polytope of loads and an interval of frictions the vertices at the lowest friction are enough.
 
 use clarabel::{
@@ -22,120 +24,132 @@ use clarabel::{
 };
 
 use super::{
-    compliance::WeldedHold,
-    hold::{Hold, HoldError},
+    contact_model::{ContactModel, ContactModelError},
     load_factor::{LoadFactorOutcome, NAMED_SHARE},
-    program::{Columns, MAX_LOAD_FACTOR, Program, ProgramKind, hand_wrench, new_solver, solve_with_care, wrench_units},
+    solvers::{
+        clarabel::{new_solver, solve_conclusively},
+        cone_program::{Columns, ConeProgram, MAX_LOAD_FACTOR, hand_wrench},
+        layout::ProgramKind,
+        units::wrench_units,
+    },
+    welded::WeldedStiffness,
     workspace::StabilityWorkspace,
 };
 use crate::model::wrench::Wrench;
 
-/// How near to the cap a load factor counts as the cap: far above the solver's tolerance.
+/// A load factor this near to the cap counts as the cap: far above the solver's tolerance.
 const CAP_MARGIN: f64 = 1e-3;
 
-/// What may be instead of the hold's own load and friction.
+/// A load and friction in place of the contact model's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation {
     /// The operation's wrench at load factor 1, about O's origin in O axes.
     pub load: Wrench,
-    /// Friction of every pad, as a multiple of its own; of no effect on measured limits.
+    /// Friction of every pad, as a multiple of its own.
     pub friction_ratio: f64,
 }
 
-/// What the arms' internal forces, those that balance each other, may do.
+/// How the arms' internal forces, which balance each other, vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InternalForces {
-    /// Be others in each variation.
+    /// Different in each variation.
     Adapt,
-    /// Be the same in all: the loads' differences are shared by the arms' stiffness.
+    /// The same in all: differences between loads are shared by the arms' stiffness.
     Fixed,
 }
 
-/// A load factor that stands every variation.
+/// The load factor for a set of variations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobustLoadFactor {
-    /// The largest multiple, 0 to 100, of every variation's load that is held.
+    /// The largest multiple of the load, 0 to 100, that the grasp resists in every variation.
     pub load_factor: f64,
-    /// The variations that limit it, by their places in the list: all others could be left out. Empty when nothing but
-    /// the cap of 100 does.
+    /// Indices of the variations that limit it; all others could be left out. Empty if only the cap of 100 binds.
     pub limiting: Vec<usize>,
     /// The hands' wrenches on the object in each variation at that load factor, about their grasp points, O axes.
     pub hand_wrenches: Vec<Vec<Wrench>>,
 }
 
-/// What became of the robust program.
+/// The outcome of the robust program.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RobustOutcome {
     /// Solved.
     Solved(RobustLoadFactor),
     /// Not even the weight alone is held at the friction of this variation.
     GravityInfeasible {
-        /// Its place in the list.
+        /// The index of the variation.
         variation: usize,
     },
-    /// An arm has a direction without compliance, so how the arms share a load is not defined.
+    /// An arm is rigid in some direction, so the arms' shares of a load are not defined.
     Rigid,
-    /// A solver stopped early: never to be taken for stable.
+    /// A solver stopped early; must not be taken for stable.
     Unknown {
-        /// The solver's own word.
+        /// The solver's status.
         status: String,
     },
 }
 
-/// See [`StabilityWorkspace::robust_load_factor`].
-pub(super) fn solve(
-    workspace: &mut StabilityWorkspace,
-    hold: &Hold,
-    variations: &[Variation],
-    internal_forces: InternalForces,
-) -> Result<RobustOutcome, HoldError> {
-    hold.check()?;
-    check(variations)?;
-    let holds: Vec<_> = variations.iter().map(|variation| varied(hold, variation)).collect();
-    if let Some(outcome) = weight_not_held(workspace, &holds, variations)? {
-        return Ok(outcome);
-    }
-    let adapted = smallest(workspace, &holds)?;
-    match (&adapted, internal_forces) {
-        (RobustOutcome::Solved(_), InternalForces::Fixed) if hold.hands.len() > 1 => Ok(with_fixed(hold, &holds)),
-        _ => Ok(adapted),
+impl StabilityWorkspace {
+    /// The largest load factor at which the grasp resists every one of several variations of load and friction
+    /// (docs/method.md#611-uncertain-friction-and-loads).
+    ///
+    /// # Errors
+    /// If the contact model or a variation is invalid, or there are no variations.
+    pub fn robust_load_factor(
+        &mut self,
+        model: &ContactModel,
+        variations: &[Variation],
+        internal_forces: InternalForces,
+    ) -> Result<RobustOutcome, ContactModelError> {
+        model.check()?;
+        check(variations)?;
+        let models: Vec<_> = variations.iter().map(|variation| varied(model, variation)).collect();
+        if let Some(outcome) = weight_not_held(self, &models, variations)? {
+            return Ok(outcome);
+        }
+        let adapted = smallest(self, &models)?;
+        match (&adapted, internal_forces) {
+            (RobustOutcome::Solved(_), InternalForces::Fixed) if model.hands.len() > 1 => {
+                Ok(with_fixed(model, &models))
+            }
+            _ => Ok(adapted),
+        }
     }
 }
 
-fn check(variations: &[Variation]) -> Result<(), HoldError> {
+fn check(variations: &[Variation]) -> Result<(), ContactModelError> {
     if variations.is_empty() {
-        return Err(HoldError::NoVariations);
+        return Err(ContactModelError::NoVariations);
     }
     for (number, Variation { load, friction_ratio }) in variations.iter().enumerate() {
         let place = format!("variation {number}");
         if !load.is_finite() {
-            return Err(HoldError::NotFinite { place, what: "load" });
+            return Err(ContactModelError::NotFinite { place, what: "load" });
         }
         if !(friction_ratio.is_finite() && *friction_ratio >= 0.0) {
             let (what, found, expected) = ("friction ratio", *friction_ratio, "0 or more");
-            return Err(HoldError::Value { place, what, found, expected });
+            return Err(ContactModelError::Value { place, what, found, expected });
         }
     }
     Ok(())
 }
 
-fn varied(hold: &Hold, variation: &Variation) -> Hold {
-    let mut varied = Hold { load: variation.load, ..hold.clone() };
+fn varied(model: &ContactModel, variation: &Variation) -> ContactModel {
+    let mut varied = ContactModel { load: variation.load, ..model.clone() };
     varied.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= variation.friction_ratio);
     varied
 }
 
-/// What becomes of a board that its hands cannot carry at the lowest friction: a load that lifts it may be held where
-/// less of it is not, and the load factors held are then no interval from 0.
+/// The outcome if the hands cannot carry the board at the lowest friction. A load that lifts the board may then be held
+/// where less of it is not, and the feasible load factors are no interval from 0.
 fn weight_not_held(
     workspace: &mut StabilityWorkspace,
-    holds: &[Hold],
+    models: &[ContactModel],
     variations: &[Variation],
-) -> Result<Option<RobustOutcome>, HoldError> {
+) -> Result<Option<RobustOutcome>, ContactModelError> {
     let friction = |variation: &usize| variations[*variation].friction_ratio;
-    let lowest = (0..holds.len()).min_by(|left, right| friction(left).total_cmp(&friction(right)));
-    let Some(variation) = lowest else { return Err(HoldError::NoVariations) };
-    let idle = Hold { load: Wrench::default(), ..holds[variation].clone() };
+    let lowest = (0..models.len()).min_by(|left, right| friction(left).total_cmp(&friction(right)));
+    let Some(variation) = lowest else { return Err(ContactModelError::NoVariations) };
+    let idle = ContactModel { load: Wrench::default(), ..models[variation].clone() };
     Ok(match workspace.load_factor(&idle)? {
         LoadFactorOutcome::Solved(_) => None,
         LoadFactorOutcome::GravityInfeasible { .. } => Some(RobustOutcome::GravityInfeasible { variation }),
@@ -143,17 +157,17 @@ fn weight_not_held(
     })
 }
 
-/// The minimum over holds that share nothing but the load factor; the forces of each are those at its own.
-fn smallest(workspace: &mut StabilityWorkspace, holds: &[Hold]) -> Result<RobustOutcome, HoldError> {
+/// The minimum over models that share only the load factor. The wrenches of each are those at its own load factor.
+fn smallest(workspace: &mut StabilityWorkspace, models: &[ContactModel]) -> Result<RobustOutcome, ContactModelError> {
     let mut worst = (f64::INFINITY, 0);
-    let mut hand_wrenches = Vec::with_capacity(holds.len());
-    for (variation, hold) in holds.iter().enumerate() {
-        match workspace.load_factor(hold)? {
+    let mut hand_wrenches = Vec::with_capacity(models.len());
+    for (variation, model) in models.iter().enumerate() {
+        match workspace.load_factor(model)? {
             LoadFactorOutcome::Solved(solved) => {
                 if solved.load_factor < worst.0 {
                     worst = (solved.load_factor, variation);
                 }
-                let of_hands = hold.hands.iter().zip(&solved.pad_wrenches_p);
+                let of_hands = model.hands.iter().zip(&solved.pad_wrenches_p);
                 hand_wrenches.push(of_hands.map(|(hand, pads)| hand.wrench_about_grasp_point(pads)).collect());
             }
             LoadFactorOutcome::GravityInfeasible { .. } => return Ok(RobustOutcome::GravityInfeasible { variation }),
@@ -165,18 +179,18 @@ fn smallest(workspace: &mut StabilityWorkspace, holds: &[Hold]) -> Result<Robust
 }
 
 /// One program with the rows that fix the internal forces.
-fn with_fixed(hold: &Hold, holds: &[Hold]) -> RobustOutcome {
-    let Some(welded) = WeldedHold::new(hold) else { return RobustOutcome::Rigid };
-    let answers: Vec<_> = holds.iter().map(|varied| welded.hand_wrenches(&varied.load)).collect();
-    let blocks: Vec<_> = holds.iter().map(|varied| Program::load(varied, ProgramKind::Load)).collect();
-    let joint = JointProgram::new(&blocks, &answers);
+fn with_fixed(model: &ContactModel, models: &[ContactModel]) -> RobustOutcome {
+    let Some(welded) = WeldedStiffness::new(model) else { return RobustOutcome::Rigid };
+    let shares: Vec<_> = models.iter().map(|varied| welded.hand_wrenches(&varied.load)).collect();
+    let blocks: Vec<_> = models.iter().map(|varied| ConeProgram::load(varied, ProgramKind::Load)).collect();
+    let joint = JointProgram::new(&blocks, &shares);
     let unknown = |status: String| RobustOutcome::Unknown { status };
     let Some(mut solver) =
         new_solver(&CscMatrix::zeros((joint.q.len(), joint.q.len())), &joint.q, &joint.a, &joint.b, &joint.cones)
     else {
         return unknown("data refused".into());
     };
-    if solve_with_care(&mut solver).is_none() || solver.solution.status != SolverStatus::Solved {
+    if solve_conclusively(&mut solver).is_none() || solver.solution.status != SolverStatus::Solved {
         return unknown(format!("{:?}", solver.solution.status));
     }
     let (x, z) = (&solver.solution.x, &solver.solution.z);
@@ -192,10 +206,10 @@ fn with_fixed(hold: &Hold, holds: &[Hold]) -> RobustOutcome {
     })
 }
 
-/// The variations whose inequalities have multipliers worth naming.
-fn limiting(blocks: &[Program], places: &[Place], z: &[f64]) -> Vec<usize> {
-    let size = |(block, place): (&Program, &Place)| {
-        // The two rows of the load factor's range stand first: they limit no forces.
+/// The variations whose inequalities have significant multipliers.
+fn limiting(blocks: &[ConeProgram], places: &[Place], z: &[f64]) -> Vec<usize> {
+    let size = |(block, place): (&ConeProgram, &Place)| {
+        // The first two rows are the load factor's range and limit no forces.
         let rows = place.row + block.layout.load_rows() + 2..place.row + block.layout.rows();
         z[rows].iter().map(|value| value * value).sum::<f64>().sqrt()
     };
@@ -205,7 +219,7 @@ fn limiting(blocks: &[Program], places: &[Place], z: &[f64]) -> Vec<usize> {
     (0..sizes.len()).filter(|&variation| sizes[variation] >= NAMED_SHARE * largest && cap < largest).collect()
 }
 
-/// Where a variation's copy of the program starts.
+/// The first row and column of a variation's copy of the program.
 struct Place {
     row: usize,
     column: usize,
@@ -221,8 +235,8 @@ struct JointProgram {
 }
 
 impl JointProgram {
-    /// `answers` are the welded hold's, of each variation and hand.
-    fn new(blocks: &[Program], answers: &[Vec<Wrench>]) -> Self {
+    /// `shares` are the hands' wrenches by the welded stiffness, for each variation.
+    fn new(blocks: &[ConeProgram], shares: &[Vec<Wrench>]) -> Self {
         let mut places = Vec::with_capacity(blocks.len());
         let (mut rows, mut variables) = (0, 0);
         let (mut b, mut cones) = (Vec::new(), Vec::new());
@@ -234,26 +248,32 @@ impl JointProgram {
             cones.extend(block.layout.cones());
         }
         // The first hand's wrench follows from the balance.
-        let ties = 6 * (answers[0].len() - 1);
-        let tie_rows = ties * (blocks.len() - 1);
-        cones.push(SupportedConeT::ZeroConeT(tie_rows));
-        b.resize(rows + tie_rows, 0.0);
+        let couplings = 6 * (shares[0].len() - 1);
+        let coupling_rows = couplings * (blocks.len() - 1);
+        cones.push(SupportedConeT::ZeroConeT(coupling_rows));
+        b.resize(rows + coupling_rows, 0.0);
         let mut columns = Columns::default();
         for number in 0..blocks.len() {
-            push_forces(&mut columns, blocks, &places, number, rows);
+            push_force_columns(&mut columns, blocks, &places, number, rows);
         }
-        push_load_factor(&mut columns, blocks, &places, answers, rows);
+        push_load_factor_column(&mut columns, blocks, &places, shares, rows);
         let mut q = vec![0.0; variables + 1];
         q[variables] = -1.0 / blocks[0].load_scale;
-        Self { q, a: columns.into_matrix(rows + tie_rows), b, cones, places }
+        Self { q, a: columns.into_matrix(rows + coupling_rows), b, cones, places }
     }
 }
 
-/// The columns of one variation's forces. The wrenches of all hands but the first also stand in the ties, the first
-/// variation's in those of every other.
-fn push_forces(columns: &mut Columns, blocks: &[Program], places: &[Place], number: usize, first_tie: usize) {
+/// The columns of one variation's forces. The wrenches of all hands but the first are also in the coupling rows; those
+/// of the first variation in the coupling rows of every other.
+fn push_force_columns(
+    columns: &mut Columns,
+    blocks: &[ConeProgram],
+    places: &[Place],
+    number: usize,
+    first_coupling: usize,
+) {
     let block = &blocks[number];
-    let ties = 6 * (block.layout.hands().len() - 1);
+    let couplings = 6 * (block.layout.hands().len() - 1);
     for column in 0..block.q.len() - 1 {
         columns.begin();
         for entry in block.a.colptr[column]..block.a.colptr[column + 1] {
@@ -263,21 +283,22 @@ fn push_forces(columns: &mut Columns, blocks: &[Program], places: &[Place], numb
             .iter()
             .position(|hand| (hand.wrench_variables..hand.wrench_variables + 6).contains(&column));
         let Some(hand) = of_hand else { continue };
-        let tie = first_tie + 6 * hand + column - block.layout.hands()[hand + 1].wrench_variables;
+        let coupling = first_coupling + 6 * hand + column - block.layout.hands()[hand + 1].wrench_variables;
         match number {
-            0 => (1..blocks.len()).for_each(|other| columns.push(tie + ties * (other - 1), -1.0)),
-            _ => columns.push(tie + ties * (number - 1), 1.0),
+            0 => (1..blocks.len()).for_each(|other| columns.push(coupling + couplings * (other - 1), -1.0)),
+            _ => columns.push(coupling + couplings * (number - 1), 1.0),
         }
     }
 }
 
-/// The load factor's column: each variation's own, in the unit of the first's, and what the ties ask for.
-fn push_load_factor(
+/// The column of the load factor: each variation's own, in the unit of the first's, and the entries of the coupling
+/// rows.
+fn push_load_factor_column(
     columns: &mut Columns,
-    blocks: &[Program],
+    blocks: &[ConeProgram],
     places: &[Place],
-    answers: &[Vec<Wrench>],
-    first_tie: usize,
+    shares: &[Vec<Wrench>],
+    first_coupling: usize,
 ) {
     let unit = blocks[0].load_scale;
     columns.begin();
@@ -287,9 +308,9 @@ fn push_load_factor(
             columns.push(place.row + block.a.rowval[entry], block.a.nzval[entry] * block.load_scale / unit);
         }
     }
-    let mut row = first_tie;
-    for answer in &answers[1..] {
-        for (of_this, of_first) in answer.iter().zip(&answers[0]).skip(1) {
+    let mut row = first_coupling;
+    for share in &shares[1..] {
+        for (of_this, of_first) in share.iter().zip(&shares[0]).skip(1) {
             let difference = (of_this.to_vector() - of_first.to_vector()).component_div(&wrench_units());
             difference.iter().enumerate().for_each(|(component, value)| columns.push(row + component, -value / unit));
             row += 6;

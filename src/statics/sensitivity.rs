@@ -1,59 +1,59 @@
-//! What would help: how the load factor changes with grip, friction and torque limits.
+//! Derivatives of the load factor by grip force, friction and torque limits.
 //!
-//! At the optimum of `min q'x, A x + s = b, s in K` with dual z, a parameter p that `A` and `b` depend on changes the
-//! value by `z'(dA/dp x - db/dp)` (envelope theorem), and `q'x = -lambda*`. Each parameter here stands in a row or two.
+//! At the optimum of `min q'x, A x + s = b, s in K` with dual z, the derivative of the value by a parameter p of `A`
+//! and `b` is `z'(dA/dp x - db/dp)` (envelope theorem), and `q'x = -lambda*`. Each parameter here appears in one or two
+//! rows.
 
 use nalgebra::DVector;
 
 use super::{
-    hold::{HandModel, Hold},
-    layout::{HandLayout, PadLayout},
-    program::{FORCE_UNIT_N, POINT_VARIABLES, Program, RawSolution},
+    contact_model::ContactModel,
+    hand::HandModel,
+    solvers::{
+        clarabel::RawSolution,
+        cone_program::ConeProgram,
+        layout::{HandLayout, PadLayout},
+        units::FORCE_UNIT_N,
+    },
 };
 
-/// Derivatives of the load factor lambda*. Where limits meet, lambda* has a kink and the figure is one of the
-/// derivatives between those of either side; at the cap of 100 all are 0.
+/// Derivatives of the load factor lambda*. At a kink of lambda* they are between the derivatives of either side; at the
+/// cap of 100 all are 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensitivity {
-    /// Those of each hand.
+    /// The derivatives of each hand.
     pub hands: Vec<HandSensitivity>,
 }
 
-/// Derivatives of the load factor by the limits of one hand; none is negative but for the solver's tolerance.
+/// Derivatives of the load factor by the limits of one hand; nonnegative up to the solver's tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandSensitivity {
-    /// `d lambda*/d F` by the force with which each finger is pushed, 1/N; 0 for a hand with measured limits.
+    /// `d lambda*/d F` by the grip force of each finger, 1/N.
     pub per_grip_force_n: f64,
-    /// `d lambda*/d mu` by the friction of each pad; 0 for a hand with measured limits.
+    /// `d lambda*/d mu` by the friction of each pad.
     pub per_friction: [f64; 2],
     /// `d lambda*/d tau_max` by the torque limit of each joint, n, 1/(N m).
     pub per_effort_nm: DVector<f64>,
 }
 
 /// The derivatives at a solution of the load program.
-pub(super) fn of(hold: &Hold, program: &Program, raw: &RawSolution<'_>) -> Sensitivity {
+pub(super) fn of(model: &ContactModel, program: &ConeProgram, raw: &RawSolution<'_>) -> Sensitivity {
     let of_hand = |(hand, place): (&HandModel, &HandLayout)| HandSensitivity {
         // The row is fn_1 + fn_2 = 2 F.
-        per_grip_force_n: place.pads().map_or(0.0, |_| 2.0 * raw.z[place.grip_row] / FORCE_UNIT_N),
-        per_friction: place.pads().map_or([0.0; 2], |pads| [0, 1].map(|pad: usize| of_friction(&pads[pad], raw))),
+        per_grip_force_n: 2.0 * raw.z[place.grip_row] / FORCE_UNIT_N,
+        per_friction: place.pads.each_ref().map(|pad| of_friction(pad, raw)),
         per_effort_nm: of_efforts(hand, place, program, raw),
     };
-    Sensitivity { hands: hold.hands.iter().zip(program.layout.hands()).map(of_hand).collect() }
+    Sensitivity { hands: model.hands.iter().zip(program.layout.hands()).map(of_hand).collect() }
 }
 
-/// mu stands before the normal force in the first row of each friction cone: `fn z_0`.
+/// mu is the coefficient of the normal force in the first row of the friction cone: `fn z_0`.
 fn of_friction(place: &PadLayout, raw: &RawSolution<'_>) -> f64 {
-    match place.points {
-        None => raw.x[place.variables + 2] * raw.z[place.friction_rows],
-        Some(points) => (0..points.count)
-            .map(|point| POINT_VARIABLES * point)
-            .map(|first| raw.x[points.variables + first + 2] * raw.z[place.friction_rows + first])
-            .sum(),
-    }
+    raw.x[place.variables + 2] * raw.z[place.friction_rows]
 }
 
-/// The torque rows are divided by tau_max: `(z+ + z-) / tau_max` where they bind.
-fn of_efforts(hand: &HandModel, place: &HandLayout, program: &Program, raw: &RawSolution<'_>) -> DVector<f64> {
+/// The torque rows are divided by tau_max: `(z+ + z-) / tau_max`.
+fn of_efforts(hand: &HandModel, place: &HandLayout, program: &ConeProgram, raw: &RawSolution<'_>) -> DVector<f64> {
     DVector::from_fn(hand.dof(), |joint, _| {
         if !program.layout.has_torque_rows() {
             return 0.0;

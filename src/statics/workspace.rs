@@ -1,20 +1,19 @@
-//! Solvers that are kept between holds.
+//! Solvers that are kept between contact models.
 
 use super::{
-    compliance::WeldedHold,
-    compliant_load::{self, CompliantLoadFactor},
+    contact_model::{ContactModel, ContactModelError},
     elastic,
-    equilibrium::{self, CompliantResponse, EquilibriumOutcome, ResponseOutcome, hand_energy},
-    hold::{Hold, HoldError},
-    interior_point::InteriorPoint,
+    equilibrium::{self, CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome},
     load_factor::{self, LoadFactorOutcome},
-    program::{HandEnergy, Program, ProgramKind, ReusedSolver},
-    robust::{self, InternalForces, RobustOutcome, Variation},
+    solvers::{
+        clarabel::ReusedSolver, cone_program::ConeProgram, energy::HandEnergy, interior_point::InteriorPoint,
+        layout::ProgramKind,
+    },
+    welded::WeldedStiffness,
 };
-use crate::model::scenario::Limits;
 
-/// The solvers of a thread that asks about many holds. Holds with the same numbers of hands and joints share memory and
-/// symbolic factorisation; the answer for a hold does not depend on what was asked before, bit by bit.
+/// The solvers of one thread, for many contact models. Models with the same numbers of hands and joints share memory
+/// and symbolic factorisation; results do not depend on earlier calls, bit for bit.
 #[derive(Default)]
 pub struct StabilityWorkspace {
     load: ReusedSolver,
@@ -22,120 +21,123 @@ pub struct StabilityWorkspace {
     equilibrium: ReusedSolver,
 }
 
+/// A solver of the equilibrium program. Both find the same equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EquilibriumSolver {
+    /// Dense and of fixed size, the faster one. Cannot prove that there is no equilibrium: its outcome is then
+    /// [`EquilibriumOutcome::Unknown`].
+    InteriorPoint,
+    /// Sparse, with a proof if there is no equilibrium.
+    Clarabel,
+}
+
 impl StabilityWorkspace {
-    /// A workspace that knows no hold yet.
+    /// A new workspace.
+    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The load factor lambda* (METHOD section 6): the largest multiple of the load, from 0 to 100, that some
-    /// distribution of forces holds within friction, centre of pressure, grip and torque limits.
+    /// The load factor lambda* (docs/method.md#65-load-factor): the largest multiple of the load, from 0 to 100, that
+    /// some distribution of forces balances within friction, centre of pressure, grip and torque limits.
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn load_factor(&mut self, hold: &Hold) -> Result<LoadFactorOutcome, HoldError> {
-        hold.check()?;
-        Ok(solve_load(&mut self.load, hold, ProgramKind::Load))
+    /// If the contact model is invalid.
+    pub fn load_factor(&mut self, model: &ContactModel) -> Result<LoadFactorOutcome, ContactModelError> {
+        model.check()?;
+        Ok(solve_load(&mut self.load, model, ProgramKind::Load))
     }
 
-    /// The load factor without torque limits: up to there a compliant equilibrium exists.
+    /// The load factor without torque limits: a compliant equilibrium exists up to there.
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn friction_load_factor(&mut self, hold: &Hold) -> Result<LoadFactorOutcome, HoldError> {
-        hold.check()?;
-        Ok(solve_load(&mut self.friction, hold, ProgramKind::Friction))
+    /// If the contact model is invalid.
+    pub fn friction_load_factor(&mut self, model: &ContactModel) -> Result<LoadFactorOutcome, ContactModelError> {
+        model.check()?;
+        Ok(self.solve_friction(model))
     }
 
-    /// The compliant equilibrium at a load factor. Torque limits are no part of it.
+    /// The compliant equilibrium at a load factor by one of the two solvers. Torque limits are not part of it.
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn equilibrium(&mut self, hold: &Hold, load_factor: f64) -> Result<EquilibriumOutcome, HoldError> {
-        hold.check()?;
-        Ok(self.solve_equilibrium(hold, &hand_energies(hold), load_factor))
+    /// If the contact model is invalid.
+    pub fn equilibrium(
+        &mut self,
+        model: &ContactModel,
+        load_factor: f64,
+        solver: EquilibriumSolver,
+    ) -> Result<EquilibriumOutcome, ContactModelError> {
+        model.check()?;
+        let energies = HandEnergy::of_hands(model);
+        Ok(match solver {
+            EquilibriumSolver::InteriorPoint => by_interior_point(model, &energies, load_factor).map_or_else(
+                || EquilibriumOutcome::Unknown { status: "not converged".into() },
+                EquilibriumOutcome::Found,
+            ),
+            EquilibriumSolver::Clarabel => self.by_clarabel(model, &energies, load_factor),
+        })
     }
 
-    /// What the load at a load factor does to the hold: the compliant equilibrium against that under the weight alone.
+    /// The effect of the load at a load factor: the compliant equilibrium relative to that under the weight alone.
     ///
     /// # Errors
-    /// When the hold is broken.
-    pub fn response(&mut self, hold: &Hold, load_factor: f64) -> Result<ResponseOutcome, HoldError> {
-        hold.check()?;
-        let welded = WeldedHold::new(hold);
+    /// If the contact model is invalid.
+    pub fn response(&mut self, model: &ContactModel, load_factor: f64) -> Result<ResponseOutcome, ContactModelError> {
+        model.check()?;
+        let welded = WeldedStiffness::new(model);
         let mut energies = None;
         let mut equilibrium_at = |lambda: f64| {
-            if let Some(found) = welded.as_ref().and_then(|welded| elastic::equilibrium(hold, welded, lambda)) {
+            if let Some(found) = welded.as_ref().and_then(|welded| elastic::equilibrium(model, welded, lambda)) {
                 return EquilibriumOutcome::Found(found);
             }
-            let energies = energies.get_or_insert_with(|| hand_energies(hold));
-            self.solve_equilibrium(hold, energies, lambda)
+            let energies = energies.get_or_insert_with(|| HandEnergy::of_hands(model));
+            self.solve_equilibrium(model, energies, lambda)
         };
         let mut equilibria = Vec::with_capacity(2);
         for lambda in [0.0, load_factor] {
             match equilibrium_at(lambda) {
                 EquilibriumOutcome::Found(found) => equilibria.push(found),
-                EquilibriumOutcome::None => return Ok(ResponseOutcome::NoEquilibrium { load_factor: lambda }),
+                EquilibriumOutcome::NoEquilibrium => return Ok(ResponseOutcome::NoEquilibrium { load_factor: lambda }),
                 EquilibriumOutcome::Unknown { status } => return Ok(ResponseOutcome::Unknown { status }),
             }
         }
         let loaded = equilibria.remove(1);
-        Ok(ResponseOutcome::Found(CompliantResponse::between(hold, &equilibria[0], loaded)))
+        Ok(ResponseOutcome::Found(CompliantResponse::between(model, &equilibria[0], loaded)))
     }
 
-    /// The compliant load factor (METHOD section 6): the smallest load factor at which no compliant equilibrium exists
-    /// or a limit of torque ratio, deflection or slip is crossed, at most 100; found to a thousandth, from below.
-    ///
-    /// # Errors
-    /// When the hold is broken.
-    pub fn compliant_load_factor(&mut self, hold: &Hold, limits: &Limits) -> Result<CompliantLoadFactor, HoldError> {
-        hold.check()?;
-        Ok(compliant_load::search(self, hold, limits))
-    }
-
-    /// The load factor that stands every one of several variations of load and friction; see [`RobustOutcome`].
-    ///
-    /// # Errors
-    /// When the hold or a variation is broken, or there is none.
-    pub fn robust_load_factor(
-        &mut self,
-        hold: &Hold,
-        variations: &[Variation],
-        internal_forces: InternalForces,
-    ) -> Result<RobustOutcome, HoldError> {
-        robust::solve(self, hold, variations, internal_forces)
-    }
-
+    /// The equilibrium by the interior point, or by clarabel if that does not converge.
     pub(super) fn solve_equilibrium(
         &mut self,
-        hold: &Hold,
+        model: &ContactModel,
         energies: &[HandEnergy],
         load_factor: f64,
     ) -> EquilibriumOutcome {
-        if let Some(found) = InteriorPoint::solve(hold, energies, load_factor) {
-            return EquilibriumOutcome::Found(found.equilibrium(hold, load_factor));
-        }
-        let program = Program::equilibrium(hold, energies, load_factor);
+        by_interior_point(model, energies, load_factor)
+            .map_or_else(|| self.by_clarabel(model, energies, load_factor), EquilibriumOutcome::Found)
+    }
+
+    fn by_clarabel(&mut self, model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> EquilibriumOutcome {
+        let program = ConeProgram::equilibrium(model, energies, load_factor);
         match self.equilibrium.solve(&program) {
-            Some(raw) => equilibrium::interpret(hold, &program.layout, load_factor, &raw),
+            Some(raw) => equilibrium::interpret(model, &program, load_factor, &raw),
             None => EquilibriumOutcome::Unknown { status: "data refused".into() },
         }
     }
 
-    pub(super) fn solve_friction(&mut self, hold: &Hold) -> LoadFactorOutcome {
-        solve_load(&mut self.friction, hold, ProgramKind::Friction)
+    pub(super) fn solve_friction(&mut self, model: &ContactModel) -> LoadFactorOutcome {
+        solve_load(&mut self.friction, model, ProgramKind::Friction)
     }
 }
 
-fn solve_load(solver: &mut ReusedSolver, hold: &Hold, kind: ProgramKind) -> LoadFactorOutcome {
-    let program = Program::load(hold, kind);
+fn by_interior_point(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Equilibrium> {
+    let found = InteriorPoint::solve(model, energies, load_factor)?.solution(model);
+    Some(Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board))
+}
+
+fn solve_load(solver: &mut ReusedSolver, model: &ContactModel, kind: ProgramKind) -> LoadFactorOutcome {
+    let program = ConeProgram::load(model, kind);
     match solver.solve(&program) {
-        Some(raw) => load_factor::interpret(hold, &program, &raw),
+        Some(raw) => load_factor::interpret(model, &program, &raw),
         None => LoadFactorOutcome::Unknown { status: "data refused".into() },
     }
-}
-
-/// The energy of each hand.
-pub(super) fn hand_energies(hold: &Hold) -> Vec<HandEnergy> {
-    hold.hands.iter().map(hand_energy).collect()
 }

@@ -11,7 +11,7 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::{Arm, Finger, Gripper, Joint, JointKind, Link, Pad, Robot},
-    sim::{Conditions, Scene, blank_sample},
+    sim::{Conditions, SimScene, blank_sample},
 };
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
@@ -160,7 +160,7 @@ pub fn plan(robot: &Robot, x_wg: Pose, grip: &Grip, wrench_g: Wrench) -> Plan {
 
 /// A scene and the last state observed.
 pub struct Bench {
-    pub scene: Scene,
+    pub scene: SimScene,
     pub sample: Sample,
 }
 
@@ -174,7 +174,7 @@ impl Bench {
 
     pub fn new(robot: &Robot, plan: &Plan, friction: f64) -> Self {
         let settings = SimulationSettings { timestep_s: TIMESTEP_S, ..SimulationSettings::default() };
-        let scene = Scene::new(robot, plan, &Conditions::new(friction, settings)).unwrap();
+        let scene = SimScene::new(robot, plan, &Conditions::new(friction, settings)).unwrap();
         Self { scene, sample: blank_sample(plan) }
     }
 

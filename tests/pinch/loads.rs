@@ -11,7 +11,7 @@ use benchdog::{
     },
     robot::Robot,
     sim::{Conditions, SimError, simulate},
-    statics::{Hold, WeldedHold},
+    statics::{ContactModel, WeldedStiffness},
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -173,8 +173,8 @@ fn a_closed_chain_shares_load_and_squeeze_as_its_stiffness_says() {
     let plan = baxter::plan(&robot, cut, 1.0, 30.0);
     let settings = SimulationSettings { settle_s: 1.0, ramp_s: 0.5, hold_s: 0.5, ..SHORT };
     let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
-    let hold = Hold::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, 0.6).unwrap();
-    let predicted = WeldedHold::new(&hold).unwrap().hand_wrenches(&hold.load);
+    let hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, 0.6).unwrap();
+    let predicted = WeldedStiffness::new(&hold).unwrap().hand_wrenches(&hold.load);
     let (before, after) = (last(&trace, Phase::Settle), last(&trace, Phase::Hold));
     for (arm, predicted) in predicted.iter().enumerate() {
         let change = hand_wrench_o(after, arm) + hand_wrench_o(before, arm).scaled(-1.0);

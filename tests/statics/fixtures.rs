@@ -12,7 +12,7 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::{Chain, InverseKinematics, Robot},
-    statics::{HandModel, Hold, LoadFactor, LoadFactorOutcome, PadKind, PadModel, StabilityWorkspace},
+    statics::{ContactModel, HandModel, LoadFactor, LoadFactorOutcome, PadModel, StabilityWorkspace},
 };
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -46,13 +46,11 @@ pub fn strong_hand(
         x_op: facing(p + axis * (side * thickness_m / 2.0), -axis * side, x),
         half_sides_m: HALF_SIDES_M,
         friction,
-        kind: PadKind::SoftFinger,
     };
     HandModel {
         name: name.into(),
         joints: (0..6).map(|joint| format!("{name}_{joint}")).collect(),
         pads: [pad("upper", 1.0), pad("lower", -1.0)],
-        wrench_limits: None,
         grip_force_n: grip_n,
         grasp_point_o: p,
         jacobian_o: Matrix6xX::identity(6),
@@ -64,15 +62,20 @@ pub fn strong_hand(
 }
 
 /// A board of 0.5 x 0.4 x 0.03 m held on two opposite edges, pads on its faces, by strong hands.
-pub fn two_strong_hands(weight: Wrench, load: Wrench) -> Hold {
+pub fn two_strong_hands(weight: Wrench, load: Wrench) -> ContactModel {
     let hand =
         |name: &str, x: f64| strong_hand(name, Vector3::new(x, 0.0, 0.0), Vector3::z(), Vector3::y(), 30.0, 0.6, 0.03);
-    Hold { hands: vec![hand("left", 0.23), hand("right", -0.23)], weight, load, p_ot: Vector3::new(0.1, 0.1, 0.015) }
+    ContactModel {
+        hands: vec![hand("left", 0.23), hand("right", -0.23)],
+        weight,
+        load,
+        p_ot: Vector3::new(0.1, 0.1, 0.015),
+    }
 }
 
 /// A hold by `hands` seven-joint arms at random places of a board's rim, with random screws for joints, under a random
 /// load and 0.21 kg. Torque limits and gravity torques are of the size that they matter.
-pub fn random_hold(seed: u64, hands: usize) -> Hold {
+pub fn random_hold(seed: u64, hands: usize) -> ContactModel {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut vector = |size: f64| Vector3::from_fn(|_, _| rng.random_range(-size..size));
     let arms = (0..hands)
@@ -100,11 +103,11 @@ pub fn random_hold(seed: u64, hands: usize) -> Hold {
         .collect();
     let p_ot = Vector3::new(vector(0.12).x, vector(0.12).y, 0.015);
     let load = Wrench::from_force(vector(25.0)).about(&p_ot);
-    Hold { hands: arms, weight: Wrench::from_force(vector(1.0).normalize() * 2.06), load, p_ot }
+    ContactModel { hands: arms, weight: Wrench::from_force(vector(1.0).normalize() * 2.06), load, p_ot }
 }
 
 /// The load factor of a hold that has one.
-pub fn solved(hold: &Hold) -> LoadFactor {
+pub fn solved(hold: &ContactModel) -> LoadFactor {
     match StabilityWorkspace::new().load_factor(hold).unwrap() {
         LoadFactorOutcome::Solved(solved) => solved,
         other => panic!("expected a load factor, found {other:?}"),
@@ -117,7 +120,7 @@ pub fn limits() -> Limits {
 }
 
 /// A hold with a pose change of everything: frame O' instead of O, `p_o' = x * p_o`.
-pub fn moved(hold: &Hold, x: &Pose) -> Hold {
+pub fn moved(hold: &ContactModel, x: &Pose) -> ContactModel {
     let mut moved = hold.clone();
     for hand in &mut moved.hands {
         hand.grasp_point_o = (x * nalgebra::Point3::from(hand.grasp_point_o)).coords;
@@ -128,9 +131,6 @@ pub fn moved(hold: &Hold, x: &Pose) -> Hold {
             column.fixed_rows_mut::<3>(0).copy_from(&linear);
             column.fixed_rows_mut::<3>(3).copy_from(&angular);
         }
-        if let Some(limits) = &mut hand.wrench_limits {
-            limits.rotation_og = x.rotation * limits.rotation_og;
-        }
     }
     moved.weight = hold.weight.moved(x);
     moved.load = hold.load.moved(x);
@@ -139,7 +139,7 @@ pub fn moved(hold: &Hold, x: &Pose) -> Hold {
 }
 
 /// The same hold with every force, moment, torque and stiffness times `factor`.
-pub fn stronger(hold: &Hold, factor: f64) -> Hold {
+pub fn stronger(hold: &ContactModel, factor: f64) -> ContactModel {
     let mut stronger = hold.clone();
     for hand in &mut stronger.hands {
         hand.grip_force_n *= factor;

@@ -1,7 +1,7 @@
 //! The load factor by another method: a linear program in SI units, its friction cones cut by tangent planes until none
 //! is violated (Kelley), solved by the simplex method. It shares nothing with the program under test but the hold.
 
-use benchdog::statics::{Hold, PadModel};
+use benchdog::statics::{ContactModel, PadModel};
 use microlp::{ComparisonOp, OptimizationDirection, Problem, Variable};
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -27,7 +27,7 @@ fn without_rounding(terms: impl IntoIterator<Item = (Variable, f64)>) -> Vec<(Va
 }
 
 /// The largest load factor within the planes found so far, and the point where it is reached.
-fn relaxed(hold: &Hold, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
+fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
     let mut problem = Problem::new(OptimizationDirection::Maximize);
     let lambda = problem.add_var(1.0, (0.0, 100.0));
     let pads: Vec<&PadModel> = hold.hands.iter().flat_map(|hand| &hand.pads).collect();
@@ -87,7 +87,7 @@ fn relaxed(hold: &Hold, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
 }
 
 /// An upper bound of the load factor, tight to the violation that is left: 1e-4 of a newton or less.
-fn by_cutting_planes(hold: &Hold) -> f64 {
+fn by_cutting_planes(hold: &ContactModel) -> f64 {
     let pads: Vec<&PadModel> = hold.hands.iter().flat_map(|hand| &hand.pads).collect();
     let mut cuts = Vec::new();
     for _ in 0..200 {
@@ -134,7 +134,7 @@ fn a_skew_load_on_one_hand_agrees_with_cutting_planes() {
     let mut hand = strong_hand("left", Vector3::new(0.05, 0.0, 0.02), Vector3::z(), Vector3::x(), 30.0, 0.6, 0.03);
     hand.pads[1].half_sides_m = [HALF_SIDES_M[0] / 2.0, HALF_SIDES_M[1]];
     let load = benchdog::model::wrench::Wrench::from([3.0, -2.0, 5.0, 0.1, 0.2, -0.1]);
-    let hold = Hold { hands: vec![hand], weight: Default::default(), load, p_ot: Vector3::zeros() };
+    let hold = ContactModel { hands: vec![hand], weight: Default::default(), load, p_ot: Vector3::zeros() };
     let (ours, theirs) = (solved(&hold).load_factor, by_cutting_planes(&hold));
     approx::assert_relative_eq!(ours, theirs, max_relative = AGREEMENT);
 }

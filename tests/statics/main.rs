@@ -3,7 +3,6 @@
 mod baxter;
 mod closed_forms;
 mod compliance;
-mod contact;
 mod fixtures;
 mod independent;
 mod properties;

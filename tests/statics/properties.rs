@@ -3,7 +3,7 @@
 
 use benchdog::{
     model::frames::Pose,
-    statics::{Hold, LoadFactorOutcome, StabilityWorkspace},
+    statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace},
 };
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ use crate::fixtures::{limits, moved, random_hold, stronger};
 /// The solver's tolerance is 1e-7 of a load factor, absolute below 1 and relative above: two solves, and a margin.
 const TOLERANCE: f64 = 1e-5;
 
-fn load_factor(hold: &Hold) -> f64 {
+fn load_factor(hold: &ContactModel) -> f64 {
     match StabilityWorkspace::new().load_factor(hold).unwrap() {
         LoadFactorOutcome::Solved(solved) => solved.load_factor,
         // Below every load factor.
@@ -34,7 +34,7 @@ proptest! {
     fn more_friction_or_stronger_joints_never_hurt(seed in 0u64..1_000_000, hands in 1usize..=4, factor in 1.0..2.0) {
         let hold = random_hold(seed, hands);
         let reference = load_factor(&hold);
-        let changed = |change: &dyn Fn(&mut Hold)| { let mut other = hold.clone(); change(&mut other); load_factor(&other) };
+        let changed = |change: &dyn Fn(&mut ContactModel)| { let mut other = hold.clone(); change(&mut other); load_factor(&other) };
         let rougher = changed(&|hold| hold.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= factor));
         prop_assert!(at_least(rougher, reference), "friction: {rougher} after {reference}");
         let with_torque = changed(&|hold| hold.hands.iter_mut().for_each(|hand| hand.effort_nm *= factor));
@@ -82,8 +82,6 @@ proptest! {
                 prop_assert!(bound <= solved.load_factor + 10.0 * TOLERANCE * solved.load_factor.max(1.0), "{bound} far above {}", solved.load_factor);
                 check_primal(&hold, &solved)?;
                 if solved.load_factor < 99.9 && solved.load_factor > 0.1 {
-                    let work = solved.dual_twist.work(&hold.load);
-                    prop_assert!((work - 1.0).abs() < 10.0 * TOLERANCE, "the dual twist's work is {work}");
                     prop_assert!(!solved.binding.is_empty());
                 }
             }
@@ -107,8 +105,8 @@ proptest! {
     fn what_the_quick_test_rejects_cannot_be_held(seed in 0u64..1_000_000, hands in 1usize..=4, asked in 0.0..10.0) {
         let hold = random_hold(seed, hands);
         // A load that lifts a board too heavy to be held is held where less of it is not.
-        let idle = Hold { load: Default::default(), ..hold.clone() };
-        if let (Some(reason), true) = (hold.cannot_hold(asked), load_factor(&idle) >= 0.0) {
+        let idle = ContactModel { load: Default::default(), ..hold.clone() };
+        if let (Some(reason), true) = (hold.infeasibility(asked), load_factor(&idle) >= 0.0) {
             let value = load_factor(&hold);
             prop_assert!(value < asked + TOLERANCE, "{reason}, yet {value} of {asked}");
         }
@@ -130,7 +128,7 @@ proptest! {
 
 /// The forces found are within every limit and balance the object. Scaled residuals of 1e-7 are 1e-6 N and less than
 /// 1e-6 N m a row; with the sums over a few dozen terms 1e-4 N and N m is far from what a wrong sign would do.
-fn check_primal(hold: &Hold, solved: &benchdog::statics::LoadFactor) -> Result<(), TestCaseError> {
+fn check_primal(hold: &ContactModel, solved: &benchdog::statics::LoadFactor) -> Result<(), TestCaseError> {
     const FORCE_TOLERANCE: f64 = 1e-4;
     let mut sum = hold.weight + hold.load.scaled(solved.load_factor);
     for ((hand, pads), torque) in hold.hands.iter().zip(&solved.pad_wrenches_p).zip(&solved.joint_torque_nm) {

@@ -3,8 +3,8 @@
 use benchdog::{
     model::wrench::Wrench,
     statics::{
-        Hold, InternalForces, LoadFactorOutcome, RobustLoadFactor, RobustOutcome, StabilityWorkspace, Variation,
-        WeldedHold,
+        ContactModel, InternalForces, LoadFactorOutcome, RobustLoadFactor, RobustOutcome, StabilityWorkspace,
+        Variation, WeldedStiffness,
     },
 };
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ use crate::fixtures::{random_hold, two_strong_hands};
 /// See `properties`.
 const TOLERANCE: f64 = 1e-5;
 
-fn robust(hold: &Hold, variations: &[Variation], internal_forces: InternalForces) -> RobustLoadFactor {
+fn robust(hold: &ContactModel, variations: &[Variation], internal_forces: InternalForces) -> RobustLoadFactor {
     match StabilityWorkspace::new().robust_load_factor(hold, variations, internal_forces).unwrap() {
         RobustOutcome::Solved(found) => found,
         other => panic!("expected a load factor, found {other:?}"),
@@ -24,7 +24,7 @@ fn robust(hold: &Hold, variations: &[Variation], internal_forces: InternalForces
 }
 
 /// The load turned and moved a little, at frictions from 0.7 to 1.1 of the nominal.
-fn variations(hold: &Hold, seed: u64) -> Vec<Variation> {
+fn variations(hold: &ContactModel, seed: u64) -> Vec<Variation> {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut around = |size: f64| Vector3::from_fn(|_, _| rng.random_range(-size..size));
     let size_n = hold.load.force_n.norm();
@@ -36,25 +36,26 @@ fn variations(hold: &Hold, seed: u64) -> Vec<Variation> {
         .collect()
 }
 
-fn varied(hold: &Hold, variation: &Variation) -> Hold {
-    let mut varied = Hold { load: variation.load, ..hold.clone() };
+fn varied(hold: &ContactModel, variation: &Variation) -> ContactModel {
+    let mut varied = ContactModel { load: variation.load, ..hold.clone() };
     varied.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= variation.friction_ratio);
     varied
 }
 
 /// Random holds that carry their weight at the lowest friction.
-fn cases() -> Vec<(Hold, Vec<Variation>)> {
+fn cases() -> Vec<(ContactModel, Vec<Variation>)> {
     let mut workspace = StabilityWorkspace::new();
     let all = (0..30).map(|seed| {
         let hold = random_hold(seed, 1 + seed as usize % 3);
         let variations = variations(&hold, seed);
         (hold, variations)
     });
-    let mut carries_all = |(hold, variations): &(Hold, Vec<Variation>)| {
-        let mut held =
-            |hold: &Hold, least| workspace.load_factor(hold).unwrap().load_factor().is_some_and(|found| found > least);
+    let mut carries_all = |(hold, variations): &(ContactModel, Vec<Variation>)| {
+        let mut held = |hold: &ContactModel, least| {
+            workspace.load_factor(hold).unwrap().load_factor().is_some_and(|found| found > least)
+        };
         variations.iter().map(|variation| varied(hold, variation)).all(|hold| {
-            let idle = Hold { load: Wrench::default(), ..hold.clone() };
+            let idle = ContactModel { load: Wrench::default(), ..hold.clone() };
             held(&hold, 0.05) && held(&idle, 0.0)
         })
     };
@@ -118,10 +119,10 @@ fn fixed_internal_forces_serve_every_variation() {
 }
 
 /// In every variation the wrenches balance, differ as the stiffness has it, and each hand can exert its own.
-fn check_vertices(hold: &Hold, variations: &[Variation], found: &RobustLoadFactor) {
+fn check_vertices(hold: &ContactModel, variations: &[Variation], found: &RobustLoadFactor) {
     // N and N m: residuals of 1e-7 in units of 10 N, times some ten terms and a margin.
     const MARGIN: f64 = 1e-3;
-    let welded = WeldedHold::new(hold).unwrap();
+    let welded = WeldedStiffness::new(hold).unwrap();
     let first_answer = welded.hand_wrenches(&variations[0].load);
     for (variation, wrenches) in variations.iter().zip(&found.hand_wrenches) {
         let varied = varied(hold, variation);
@@ -134,7 +135,7 @@ fn check_vertices(hold: &Hold, variations: &[Variation], found: &RobustLoadFacto
                 + (answers[number].to_vector() - first_answer[number].to_vector()) * found.load_factor;
             assert!((wrench.to_vector() - expected).norm() < MARGIN, "{wrench:?}, expected {expected}");
             // The hand alone, asked for its wrench: does it have the pads and the torques?
-            let alone = Hold {
+            let alone = ContactModel {
                 hands: vec![hand.clone()],
                 weight: Wrench::default(),
                 load: wrench.scaled(-1.0).about(&hand.grasp_point_o),

@@ -17,16 +17,16 @@ use crate::{
     cli::{
         args::RecordChoice,
         exit::CliError,
-        maps::Maps,
         margin,
         pipeline::{self, Run},
+        planners::Planners,
         recording,
     },
     model::{
         plan::Plan,
         scenario::{PlannerKind, Scenario, StabilityKind},
     },
-    planner::{self, PlanOutcome},
+    planner::Outcome,
     report::{
         file,
         reproduce::{FIRST_SEED, Hold},
@@ -120,7 +120,7 @@ impl Done {
 /// Where holds are made and kept.
 pub struct Workshop<'a> {
     robot: &'a Robot,
-    maps: Maps,
+    planners: Planners,
     out: PathBuf,
     program: String,
     record: RecordChoice,
@@ -143,12 +143,33 @@ impl<'a> Workshop<'a> {
         let program = std::env::current_exe()
             .and_then(fs::read)
             .map_err(|error| CliError::Machine(format!("failed to read this program's own file: {error}")))?;
-        Ok(Self { robot, maps: Maps::default(), out: out.to_owned(), program: hex(&Sha256::digest(program)), record })
+        Ok(Self {
+            robot,
+            planners: Planners::default(),
+            out: out.to_owned(),
+            program: hex(&Sha256::digest(program)),
+            record,
+        })
     }
 
     /// Where holds are kept.
     pub fn folder(&self) -> PathBuf {
         self.out.join("work")
+    }
+
+    /// Makes the planner's maps for all jobs whose holds are not kept.
+    pub fn prepare(&self, jobs: &[Job]) {
+        let to_be_planned = jobs.iter().filter(|job| self.kept(job, &self.fingerprint(job)).is_none());
+        self.planners.prepare(&to_be_planned.map(|job| (self.robot, &job.scenario)).collect::<Vec<_>>());
+    }
+
+    /// The hold of a job, if it is kept and needs no new recording.
+    fn kept(&self, job: &Job, fingerprint: &str) -> Option<Hold> {
+        read(&self.path(job), fingerprint).filter(|hold| !self.lacks_recording(job, hold))
+    }
+
+    fn path(&self, job: &Job) -> PathBuf {
+        self.folder().join(job.folder()).join(format!("{}.json", job.stem()))
     }
 
     /// The hold of a job: the one that is kept, or a new one, which is kept.
@@ -157,16 +178,13 @@ impl<'a> Workshop<'a> {
     /// When it cannot be simulated or kept.
     pub fn hold(&self, job: &Job) -> Result<Done, CliError> {
         let fingerprint = self.fingerprint(job);
-        let path = self.folder().join(job.folder()).join(format!("{}.json", job.stem()));
-        if let Some(hold) = read(&path, &fingerprint)
-            && !self.lacks_recording(job, &hold)
-        {
+        if let Some(hold) = self.kept(job, &fingerprint) {
             return Ok(Done { hold, fresh: false });
         }
         let kept = Kept { fingerprint, hold: self.make(job)? };
         // Serialisation fails only for maps with keys that are no strings, and there are none.
         let bytes = serde_json::to_vec(&kept).expect("a hold has only string keys");
-        file::write_whole(&path, &bytes)?;
+        file::write_whole(&self.path(job), &bytes)?;
         Ok(Done { hold: kept.hold, fresh: true })
     }
 
@@ -197,7 +215,7 @@ impl<'a> Workshop<'a> {
     fn make(&self, job: &Job) -> Result<Hold, CliError> {
         let scenario = &job.scenario;
         let start = Instant::now();
-        let outcome = pipeline::timed_plan(scenario, self.robot, &self.maps, &mut planner::nobody)?;
+        let outcome = self.planners.timed_plan(scenario, self.robot, None)?;
         let mut hold = Hold {
             operation: scenario.name.clone(),
             kind: scenario.operation.kind,
@@ -212,14 +230,14 @@ impl<'a> Workshop<'a> {
             simulate_ms: None,
         };
         match outcome {
-            PlanOutcome::Infeasible(why) => hold.infeasible = Some(why.to_string()),
-            PlanOutcome::Found(plan) => {
+            Outcome::Infeasible(why) => hold.infeasible = Some(why.to_string()),
+            Outcome::Found(plan) => {
                 // Without the map, which is made once for all plans.
                 hold.plan_ms = plan.planner.and_then(|planner| planner.wall_ms).unwrap_or(hold.plan_ms);
                 if job.work != Work::Plan {
                     self.simulate(job, &plan, &mut hold)?;
                 }
-                hold.plan = Some(*plan);
+                hold.plan = Some(plan);
             }
         }
         Ok(hold)

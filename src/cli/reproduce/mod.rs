@@ -7,7 +7,6 @@ mod jobs;
 mod sensitivity;
 
 use std::{
-    num::NonZero,
     path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
 };
@@ -18,8 +17,8 @@ use super::{
     exit::{CliError, Exit},
     interrupt, output,
     progress::Progress,
-    run::in_parallel,
     select::Filter,
+    threads,
 };
 use crate::{
     model::{operation::OperationKind, scenario::PlannerKind},
@@ -63,13 +62,10 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let extent = Extent::of(args);
     let tasks = Tasks::new(&operations, &extent);
     let workshop = Workshop::new(&first.robot, &out, args.record)?;
-    let threads = args.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get);
-    let Some(holds) = work_off(&workshop, threads, &tasks.jobs)? else {
+    let Some(holds) = threads::with_threads(args.jobs, || work_off(&workshop, &tasks.jobs))?? else {
         let folder = workshop.folder();
         let folder = folder.display();
-        output::complain(&format!(
-            "stopped: what is done is kept in {folder}, and the same command goes on from there"
-        ));
+        output::message(&format!("stopped: what is done is kept in {folder}, and the same command goes on from there"));
         return Ok(Exit::Interrupted);
     };
     let reproduction = tasks.reproduction(holds, &extent, left_out(args, operations.len()));
@@ -157,11 +153,12 @@ impl Tasks {
 }
 
 /// The holds of all jobs in their order; none when the user asked for an end before all had their turn.
-fn work_off(workshop: &Workshop<'_>, threads: usize, jobs: &[Job]) -> Result<Option<Vec<Hold>>, CliError> {
+fn work_off(workshop: &Workshop<'_>, jobs: &[Job]) -> Result<Option<Vec<Hold>>, CliError> {
     let progress = Progress::new(jobs.len());
     // A full disk is full for all: after the first error nothing more is begun.
     let broken: Mutex<Option<CliError>> = Mutex::new(None);
-    let holds = in_parallel(threads, jobs, |job| {
+    workshop.prepare(jobs);
+    let holds = threads::map_in_parallel(jobs, |job| {
         if interrupt::requested() || broken.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
             return None;
         }

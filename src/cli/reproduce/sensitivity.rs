@@ -6,7 +6,7 @@ use super::jobs::{self, Job, Work};
 use crate::model::{
     frames::rotation_from_xyzw,
     operation::OperationKind,
-    scenario::{Optima, PersonAnswer, Scenario},
+    scenario::{Optima, ResponseKind, Scenario},
 };
 
 /// An assumption that differs.
@@ -40,7 +40,7 @@ const TILT_DEG: f64 = 30.0;
 pub const VARIANTS: [VariantOf; 10] = [
     VariantOf {
         name: "the mean of the person's answers in place of the best",
-        change: |scenario| scenario.comfort.person = PersonAnswer::Average,
+        change: |scenario| scenario.comfort.person = ResponseKind::Mean,
     },
     VariantOf { name: "strength: 5th percentile", change: |scenario| scenario.human.percentile = 5.0 },
     VariantOf { name: "strength: 95th percentile", change: |scenario| scenario.human.percentile = 95.0 },
@@ -131,7 +131,7 @@ mod tests {
         let variant = VARIANTS.iter().find(|variant| variant.name.starts_with("the mean")).unwrap();
         let jobs = variant.jobs(&paper::operations()[16].load().unwrap().scenario, 2);
         assert_eq!(jobs.len(), 5, "three planners and two draws");
-        assert!(jobs.iter().all(|job| job.scenario.comfort.person == PersonAnswer::Average));
+        assert!(jobs.iter().all(|job| job.scenario.comfort.person == ResponseKind::Mean));
     }
 
     #[test]

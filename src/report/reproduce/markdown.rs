@@ -343,7 +343,7 @@ fn mean_answers(text: &mut String, reproduction: &Reproduction) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{model::plan::AverageComfort, report::reproduce::testing::hold};
+    use crate::{model::plan::MeanComfort, report::reproduce::testing::hold};
 
     #[test]
     fn the_best_answer_of_comfort_is_put_beside_the_mean_of_random() {
@@ -352,7 +352,7 @@ mod tests {
         let mut by_mean = holds.clone();
         for hold in &mut by_mean {
             let comfort = hold.plan.as_mut().and_then(|plan| plan.comfort.as_mut()).unwrap();
-            comfort.average = Some(AverageComfort { answers: 2, muscular_regularised: 8.0, peripersonal_m: 0.5 });
+            comfort.average = Some(MeanComfort { responses: 2, muscular_regularised: 8.0, peripersonal_m: 0.5 });
         }
         let variant = |name: &str, holds| Variant { name: name.to_owned(), holds };
         let mut reproduction = Reproduction {

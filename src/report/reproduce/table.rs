@@ -93,7 +93,7 @@ pub fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{model::plan::AverageComfort, report::reproduce::testing::hold};
+    use crate::{model::plan::MeanComfort, report::reproduce::testing::hold};
 
     #[test]
     fn averages_are_normalised_by_the_random_planners() {
@@ -120,7 +120,7 @@ mod tests {
         let mut holds =
             [hold("drill-1", PlannerKind::Comfort, 1, 40.0, 0.5), hold("drill-2", PlannerKind::Comfort, 1, 20.0, 0.75)];
         let comfort = holds[0].plan.as_mut().and_then(|plan| plan.comfort.as_mut()).unwrap();
-        comfort.average = Some(AverageComfort { answers: 3, muscular_regularised: 10.0, peripersonal_m: 0.25 });
+        comfort.average = Some(MeanComfort { responses: 3, muscular_regularised: 10.0, peripersonal_m: 0.25 });
         let rows = rows(holds.iter());
         let row = rows.iter().find(|row| row.planner == PlannerKind::Comfort).unwrap();
         // (10 + 20) / 2; 64 points times (1/4 + 3/4) / 2.

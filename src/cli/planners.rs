@@ -1,0 +1,87 @@
+//! The planners of one command, by robot.
+
+use std::{
+    collections::HashMap,
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    time::Instant,
+};
+
+use super::{exit::CliError, interrupt};
+use crate::{
+    model::{plan::Plan, scenario::Scenario},
+    planner::{Observer, Outcome, Planner},
+    robot::Robot,
+};
+
+/// One planner per robot: scenarios with the same robot share its maps.
+#[derive(Default)]
+pub struct Planners {
+    known: Mutex<Vec<(String, Arc<Planner>)>>,
+    /// Time that the maps of each scenario took to make, ms.
+    map_ms: Mutex<HashMap<String, f64>>,
+}
+
+impl Planners {
+    /// The planner of a robot.
+    pub fn of(&self, robot: &Robot) -> Arc<Planner> {
+        let mut known = lock(&self.known);
+        if let Some((_, planner)) = known.iter().find(|(description, _)| *description == robot.description) {
+            return planner.clone();
+        }
+        let planner = Arc::new(Planner::new(robot));
+        known.push((robot.description.clone(), planner.clone()));
+        planner
+    }
+
+    /// Makes the maps of scenarios before they are planned in parallel, each on all threads. A thread of rayon's pool must not
+    /// wait for a map that another thread makes: while it makes parts of its own map, rayon gives it other work, which may
+    /// need that same map. Stops early after Ctrl-C. A map that cannot be made is left out: the plan that needs it fails.
+    pub fn prepare(&self, scenarios: &[(&Robot, &Scenario)]) {
+        for (robot, scenario) in scenarios {
+            if !interrupt::requested() {
+                let _ = catch_unwind(AssertUnwindSafe(|| self.prepare_one(robot, scenario)));
+            }
+        }
+    }
+
+    fn prepare_one(&self, robot: &Robot, scenario: &Scenario) -> Result<(), CliError> {
+        let start = Instant::now();
+        self.of(robot).prepare(scenario)?;
+        *lock(&self.map_ms).entry(scenario.name.clone()).or_default() += start.elapsed().as_secs_f64() * 1e3;
+        Ok(())
+    }
+
+    /// Plans a scenario and writes into the plan how long that took: its maps, and the search.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn timed_plan<'a>(
+        &self,
+        scenario: &'a Scenario,
+        robot: &Robot,
+        observer: Option<&'a mut Observer<'a>>,
+    ) -> Result<Outcome<Plan>, CliError> {
+        self.prepare_one(robot, scenario)?;
+        let map_ms = lock(&self.map_ms).remove(&scenario.name);
+        let planner = self.of(robot);
+        let start = Instant::now();
+        let search = planner.search(scenario);
+        let outcome = match observer {
+            Some(observer) => search.observer(observer).plan()?,
+            None => search.plan()?,
+        };
+        Ok(outcome.map(|mut plan| {
+            if let Some(record) = &mut plan.planner {
+                record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);
+                record.map_ms = map_ms;
+            }
+            plan
+        }))
+    }
+}
+
+/// The tables stay valid if a thread panics: they only change by whole entries.
+fn lock<T>(table: &Mutex<T>) -> MutexGuard<'_, T> {
+    table.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,80 @@
+//! From a feasible candidate to a verified plan.
+
+use super::{
+    candidate::{Candidate, Placement},
+    evaluate::{self, Evaluator, Feasible},
+    outcome::{PlanError, Rejection},
+    verify::verify,
+};
+use crate::{
+    comfort,
+    model::{
+        FORMAT,
+        plan::{Comfort, HumanPosture, Plan, PlannerRecord},
+        scenario::PlannerSettings,
+    },
+};
+
+/// The plan of a candidate; `None` if its stability cannot be predicted.
+pub fn assemble(evaluator: &mut Evaluator<'_>, found: &Feasible, evaluations: u64) -> Option<Plan> {
+    let Feasible { candidate, configuration, comfort, .. } = found;
+    assemble_placed(evaluator, candidate, &configuration.placement, comfort, evaluations)
+}
+
+/// As [`assemble`], with the poses of board and person given: those that follow from the candidate differ by rounding.
+pub fn assemble_placed(
+    evaluator: &mut Evaluator<'_>,
+    candidate: &Candidate,
+    &Placement { x_wo, x_wb }: &Placement,
+    comfort: &Comfort,
+    evaluations: u64,
+) -> Option<Plan> {
+    let problem = &evaluator.problem;
+    let (scenario, robot) = (problem.scenario, problem.robot);
+    let PlannerSettings { kind, seed, .. } = scenario.planner;
+    let operation = scenario.operation.rolled(candidate.work.roll_rad);
+    let object = evaluate::placed_object(scenario, x_wo);
+    let arms = evaluate::plan_arms(problem, candidate);
+    let stability = evaluator.predict(&arms, &object, &operation)?;
+    Some(Plan {
+        format: FORMAT,
+        name: scenario.name.clone(),
+        robot: robot.robot.description.clone(),
+        operation,
+        object,
+        arms,
+        human: Some(HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad)),
+        comfort: Some(comfort::weighted(*comfort, &scenario.comfort)),
+        stability: Some(stability),
+        planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations }),
+        scenario: Some(scenario.clone()),
+        benchdog: Some(env!("CARGO_PKG_VERSION").into()),
+    })
+}
+
+/// The plan of a candidate if the check of the finished plan finds no flaw. The check takes nothing from the search but the
+/// plan. Rejections are counted.
+///
+/// # Errors
+/// When the scenario's person or tool is invalid.
+pub fn verified(evaluator: &mut Evaluator<'_>, found: &Feasible) -> Result<Option<Plan>, PlanError> {
+    let evaluations = evaluator.stats.candidates();
+    let Some(plan) = assemble(evaluator, found, evaluations) else {
+        evaluator.stats.reject(Rejection::Stability);
+        return Ok(None);
+    };
+    if is_sound(evaluator, &plan)? {
+        return Ok(Some(plan));
+    }
+    evaluator.stats.reject(Rejection::Verification);
+    Ok(None)
+}
+
+/// True if the check of a plan finds no flaw.
+///
+/// # Errors
+/// When the scenario's person or tool is invalid.
+pub fn is_sound(evaluator: &Evaluator<'_>, plan: &Plan) -> Result<bool, PlanError> {
+    let problem = &evaluator.problem;
+    Ok(verify(plan, problem.scenario, &problem.robot.robot)?.is_empty())
+}

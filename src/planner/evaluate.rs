@@ -1,0 +1,239 @@
+//! The evaluation of a candidate: every constraint in order of cost, and the objective.
+
+use nalgebra::Point3;
+
+use super::{
+    candidate::{Candidate, Placement},
+    library::{posture_muscular, within_strength},
+    outcome::Rejection,
+    problem::Problem,
+    stats::SearchStats,
+};
+use crate::{
+    collision::{PersonPart, Scene},
+    comfort,
+    human::CAPSULES,
+    model::{
+        frames::Pose,
+        operation::Operation,
+        plan::{ArmHold, Comfort, MeanComfort, PlacedObject, Stability},
+        scenario::{Scenario, StabilityKind},
+    },
+    statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, StabilityWorkspace},
+};
+
+/// Evaluates candidates of one problem and keeps the statistics of the search.
+pub struct Evaluator<'a> {
+    pub problem: Problem<'a>,
+    pub stats: SearchStats<'a>,
+    stability: StabilityWorkspace,
+}
+
+/// Everything that follows from a candidate's variables by kinematics.
+#[derive(Clone, Debug)]
+pub struct Configuration {
+    pub placement: Placement,
+    /// Poses of the robot's links, W.
+    pub link_poses: Vec<Pose>,
+    /// Capsules of the person, W.
+    pub person: [PersonPart; CAPSULES],
+}
+
+/// A candidate that satisfies every constraint.
+#[derive(Clone, Debug)]
+pub struct Feasible {
+    pub candidate: Candidate,
+    pub configuration: Configuration,
+    pub comfort: Comfort,
+    /// What the search maximises.
+    pub objective: f64,
+    /// Utilisation of the limits of stability: at most 1, see [`Evaluator::utilisation`].
+    pub utilisation: f64,
+}
+
+/// A candidate that violates a constraint, with what was computed before that was found.
+pub struct Rejected {
+    pub why: Rejection,
+    pub candidate: Candidate,
+    pub configuration: Configuration,
+    /// As in [`Feasible`]; zero if stability was not evaluated.
+    pub utilisation: f64,
+}
+
+impl Configuration {
+    /// The configuration of a candidate whose arms have joint angles.
+    pub fn new(problem: &Problem<'_>, candidate: &Candidate) -> Self {
+        let placement = candidate.placement(problem);
+        Self {
+            placement,
+            link_poses: problem.robot.link_poses(&candidate.arms),
+            person: problem.human.capsules_w(&placement.x_wb, &candidate.work.q_h_rad).map(PersonPart::from),
+        }
+    }
+
+    /// The collision scene.
+    pub fn scene<'a>(&'a self, problem: &'a Problem<'_>) -> Scene<'a> {
+        Scene { person: &self.person, ..problem.robot.scene(&self.link_poses, self.placement.x_wo) }
+    }
+}
+
+impl<'a> Evaluator<'a> {
+    /// An evaluator of a problem.
+    pub fn new(problem: Problem<'a>, stats: SearchStats<'a>) -> Self {
+        Self { problem, stats, stability: StabilityWorkspace::new() }
+    }
+
+    /// Tests every constraint, the cheapest first, and computes the objective.
+    pub fn evaluate(&mut self, candidate: Candidate) -> Result<Feasible, Box<Rejected>> {
+        let configuration = Configuration::new(&self.problem, &candidate);
+        if let Err(why) = self.test_geometry(&candidate, &configuration) {
+            return Err(Box::new(Rejected { why, candidate, configuration, utilisation: 0.0 }));
+        }
+        let utilisation = self.utilisation(&candidate, &configuration.placement.x_wo);
+        if utilisation > 1.0 {
+            return Err(Box::new(Rejected { why: Rejection::Stability, candidate, configuration, utilisation }));
+        }
+        let comfort = comfort(&self.problem, &candidate, &configuration);
+        Ok(self.feasible(candidate, configuration, comfort, utilisation))
+    }
+
+    /// Tests every constraint but stability, which costs most.
+    fn test_geometry(&mut self, candidate: &Candidate, configuration: &Configuration) -> Result<(), Rejection> {
+        if !self.stats.may_evaluate() {
+            return Err(Rejection::NotEvaluated);
+        }
+        test_placement(&self.problem, candidate)?;
+        test_collisions(&self.problem, configuration)
+    }
+
+    /// A candidate that passed every test; the observer learns of it.
+    pub fn feasible(
+        &mut self,
+        candidate: Candidate,
+        configuration: Configuration,
+        comfort: Comfort,
+        utilisation: f64,
+    ) -> Feasible {
+        self.stats.found(&comfort);
+        Feasible { candidate, configuration, comfort, objective: comfort.objective, utilisation }
+    }
+
+    /// The share of the limits of stability that a grasp uses, safety factor included: at most 1 if it is stable, infinite if
+    /// there is no equilibrium.
+    pub fn utilisation(&mut self, candidate: &Candidate, x_wo: &Pose) -> f64 {
+        contact_model(&self.problem, candidate, x_wo)
+            .and_then(|model| {
+                let limits = self.problem.stability_limits();
+                self.stability.utilisation(&model, &limits, self.problem.scenario.planner.stability)
+            })
+            // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
+            .unwrap_or(f64::INFINITY)
+    }
+
+    /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
+    /// equilibrium.
+    pub fn local_equilibrium(&self, candidate: &Candidate, x_wo: &Pose) -> Option<LocalEquilibrium> {
+        if self.problem.scenario.planner.stability != StabilityKind::Compliant {
+            return None;
+        }
+        let model = contact_model(&self.problem, candidate, x_wo).ok()?;
+        LocalEquilibrium::new(&model, self.problem.stability_limits().load_factor)
+    }
+
+    /// The predicted stability of a plan's grasp; `None` if there is no equilibrium.
+    pub fn predict(&mut self, arms: &[ArmHold], object: &PlacedObject, operation: &Operation) -> Option<Stability> {
+        let Problem { scenario, robot, .. } = &self.problem;
+        let model = ContactModel::from_plan(&robot.robot, arms, object, operation, scenario.grip.friction).ok()?;
+        self.stability.predict(&model, &scenario.limits).ok()?
+    }
+}
+
+/// Tests what depends on the person and the board's pose alone.
+pub fn test_placement(problem: &Problem<'_>, candidate: &Candidate) -> Result<(), Rejection> {
+    if !problem.robot.domain.contains(&candidate.x_wo(problem)) {
+        return Err(Rejection::BoardPlace);
+    }
+    let q_h_rad = &candidate.work.q_h_rad;
+    let x_bt = problem.human.tool_pose_b(q_h_rad);
+    let direction = problem.scenario.comfort.direction;
+    let muscular = posture_muscular(&problem.human, q_h_rad, &x_bt, &problem.wrench_t, direction);
+    if within_strength(&muscular) { Ok(()) } else { Err(Rejection::Strength) }
+}
+
+/// Tests that all bodies keep their clearances.
+pub fn test_collisions(problem: &Problem<'_>, configuration: &Configuration) -> Result<(), Rejection> {
+    match problem.robot.collision.first_violation(&configuration.scene(problem)) {
+        None => Ok(()),
+        Some(_) => Err(Rejection::Collision),
+    }
+}
+
+/// Both comforts of a candidate, and the objective of the search.
+pub fn comfort(problem: &Problem<'_>, candidate: &Candidate, configuration: &Configuration) -> Comfort {
+    let robot_points_w = comfort::robot_points_w(&problem.robot.robot, &configuration.link_poses);
+    let Placement { x_wo, x_wb } = configuration.placement;
+    let wrench_w = problem.scenario.operation.wrench_w(&x_wo);
+    comfort::of_posture(&problem.human, &problem.objective, &robot_points_w, &x_wb, &candidate.work.q_h_rad, &wrench_w)
+}
+
+/// The query for the person's responses to a grasp; the tool's roll is counted from that of `operation`.
+pub fn response_query<'q>(
+    problem: &'q Problem<'_>,
+    operation: Operation,
+    link_poses: &'q [Pose],
+    x_wo: Pose,
+    robot_points_w: &'q [Point3<f64>],
+) -> comfort::Hold<'q> {
+    comfort::Hold {
+        human: &problem.human,
+        collision: &problem.robot.collision,
+        settings: problem.objective,
+        operation,
+        floor_z_m: problem.robot.robot.floor_z_m,
+        robot_points_w,
+        scene: problem.robot.scene(link_poses, x_wo),
+    }
+}
+
+/// The mean comfort over the person's responses to a candidate's grasp.
+pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComfort> {
+    let Configuration { placement, link_poses, .. } = &found.configuration;
+    let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
+    let operation = problem.scenario.operation.rolled(found.candidate.work.roll_rad);
+    comfort::average(&response_query(problem, operation, link_poses, placement.x_wo, &points_w))
+}
+
+/// The arms of a candidate as a plan lists them.
+pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
+    let scenario = problem.scenario;
+    let arms = problem.robot.arms.iter().zip(&candidate.arms);
+    arms.map(|(arm, own)| ArmHold {
+        name: arm.name.clone(),
+        joints: arm.joints.clone(),
+        q_rad: own.q_rad.clone(),
+        x_og: own.grasp.x_og(scenario.object.size_m),
+        grip_force_n: scenario.grip.force_n,
+    })
+    .collect()
+}
+
+/// The board of a scenario at a pose.
+pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
+    PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo }
+}
+
+/// The contact model of a candidate's grasp.
+pub fn contact_model(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+) -> Result<ContactModel, ContactModelError> {
+    let Scenario { operation, grip, .. } = problem.scenario;
+    let object = placed_object(problem.scenario, *x_wo);
+    let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
+        .iter()
+        .zip(&problem.robot.arms)
+        .map(|(own, arm)| HandModel::from_plan(&problem.robot.robot, &arm.chain, own, &object, grip.friction))
+        .collect();
+    Ok(ContactModel::from_hands(hands?, &object, &operation.rolled(candidate.work.roll_rad)))
+}

@@ -1,0 +1,35 @@
+//! A grasp of the board by all arms of a robot.
+
+use arrayvec::ArrayVec;
+
+use crate::model::{
+    frames::Pose,
+    grasp::{Edge, EdgeGrasp},
+};
+
+/// One arm's grasp and configuration.
+#[derive(Clone, Debug)]
+pub struct ArmGrasp {
+    /// Where the gripper is on the board.
+    pub grasp: EdgeGrasp,
+    /// Joint angles, rad.
+    pub q_rad: Vec<f64>,
+}
+
+/// A pose of the board and the grasps that bring the arms to it.
+#[derive(Clone, Debug)]
+pub struct BoardGrasp {
+    /// Pose of the board in the world.
+    pub x_wo: Pose,
+    /// One entry per arm of the robot.
+    pub arms: Vec<ArmGrasp>,
+}
+
+/// What refinement does not change about a grasp: the edge and the finger axis' sign of each arm. Arms beyond the fourth do
+/// not count.
+pub type GraspPattern = ArrayVec<(Edge, bool), 4>;
+
+/// The pattern of a grasp.
+pub fn pattern(arms: &[ArmGrasp]) -> GraspPattern {
+    arms.iter().take(4).map(|arm| (arm.grasp.edge, arm.grasp.flipped)).collect()
+}

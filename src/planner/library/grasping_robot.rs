@@ -1,0 +1,128 @@
+//! A robot prepared to grasp boards of one size: kinematics, reach maps and collision model.
+
+use super::{
+    grasp::{ArmGrasp, BoardGrasp},
+    reach::ReachMap,
+};
+use crate::{
+    collision::{CollisionModel, Scene},
+    model::{frames::Pose, grasp::EdgeGrasp},
+    planner::domain::{self, SearchDomain},
+    robot::{ArmState, Chain, InverseKinematics, Robot},
+};
+
+/// A robot with its fingers opened to a board's thickness.
+pub struct GraspingRobot {
+    pub robot: Robot,
+    /// Sides of the board, m.
+    pub size_m: [f64; 3],
+    pub arms: Vec<GraspingArm>,
+    /// Where the search looks for poses of the board.
+    pub domain: SearchDomain,
+    pub collision: CollisionModel,
+    /// Of each link the arm that moves it, as an index into `arms`, and the last of the arm's joints before the link.
+    pub moved_by: Vec<Option<(usize, usize)>>,
+    /// The indices of all arms: each of them grasps.
+    grasping: Vec<usize>,
+}
+
+/// An arm of a [`GraspingRobot`].
+pub struct GraspingArm {
+    /// Index into the robot's arms.
+    pub index: usize,
+    pub name: String,
+    pub joints: Vec<String>,
+    pub chain: Chain,
+    pub inverse: InverseKinematics,
+    pub reach: ReachMap,
+    finger_travel_m: [f64; 2],
+}
+
+impl GraspingRobot {
+    /// Prepares a robot for boards with these sides.
+    pub fn new(robot: &Robot, size_m: [f64; 3]) -> Self {
+        let arms = robot.arms.iter().enumerate().map(|(index, arm)| {
+            let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, size_m[2]));
+            let chain = Chain::new(robot, index, finger_travel_m[0]);
+            GraspingArm {
+                index,
+                name: arm.name.clone(),
+                joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
+                inverse: InverseKinematics::for_chain(&chain),
+                reach: ReachMap::new(&chain),
+                chain,
+                finger_travel_m,
+            }
+        });
+        Self {
+            robot: robot.clone(),
+            size_m,
+            arms: arms.collect(),
+            domain: SearchDomain::BAXTER,
+            collision: CollisionModel::new(robot),
+            moved_by: moved_by(robot),
+            grasping: (0..robot.arms.len()).collect(),
+        }
+    }
+
+    /// The poses of all links in the world.
+    pub fn link_poses(&self, arms: &[ArmGrasp]) -> Vec<Pose> {
+        let states: Vec<_> = self
+            .arms
+            .iter()
+            .zip(arms)
+            .map(|(arm, grasp)| ArmState { arm: arm.index, q_rad: &grasp.q_rad, finger_travel_m: arm.finger_travel_m })
+            .collect();
+        self.robot.link_poses(&self.robot.positions(&states))
+    }
+
+    /// The collision scene of robot and board without a person.
+    pub fn scene<'s>(&'s self, link_poses: &'s [Pose], x_wo: Pose) -> Scene<'s> {
+        Scene { link_poses, holding: &self.grasping, board_size_m: self.size_m, x_wo, person: &[] }
+    }
+
+    /// True if the arms and the board are clear of each other.
+    pub fn is_clear(&self, grasp: &BoardGrasp) -> bool {
+        let link_poses = self.link_poses(&grasp.arms);
+        self.collision.first_violation(&self.scene(&link_poses, grasp.x_wo)).is_none()
+    }
+
+    /// Moves the arms with the board to another pose, each by inverse kinematics from its present angles; false if one cannot
+    /// follow.
+    pub fn follow(&self, arms: &mut [ArmGrasp], x_wo: &Pose) -> bool {
+        self.arms.iter().zip(arms).all(|(arm, own)| {
+            let x_wg = x_wo * own.grasp.x_og(self.size_m);
+            let found = arm.inverse.local(&x_wg, &own.q_rad).found();
+            let reached = found.is_some();
+            own.q_rad = found.unwrap_or_default();
+            reached
+        })
+    }
+
+    /// True if the pads of an arm's gripper lie on the board.
+    pub fn pads_on_board(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
+        domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
+    }
+
+    /// See [`domain::pad_margins_m`].
+    pub fn pad_margins_m(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> [f64; 4] {
+        domain::pad_margins_m(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
+    }
+}
+
+/// See [`GraspingRobot::moved_by`].
+fn moved_by(robot: &Robot) -> Vec<Option<(usize, usize)>> {
+    let driven = |joint: usize| {
+        let of_arm =
+            |arm: usize| robot.arms[arm].joints.iter().position(|&own| own == joint).map(|number| (arm, number));
+        (0..robot.arms.len()).find_map(of_arm)
+    };
+    let mut moved_by: Vec<Option<(usize, usize)>> = Vec::with_capacity(robot.links.len());
+    // Parents come before children.
+    for link in &robot.links {
+        let by =
+            link.parent_joint.and_then(|joint| driven(joint).or_else(|| moved_by[robot.joints[joint].parent_link]));
+        moved_by.push(by);
+    }
+    moved_by
+}

@@ -1,0 +1,123 @@
+//! The grasp library: collision-free grasps of boards of one size.
+//!
+//! Whether a robot can grasp a board in some pose depends neither on the person nor on the task, and is the constraint that
+//! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that size: the first
+//! arm's configuration and grasp are drawn, which gives the board's pose; inverse kinematics brings the other arms there.
+
+use nalgebra::Point3;
+use rand_pcg::Pcg64;
+
+use super::{
+    grasp::{ArmGrasp, BoardGrasp},
+    grasping_robot::{GraspingArm, GraspingRobot},
+};
+use crate::{
+    comfort,
+    model::{
+        frames::Pose,
+        grasp::{Edge, EdgeGrasp},
+    },
+    planner::{
+        domain::{self, draw_edge, draw_other_edge},
+        params::library::{
+            COARSE_STRIDE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, GRASP_ATTEMPTS, GRASPS, HOPELESS_SHARE, SEED,
+        },
+    },
+    robot::Robot,
+};
+
+/// Collision-free grasps of a robot for boards of one size. It depends on nothing else.
+pub struct GraspLibrary {
+    /// The robot, prepared for boards of that size.
+    pub robot: GraspingRobot,
+    /// The grasps.
+    pub entries: Vec<LibraryEntry>,
+    /// Number of draws that the entries took.
+    pub draws: u64,
+}
+
+/// A grasp of a library, with what screening asks about it.
+#[derive(Clone, Debug)]
+pub struct LibraryEntry {
+    pub grasp: BoardGrasp,
+    /// The robot's points of the peripersonal metric, W.
+    pub robot_points_w: Vec<Point3<f64>>,
+    /// Some of them, for a first ranking.
+    pub coarse_points_w: Vec<Point3<f64>>,
+}
+
+impl LibraryEntry {
+    /// An entry from a grasp and the poses of the robot's links in it.
+    pub fn new(robot: &GraspingRobot, grasp: BoardGrasp, link_poses: &[Pose]) -> Self {
+        let robot_points_w = comfort::robot_points_w(&robot.robot, link_poses);
+        let coarse_points_w = robot_points_w.iter().step_by(COARSE_STRIDE).copied().collect();
+        Self { grasp, robot_points_w, coarse_points_w }
+    }
+}
+
+impl GraspLibrary {
+    /// The library of a robot for boards with these sides, m; it has fewer than the usual number of entries where grasps are
+    /// rare.
+    pub fn new(robot: &Robot, size_m: [f64; 3]) -> Self {
+        let robot = GraspingRobot::new(robot, size_m);
+        let mut random = Pcg64::new(SEED, 0);
+        let mut entries = Vec::with_capacity(GRASPS);
+        let mut draws = 0;
+        while entries.len() < GRASPS && draws < max_draws(entries.len()) {
+            draws += 1;
+            entries.extend(draw_entry(&robot, &mut random));
+        }
+        Self { robot, entries, draws }
+    }
+}
+
+/// The search for entries ends sooner if nothing at all was found.
+fn max_draws(found: usize) -> u64 {
+    (DRAWS_PER_GRASP * if found == 0 { GRASPS / HOPELESS_SHARE } else { GRASPS }) as u64
+}
+
+fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Option<LibraryEntry> {
+    let (first, others) = robot.arms.split_first()?;
+    let edge = draw_edge(random);
+    let grasp = draw_grasp(robot, first, edge, |_| true, random)?;
+    let x_go = grasp.x_og(robot.size_m).inverse();
+    let in_domain = |x_wo: &Pose| robot.domain.contains(x_wo);
+    let (q_rad, x_wo) =
+        (0..FIRST_ARM_ATTEMPTS).find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))?;
+    let mut arms = vec![ArmGrasp { grasp, q_rad }];
+    for arm in others {
+        let edge = draw_other_edge(edge, random);
+        arms.push(draw_arm_grasp(robot, arm, edge, &x_wo, random)?);
+    }
+    let link_poses = robot.link_poses(&arms);
+    let collides = robot.collision.first_violation(&robot.scene(&link_poses, x_wo)).is_some();
+    (!collides).then(|| LibraryEntry::new(robot, BoardGrasp { x_wo, arms }, &link_poses))
+}
+
+/// A grasp of one arm on an edge of a board at a known pose, with a configuration; `None` if no drawn grasp is reached.
+pub fn draw_arm_grasp(
+    robot: &GraspingRobot,
+    arm: &GraspingArm,
+    edge: Edge,
+    x_wo: &Pose,
+    random: &mut Pcg64,
+) -> Option<ArmGrasp> {
+    let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
+    let grasp = draw_grasp(robot, arm, edge, near, random)?;
+    let x_wg = x_wo * grasp.x_og(robot.size_m);
+    let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
+    Some(ArmGrasp { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
+}
+
+/// A grasp on an edge with the pads on the board whose pose X_OG is accepted.
+pub fn draw_grasp(
+    robot: &GraspingRobot,
+    arm: &GraspingArm,
+    edge: Edge,
+    accepts: impl Fn(&Pose) -> bool,
+    random: &mut Pcg64,
+) -> Option<EdgeGrasp> {
+    (0..GRASP_ATTEMPTS)
+        .map(|_| domain::draw_grasp(edge, robot.size_m, random))
+        .find(|grasp| robot.pads_on_board(arm, grasp) && accepts(&grasp.x_og(robot.size_m)))
+}

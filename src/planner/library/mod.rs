@@ -1,0 +1,18 @@
+//! What a robot can grasp and which postures suit a person, computed once for many plans.
+//!
+//! Nothing here knows the task: a grasp library depends on the robot and the board's size alone, a posture map on the
+//! person, the tool and its load. Candidates are pairs of the two ([`super::screen`]).
+
+mod direction;
+mod grasp;
+mod grasping_robot;
+mod grasps;
+mod postures;
+mod reach;
+mod resample;
+
+pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, pattern};
+pub use grasping_robot::GraspingRobot;
+pub use grasps::{GraspLibrary, LibraryEntry, draw_grasp};
+pub use postures::{COARSE_POINTS, MEDIUM_POINTS, Posture, PostureLoad, PostureMap, posture_muscular, within_strength};
+pub use resample::resample;

@@ -1,0 +1,176 @@
+//! Resamples grasps for boards oriented like given ones.
+//!
+//! What is comfortable for the person fixes the board's height and its tilt against the vertical. It leaves open where the
+//! board is, its heading, and the grasp, and good choices of these are rare. So boards with the height and tilt of good
+//! candidates are put at random places of the search domain, and grasps are drawn for every arm by itself. Few are reached;
+//! those are combined with all reached grasps of the other arms, so some dozen draws give some dozen grasps.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+
+use super::{
+    grasp::{ArmGrasp, BoardGrasp, pattern},
+    grasping_robot::{GraspingArm, GraspingRobot},
+    grasps::{LibraryEntry, draw_arm_grasp},
+};
+use crate::{
+    collision::{Body, Violation},
+    model::{frames::Pose, grasp::Edge},
+    planner::{
+        domain::{SearchDomain, draw_edge, uniform},
+        params::library::{RESAMPLED_GRASPS, RESAMPLED_PER_PATTERN},
+    },
+};
+
+/// Grasps of `count` boards with the height and tilt of the given ones; boards outside the search domain have none. The same
+/// arguments give the same grasps, whatever the number of threads.
+pub fn resample(robot: &GraspingRobot, boards: &[Pose], count: usize, [seed, pass]: [u64; 2]) -> Vec<LibraryEntry> {
+    if boards.is_empty() {
+        return Vec::new();
+    }
+    let of_board = |number: usize| {
+        let stream = (u128::from(pass) << 64) + number as u128;
+        let mut random = Pcg64::new(u128::from(seed), stream);
+        let x_wo = moved(&boards[number % boards.len()], &robot.domain, &mut random);
+        if robot.domain.contains(&x_wo) { grasps_of_board(robot, &x_wo, &mut random) } else { Vec::new() }
+    };
+    (0..count).into_par_iter().flat_map_iter(of_board).collect()
+}
+
+/// A board turned about the vertical and moved anywhere in the domain at its own height.
+fn moved(x_wo: &Pose, domain: &SearchDomain, random: &mut Pcg64) -> Pose {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), uniform(random, -PI, PI));
+    let [x_m, y_m] = [domain.x_m, domain.y_m].map(|[low, high]| uniform(random, low, high));
+    Isometry3::from_parts(Vector3::new(x_m, y_m, x_wo.translation.z).into(), turn * x_wo.rotation)
+}
+
+/// Collision-free grasps of a board at a pose.
+fn grasps_of_board(robot: &GraspingRobot, x_wo: &Pose, random: &mut Pcg64) -> Vec<LibraryEntry> {
+    let reached: Vec<_> = robot.arms.iter().map(|arm| reached_grasps(robot, arm, x_wo, random)).collect();
+    // Grasps that collide with the board or the robot's own body, whatever the other arms do.
+    let mut colliding: Vec<Vec<bool>> = reached.iter().map(|grasps| vec![false; grasps.len()]).collect();
+    let mut entries: Vec<LibraryEntry> = Vec::new();
+    let mut patterns = Vec::new();
+    for numbers in combinations(&reached) {
+        if numbers.iter().zip(&colliding).any(|(&number, colliding)| colliding[number]) {
+            continue;
+        }
+        let arms: Vec<ArmGrasp> =
+            numbers.iter().zip(&reached).map(|(&number, grasps)| grasps[number].clone()).collect();
+        let pattern = pattern(&arms);
+        if patterns.iter().filter(|other| **other == pattern).count() >= RESAMPLED_PER_PATTERN {
+            continue;
+        }
+        let link_poses = robot.link_poses(&arms);
+        match robot.collision.first_violation(&robot.scene(&link_poses, *x_wo)) {
+            None => {
+                patterns.push(pattern);
+                entries.push(LibraryEntry::new(robot, BoardGrasp { x_wo: *x_wo, arms }, &link_poses));
+            }
+            Some(violation) => {
+                if let [arm] = arms_of(robot, &violation)[..] {
+                    colliding[arm][numbers[arm]] = true;
+                }
+            }
+        }
+    }
+    entries
+}
+
+/// The drawn grasps of one arm that it reaches, with configurations.
+fn reached_grasps(robot: &GraspingRobot, arm: &GraspingArm, x_wo: &Pose, random: &mut Pcg64) -> Vec<ArmGrasp> {
+    let draw = |_| {
+        let edge = draw_edge(random);
+        draw_arm_grasp(robot, arm, edge, x_wo, random)
+    };
+    (0..RESAMPLED_GRASPS).filter_map(draw).collect()
+}
+
+/// Every choice of one grasp per arm in which all edges are the first one's or opposite to it
+/// (docs/method.md#25-edge-grasps), as indices.
+fn combinations(reached: &[Vec<ArmGrasp>]) -> Vec<Vec<usize>> {
+    let mut chosen = vec![Vec::new()];
+    for grasps in reached {
+        let longer = |numbers: &Vec<usize>| {
+            let first = numbers.first().map(|&first| reached[0][first].grasp.edge);
+            let fits = |edge: Edge| first.is_none_or(|first| edge == first || edge == first.turned(2));
+            let fitting = grasps.iter().enumerate().filter(|(_, arm)| fits(arm.grasp.edge));
+            fitting.map(|(number, _)| [&numbers[..], &[number]].concat()).collect::<Vec<_>>()
+        };
+        chosen = chosen.iter().flat_map(longer).collect();
+    }
+    chosen
+}
+
+/// The arms that take part in a violation.
+fn arms_of(robot: &GraspingRobot, violation: &Violation) -> Vec<usize> {
+    let mut arms: Vec<_> = violation
+        .bodies
+        .iter()
+        .filter_map(|body| match *body {
+            Body::Link(link) => robot.moved_by[link].map(|(arm, _)| arm),
+            Body::Board | Body::Person(_) => None,
+        })
+        .collect();
+    arms.dedup();
+    arms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{planner::library::GraspLibrary, scenario::paper};
+
+    fn library() -> GraspLibrary {
+        let loaded = paper::operations()[0].load().unwrap();
+        GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m)
+    }
+
+    #[test]
+    fn every_grasp_is_of_a_similar_board_is_reached_and_collides_with_nothing() {
+        let GraspLibrary { robot, entries, .. } = library();
+        let boards: Vec<_> = entries.iter().take(20).map(|entry| entry.grasp.x_wo).collect();
+        let found = resample(&robot, &boards, 200, [1, 1]);
+        assert!(found.len() > 20, "{}", found.len());
+        for LibraryEntry { grasp: BoardGrasp { x_wo, arms }, .. } in &found {
+            let similar = |board: &Pose| {
+                let up = |pose: &Pose| pose.rotation.inverse() * Vector3::z();
+                (board.translation.z - x_wo.translation.z).abs() < 1e-12 && (up(board) - up(x_wo)).norm() < 1e-12
+            };
+            assert!(boards.iter().any(similar));
+            assert!(robot.domain.contains(x_wo));
+            for (arm, own) in robot.arms.iter().zip(arms) {
+                let missed = arm.chain.gripper_pose(&own.q_rad).inverse() * (x_wo * own.grasp.x_og(robot.size_m));
+                // The tolerance of docs/method.md#34-constraints: 1e-6 m and rad.
+                assert!(missed.translation.vector.norm() < 1e-6 && missed.rotation.angle() < 1e-6);
+                assert!(robot.pads_on_board(arm, &own.grasp));
+            }
+            let [left, right] = [0, 1].map(|arm: usize| arms[arm].grasp.edge);
+            assert!(left == right || left == right.turned(2));
+            let link_poses = robot.link_poses(arms);
+            assert!(robot.collision.first_violation(&robot.scene(&link_poses, *x_wo)).is_none());
+        }
+        // Both edge patterns occur.
+        let same =
+            found.iter().filter(|entry| entry.grasp.arms[0].grasp.edge == entry.grasp.arms[1].grasp.edge).count();
+        assert!(same > 0 && same < found.len());
+    }
+
+    #[test]
+    fn the_number_of_threads_does_not_change_the_grasps() {
+        let GraspLibrary { robot, entries, .. } = library();
+        let boards = [entries[0].grasp.x_wo];
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let found = pool.install(|| resample(&robot, &boards, 60, [3, 2]));
+            found.iter().map(|entry| format!("{:?}", entry.grasp)).collect::<Vec<_>>()
+        };
+        let one = with(1);
+        assert!(!one.is_empty());
+        assert_eq!(one, with(3));
+        assert!(resample(&robot, &[], 60, [3, 2]).is_empty());
+    }
+}

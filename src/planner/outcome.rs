@@ -1,0 +1,100 @@
+//! What a search returns: what it found, or why it found nothing.
+
+use crate::human::HumanError;
+
+/// The result of a search.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use]
+pub enum Outcome<T> {
+    /// What was searched for; it satisfies every constraint.
+    Found(T),
+    /// No candidate satisfied every constraint.
+    Infeasible(Infeasible),
+}
+
+impl<T> Outcome<T> {
+    /// Maps what was found.
+    pub fn map<U>(self, of: impl FnOnce(T) -> U) -> Outcome<U> {
+        match self {
+            Self::Found(found) => Outcome::Found(of(found)),
+            Self::Infeasible(why) => Outcome::Infeasible(why),
+        }
+    }
+
+    /// What was found, or `None`.
+    pub fn found(self) -> Option<T> {
+        match self {
+            Self::Found(found) => Some(found),
+            Self::Infeasible(_) => None,
+        }
+    }
+}
+
+/// How often each constraint rejected a candidate.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Infeasible {
+    /// Number of candidates.
+    pub candidates: u64,
+    /// Each constraint that rejected candidates, with their number, in descending order.
+    pub removed: Vec<(&'static str, u64)>,
+}
+
+impl std::fmt::Display for Infeasible {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "none of {} candidates kept every constraint", self.candidates)?;
+        for (index, (what, count)) in self.removed.iter().enumerate() {
+            let share = 100.0 * *count as f64 / self.candidates as f64;
+            write!(f, "{} {share:.0} % {what}", if index == 0 { ":" } else { "," })?;
+        }
+        Ok(())
+    }
+}
+
+/// Why a scenario cannot be planned at all.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// The scenario's person or tool is invalid.
+    #[error("{0}")]
+    Person(#[from] HumanError),
+    /// A circle was asked for, and the operation is not a cut along one about the board's centre.
+    #[error("the operation is not a cut along a circle about the board's centre")]
+    NoCircle,
+}
+
+/// The first constraint that a candidate violates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rejection {
+    /// The board is outside the search domain, or its worked face points away from the person's side.
+    BoardPlace,
+    /// A joint of the person needs more than its strength.
+    Strength,
+    /// The person cannot bring the tool to its pose.
+    PersonReach,
+    /// An arm of the robot cannot bring its gripper to the grasp.
+    RobotReach,
+    /// Two bodies touch or are closer than their clearance.
+    Collision,
+    /// The grasp does not resist the load.
+    Stability,
+    /// The check of the finished plan found a flaw.
+    Verification,
+    /// The candidate was not evaluated: the limit of evaluations was reached, or the search was stopped.
+    NotEvaluated,
+}
+
+impl Rejection {
+    /// The constraint in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BoardPlace => "board outside the search domain",
+            Self::Strength => "person's strength",
+            Self::PersonReach => "human reach",
+            Self::RobotReach => "robot reach",
+            Self::Collision => "collision or too close",
+            Self::Stability => "stability",
+            Self::Verification => "the check of the finished plan",
+            Self::NotEvaluated => "not evaluated",
+        }
+    }
+}

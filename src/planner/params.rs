@@ -1,0 +1,335 @@
+//! Every number of the search, with its reason.
+//!
+//! The search is counted in candidates, never in time, so a plan does not depend on the speed of the machine. Physical
+//! limits are not here: they are in the scenario, in [`super::domain`] (where boards and grasps are sampled), or in the data
+//! files of robot and person.
+
+use crate::model::scenario::Budget;
+
+/// Safety factor on the compliant load factor: a planned grasp must resist this multiple of what the limits ask for
+/// (docs/method.md#610-safety-factor). The prediction assumes small displacements and evenly pressed pads; over the 100
+/// grasps of `results/` the simulated failing load is 0.95 to 1.10 of it, so the factor is about as large as the error.
+pub const COMPLIANT_SAFETY_FACTOR: f64 = 1.1;
+
+/// Numbers of the grasp library ([`super::library`]).
+pub mod library {
+    /// Grasps of a library: enough that each of the usual orientations of a board has some dozen.
+    pub const GRASPS: usize = 4_000;
+    /// Seed of the library; it does not depend on the scenario.
+    pub const SEED: u128 = 0x0b0a_7d00_ba4c_0001;
+    /// Attempts to draw a gripper's grasp whose pads are on the board.
+    pub const GRASP_ATTEMPTS: usize = 12;
+    /// Configurations of the first arm that are tried for a grasp.
+    pub const FIRST_ARM_ATTEMPTS: usize = 200;
+    /// Draws per grasp that is wanted, at most.
+    pub const DRAWS_PER_GRASP: usize = 200;
+    /// The share of those draws after which the search is given up if nothing at all was found.
+    pub const HOPELESS_SHARE: usize = 20;
+    /// Probability that a further gripper holds the edge opposite to the first one's instead of the same edge.
+    pub const OPPOSITE_EDGE: f64 = 0.5;
+    /// Every n-th of the robot's points is in the coarse point set.
+    pub const COARSE_STRIDE: usize = 3;
+
+    /// Grasps that are drawn for each arm on a resampled board.
+    pub const RESAMPLED_GRASPS: usize = 40;
+    /// Grasps of one pattern that are kept of a resampled board.
+    pub const RESAMPLED_PER_PATTERN: usize = 2;
+
+    /// Random configurations of a reach map: about ten per occupied cell of Baxter's arms.
+    pub const REACH_SAMPLES: usize = 24_000;
+    /// Configurations that a cell of a reach map keeps as seeds.
+    pub const REACH_SEEDS: usize = 4;
+    /// Side of a cell of a reach map, m.
+    pub const REACH_CELL_M: f64 = 0.1;
+    /// Direction cells along a side of each cube face: cells of about 30 degrees.
+    pub const REACH_DIRECTIONS: usize = 3;
+    /// Seed of the reach maps; it does not depend on the scenario.
+    pub const REACH_SEED: u128 = 0x05ee_d0fa_11ab_0a2d;
+
+    /// Height of a cell of the posture map, m.
+    pub const POSTURE_CELL_M: f64 = 0.06;
+    /// Direction cells along a side of each cube face: cells of about 18 degrees.
+    pub const POSTURE_DIRECTIONS: usize = 5;
+    /// Rings about the tool's axis, where its roll is free: 12 degrees each.
+    pub const POSTURE_RINGS: usize = 15;
+    /// Heights of the tool tip above the floor that are mapped, m: beyond any person's reach.
+    pub const POSTURE_HEIGHT_M: f64 = 3.0;
+}
+
+/// Numbers of screening and of the warm starts.
+pub mod screening {
+    /// Pairs that are ranked by the medium point sets, per pair that is evaluated.
+    pub const SECOND_RANKING: usize = 3;
+    /// Transferred warm starts that are repaired, per start that is wanted.
+    pub const REPAIRS_PER_START: usize = 3;
+    /// Starts of one grasp pattern among the transferred warm starts.
+    pub const STARTS_PER_PATTERN: usize = 3;
+    /// Grasps that are compared by their mean response: each takes seconds where the tool's roll is free.
+    pub const MEAN_RESPONSES: usize = 4;
+    /// Draws of the random planner before it gives up.
+    pub const RANDOM_DRAWS: u64 = 2_000_000;
+}
+
+/// Numbers of the warm starts ([`super::warm_starts`]).
+pub mod warm_starts {
+    /// Tool directions within half a turn for which a family is solved, where the tool's roll is not free.
+    pub const DIRECTIONS: usize = 8;
+    /// Solutions that are kept of each solved task.
+    pub const KEPT: usize = 6;
+    /// Of these, at most this many have the same pattern but for a turn of the board.
+    pub const KEPT_PER_PATTERN: usize = 2;
+    /// Two solutions of one pattern are the same local optimum if their objectives differ by less than this share.
+    pub const SAME_OPTIMUM: f64 = 1e-3;
+    /// Poses and wrenches of a task family are rounded to this unit (m, N, N m or 1), so that tasks that differ by rounding
+    /// share a family.
+    pub const ROUNDING_UNIT: f64 = 1e-9;
+    /// Tool positions of a family along and across the tool's direction are rounded to this, m: near enough for a transfer.
+    pub const PLACE_UNIT_M: f64 = 0.04;
+    /// If the tool's x axis has less than this share of its length in the board's plane, its y axis gives the direction.
+    pub const LEVEL: f64 = 1e-3;
+}
+
+/// Numbers of the refinement ([`super::refine`]).
+pub mod refine {
+    /// Scale of the person's joint angles and heading: a step of 1 is this many rad.
+    pub const PERSON_RAD: f64 = 0.15;
+    /// Scale of the place of board and person, m.
+    pub const PLACE_M: f64 = 0.05;
+    /// Scale of the tool's roll, rad.
+    pub const ROLL_RAD: f64 = 0.3;
+    /// Scales of a grasp: along the edge, m; depth, m; angle, rad.
+    pub const GRASP: [f64; 3] = [0.04, 0.008, 0.15];
+    /// Scale of an arm's redundancy: length of the joints' motion, rad.
+    pub const REDUNDANCY_RAD: f64 = 0.3;
+    /// Damping of the pseudo-inverse of an arm's Jacobian, which bounds the joint rates near a singularity.
+    pub const DAMPING: f64 = 1e-6;
+    /// Step of forward differences, in units of the scales.
+    pub const DIFFERENCE: f64 = 1e-5;
+    /// Step of the differences of the stability utilisation: well above the tolerance of its solvers.
+    pub const STABILITY_DIFFERENCE: f64 = 2e-3;
+
+    /// Half the side of the trust region at the start, in units of the scales.
+    pub const START_RADIUS: f64 = 1.0;
+    /// Range of the trust region.
+    pub const RADIUS_RANGE: [f64; 2] = [2e-3, 2.0];
+    /// Share of the predicted gain above which the trust region grows.
+    pub const GOOD: f64 = 0.7;
+    /// Share of the predicted gain below which it shrinks.
+    pub const POOR: f64 = 0.25;
+    /// Factor by which the trust region shrinks.
+    pub const SHRINK: f64 = 0.4;
+    /// Refinement ends when the predicted gain is below this share of the objective.
+    pub const LEAST_GAIN: f64 = 1e-4;
+    /// Second-order corrections of a step that violates a constraint.
+    pub const CORRECTIONS: usize = 2;
+    /// Repair steps after which a violating candidate is given up.
+    pub const REPAIR_STEPS: usize = 4;
+
+    /// Pairs of bodies farther apart than this beyond their clearance are no constraint of a step, m.
+    pub const NEAR_M: f64 = 0.06;
+    /// Margin that a step keeps beyond every clearance, m: an exact test follows.
+    pub const CLEARANCE_MARGIN_M: f64 = 1e-5;
+    /// The same for every other constraint, in its own unit.
+    pub const MARGIN: f64 = 1e-7;
+    /// Utilisation of stability below which it is no constraint of a step.
+    pub const RELAXED_UTILISATION: f64 = 0.8;
+    /// Utilisation of stability that a step may predict.
+    pub const FULL_UTILISATION: f64 = 0.999;
+}
+
+/// Numbers of the search for several plans ([`super::select`]).
+pub mod select {
+    /// Starts of the search per plan that is wanted: neighbouring starts lead to the same optimum.
+    pub const STARTS_PER_PLAN: usize = 4;
+    /// Shares of the peripersonal comfort in the sweep of a Pareto front, besides the scenario's own: denser towards both
+    /// ends, where a little of one comfort buys much of the other.
+    pub const FRONT_SHARES: [f64; 13] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0];
+}
+
+/// Numbers of the search for a whole circle ([`super::path`]).
+pub mod path {
+    /// Postures of the map from which an exact response is searched for.
+    pub const RESPONSE_STARTS: usize = 3;
+    /// Grasps that are evaluated exactly, per start of a plan's search.
+    pub const EVALUATED_PER_START: usize = 4;
+    /// Boards of the best estimates that are resampled.
+    pub const RESAMPLED_BOARDS: usize = 80;
+    /// Random steps of a local search, per step of the budget.
+    pub const TRIES_PER_STEP: usize = 8;
+    /// Largest random step of the board: shift, m.
+    pub const SHIFT_M: f64 = 0.06;
+    /// Largest random step of the board: turn, rad.
+    pub const TURN_RAD: f64 = 0.25;
+    /// Largest random step of a grasp: along the edge, m; depth, m; angle, rad.
+    pub const GRASP: [f64; 3] = [0.04, 0.01, 0.2];
+    /// Largest random step of an arm's joints before inverse kinematics, rad.
+    pub const JOINTS_RAD: f64 = 0.2;
+    /// Growth of the step after an improvement.
+    pub const WIDER: f64 = 1.3;
+    /// Shrinkage of the step after a failure.
+    pub const NARROWER: f64 = 0.96;
+
+    /// Board poses of a tree.
+    pub const TREE_POSES: usize = 48;
+    /// Draws per pose of a tree.
+    pub const DRAWS_PER_POSE: usize = 4;
+    /// Largest move from one pose of a tree to the next: shift, m.
+    pub const TREE_SHIFT_M: f64 = 0.12;
+    /// ... tilt of the board, rad.
+    pub const TREE_TILT_RAD: f64 = 0.35;
+    /// ... turn in its plane, rad.
+    pub const TREE_TURN_RAD: f64 = 0.8;
+    /// Random changes of a waypoint's pose in the final improvement.
+    pub const CHANGES: usize = 12;
+    /// Their size as a share of a tree's move.
+    pub const CHANGE: f64 = 0.25;
+    /// Value of covering a point: more than any comfort, so that coverage comes first.
+    pub const COVERED: f64 = 1e6;
+    /// Cost per rad of the joint that moves most: breaks ties in favour of less motion.
+    pub const COST_PER_RAD: f64 = 0.01;
+
+    /// Largest step of a motion test in any joint or in the board's rotation, rad: 2 degrees.
+    pub const STEP_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
+    /// Largest step of a motion test in the board's centre, m.
+    pub const STEP_M: f64 = 0.01;
+    /// Largest joint step after projection onto the grasps, rad: anything longer is a jump to another configuration.
+    pub const JUMP_RAD: f64 = 3.0 * STEP_RAD;
+}
+
+/// How much work a search may do.
+#[derive(Clone, Debug)]
+pub struct SearchBudget {
+    /// Postures of the person's arm that are drawn for the posture map.
+    pub postures: usize,
+    /// The best of them that each cell of the map keeps.
+    pub postures_per_cell: usize,
+    /// Pairs of a grasp and a posture that are aligned and evaluated, at most.
+    pub evaluated_pairs: usize,
+    /// Feasible pairs that refinement starts from.
+    pub starts: usize,
+    /// At most this many of them have the same grasp pattern.
+    pub starts_per_pattern: usize,
+    /// Rounds of refinement (successive halving).
+    pub rounds: Vec<RefinementRound>,
+    /// Starts that are taken from the warm starts.
+    pub warm_starts: usize,
+    /// The rounds when all starts are warm; `None` if screening adds further starts.
+    pub warm_rounds: Option<Vec<RefinementRound>>,
+    /// The search for a whole circle.
+    pub path: PathBudget,
+}
+
+/// How much work the search for a whole circle may do.
+#[derive(Clone, Copy, Debug)]
+pub struct PathBudget {
+    /// Resampled boards.
+    pub resampled_boards: usize,
+    /// Estimates whose stability is computed.
+    pub estimates: usize,
+    /// Local searches.
+    pub local_searches: usize,
+    /// Steps of each local search.
+    pub steps: usize,
+}
+
+/// One round of refinement.
+#[derive(Clone, Copy, Debug)]
+pub struct RefinementRound {
+    /// The best candidates of the round before that take part.
+    pub candidates: usize,
+    /// Steps of each.
+    pub steps: usize,
+}
+
+fn rounds(rounds: &[[usize; 2]]) -> Vec<RefinementRound> {
+    rounds.iter().map(|&[candidates, steps]| RefinementRound { candidates, steps }).collect()
+}
+
+impl SearchBudget {
+    /// The numbers of a scenario's budget.
+    pub fn of(budget: Budget) -> Self {
+        match budget {
+            Budget::Fast => Self {
+                postures: 100_000,
+                postures_per_cell: 4,
+                evaluated_pairs: 400,
+                starts: 8,
+                starts_per_pattern: 2,
+                rounds: rounds(&[[8, 6], [3, 10], [1, 20]]),
+                warm_starts: 0,
+                warm_rounds: None,
+                path: PathBudget { resampled_boards: 200, estimates: 200, local_searches: 1, steps: 25 },
+            },
+            Budget::Default => Self {
+                postures: 100_000,
+                postures_per_cell: 4,
+                evaluated_pairs: 1_500,
+                starts: 24,
+                starts_per_pattern: 3,
+                rounds: rounds(&[[24, 6], [12, 8], [2, 25]]),
+                warm_starts: 10,
+                warm_rounds: Some(rounds(&[[10, 4], [4, 8], [1, 25]])),
+                path: PathBudget { resampled_boards: 2_000, estimates: 1_500, local_searches: 3, steps: 30 },
+            },
+            Budget::Exhaustive => Self {
+                postures: 400_000,
+                postures_per_cell: 40,
+                evaluated_pairs: 50_000,
+                starts: 400,
+                starts_per_pattern: 400,
+                rounds: rounds(&[[440, 40], [60, 100]]),
+                warm_starts: 40,
+                warm_rounds: None,
+                path: PathBudget { resampled_boards: 10_000, estimates: 10_000, local_searches: 60, steps: 100 },
+            },
+        }
+    }
+}
+
+/// How much work the warm starts of a task family may take.
+#[derive(Clone, Debug)]
+pub struct WarmStartBudget {
+    /// Budget of each task in the first pass.
+    pub first: SearchBudget,
+    /// Budget of each task in later passes, which start from the solutions so far.
+    pub later: SearchBudget,
+    /// Passes over all tasks of the family: a solution of one task helps its neighbours in the next pass.
+    pub passes: u64,
+    /// Boards that are resampled before each later pass.
+    pub resampled_boards: usize,
+}
+
+impl WarmStartBudget {
+    /// The numbers of a scenario's budget; `None` if it uses no warm starts.
+    pub fn of(budget: Budget) -> Option<Self> {
+        let plan = SearchBudget::of(budget);
+        match budget {
+            Budget::Fast => None,
+            Budget::Default => {
+                let later = SearchBudget {
+                    evaluated_pairs: 4_000,
+                    starts: 48,
+                    starts_per_pattern: 2,
+                    rounds: rounds(&[[56, 8], [24, 30]]),
+                    warm_starts: 8,
+                    ..plan
+                };
+                let first =
+                    SearchBudget { starts: 16, rounds: rounds(&[[16, 8], [6, 20]]), warm_starts: 0, ..later.clone() };
+                Some(Self { first, later, passes: 3, resampled_boards: 1_000 })
+            }
+            Budget::Exhaustive => {
+                let later = SearchBudget {
+                    evaluated_pairs: 20_000,
+                    starts: 200,
+                    starts_per_pattern: 10,
+                    rounds: rounds(&[[240, 15], [60, 60]]),
+                    warm_starts: 40,
+                    ..plan
+                };
+                let first = SearchBudget { rounds: rounds(&[[200, 15], [60, 60]]), warm_starts: 0, ..later.clone() };
+                Some(Self { first, later, passes: 4, resampled_boards: 10_000 })
+            }
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! How well a grasp covers the points of a circle.
+//!
+//! First an estimate by the posture map, in microseconds; then exactly: the grasp must be stable under the point's load, and
+//! the person's best response near the most promising postures is searched for. All 16 exact responses of a grasp take some
+//! tenths of a second.
+
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use rand_pcg::Pcg64;
+
+use super::super::{
+    assemble::{assemble_placed, is_sound},
+    candidate::{Candidate, Placement, WorkPose},
+    evaluate::{self, Evaluator},
+    library::{BoardGrasp, GraspLibrary, Posture, PostureMap},
+    outcome::PlanError,
+    params::{SearchBudget, path::RESPONSE_STARTS},
+    problem::{self, Problem},
+    screen::standing_pose,
+    stats::{Observer, Progress, SearchStats},
+};
+use crate::{
+    comfort::{self, Answer},
+    human::peripersonal_m,
+    model::{frames::Pose, plan::Plan, scenario::Scenario},
+};
+
+/// The problems of all points, and what their searches share.
+pub struct PathProblem<'a> {
+    pub library: &'a GraspLibrary,
+    pub budget: SearchBudget,
+    pub random: Pcg64,
+    evaluators: Vec<Evaluator<'a>>,
+    postures: PostureMap,
+    evaluations: u64,
+    observer: Option<&'a mut Observer<'a>>,
+}
+
+/// A posture that may respond to a grasp at a point.
+#[derive(Clone, Copy)]
+struct Estimate {
+    posture: Posture,
+    x_wb: Pose,
+    objective: f64,
+}
+
+impl<'a, 'o> PathProblem<'a> {
+    /// The problem of the points; `None` if there are none.
+    pub fn new(
+        points: &'a [Scenario],
+        library: &'a GraspLibrary,
+        observer: Option<&'a mut Observer<'a>>,
+    ) -> Result<Option<Self>, PlanError> {
+        let evaluator =
+            |scenario| Ok(Evaluator::new(Problem::new(scenario, &library.robot)?, SearchStats::unlimited()));
+        let evaluators = points.iter().map(evaluator).collect::<Result<Vec<_>, PlanError>>()?;
+        let Some(Evaluator { problem, .. }) = evaluators.first() else { return Ok(None) };
+        let budget = SearchBudget::of(problem.scenario.planner.budget);
+        // The posture map draws from stream 0.
+        let random = Pcg64::new(u128::from(problem.scenario.planner.seed), 1);
+        // Force and person are the same at all points, seen from the tool.
+        let postures = problem::posture_map(problem.scenario, &problem.human);
+        Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, observer }))
+    }
+
+    /// The estimated objective of a grasp at each point; minus infinity if the map has no posture.
+    pub fn estimates(&self, grasp: &BoardGrasp) -> Vec<f64> {
+        let robot = &self.library.robot;
+        let points = comfort::robot_points_w(&robot.robot, &robot.link_poses(&grasp.arms));
+        let best = |point| {
+            self.estimated(grasp, point, &points).first().map_or(f64::NEG_INFINITY, |estimate| estimate.objective)
+        };
+        (0..self.evaluators.len()).map(best).collect()
+    }
+
+    /// Replaces the estimates of points whose load the grasp does not resist by minus infinity.
+    pub fn remove_unstable(&mut self, grasp: &BoardGrasp, estimates: &mut [f64]) {
+        let candidate = Candidate::without_person(grasp);
+        for (evaluator, estimate) in self.evaluators.iter_mut().zip(estimates) {
+            if estimate.is_finite() && evaluator.utilisation(&candidate, &grasp.x_wo) > 1.0 {
+                *estimate = f64::NEG_INFINITY;
+            }
+        }
+    }
+
+    /// Postures that nearly respond to a grasp at a point, the best first.
+    fn estimated(&self, grasp: &BoardGrasp, point: usize, robot_points_w: &[Point3<f64>]) -> Vec<Estimate> {
+        let problem = &self.evaluators[point].problem;
+        let x_wt = grasp.x_wo * problem.scenario.operation.x_ot;
+        let floor_z_m = problem.robot.robot.floor_z_m;
+        let settings = &problem.objective;
+        let estimate = |posture: &Posture| {
+            let x_wb = standing_pose(&x_wt, &posture.x_bt, floor_z_m);
+            let body_w = posture.medium_points_w(&x_wb);
+            let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body_w, robot_points_w);
+            let objective = settings.weight_muscular * posture.muscular + settings.weight_peripersonal * distance_m;
+            Estimate { posture: *posture, x_wb, objective }
+        };
+        let mut estimates: Vec<_> = self.postures.postures(&x_wt, floor_z_m).iter().map(estimate).collect();
+        estimates.sort_by(|a, b| b.objective.total_cmp(&a.objective));
+        estimates
+    }
+
+    /// True if the board is in the search domain and the arms and the board are clear of each other.
+    pub fn is_clear(&self, grasp: &BoardGrasp) -> bool {
+        let robot = &self.library.robot;
+        robot.domain.contains(&grasp.x_wo) && robot.is_clear(grasp)
+    }
+
+    /// The person's response to a grasp at a point if the grasp is stable there: the best near `known`, or else near the most
+    /// promising postures of the map.
+    pub fn response(&mut self, grasp: &BoardGrasp, point: usize, known: Option<&Answer>) -> Option<Answer> {
+        self.evaluations += 1;
+        let candidate = Candidate::without_person(grasp);
+        if self.evaluators[point].utilisation(&candidate, &grasp.x_wo) > 1.0 {
+            return None;
+        }
+        let link_poses = self.library.robot.link_poses(&grasp.arms);
+        let points_w = comfort::robot_points_w(&self.library.robot.robot, &link_poses);
+        let query = self.query(grasp, point, &link_poses, &points_w);
+        let near_known = known.and_then(|known| comfort::near(&query, &known.x_wb, &known.q_rad));
+        if near_known.is_some() {
+            return near_known;
+        }
+        let estimates = self.estimated(grasp, point, &points_w);
+        let near = |estimate: &Estimate| comfort::near(&query, &estimate.x_wb, &estimate.posture.q_h_rad);
+        let responses = estimates.iter().take(RESPONSE_STARTS).filter_map(near);
+        responses.max_by(|a, b| a.objective.total_cmp(&b.objective))
+    }
+
+    /// The better of a response and the best of the whole grid.
+    pub fn best_response(&self, grasp: &BoardGrasp, point: usize, known: Answer) -> Answer {
+        let link_poses = self.library.robot.link_poses(&grasp.arms);
+        let points_w = comfort::robot_points_w(&self.library.robot.robot, &link_poses);
+        let found = comfort::most(&self.query(grasp, point, &link_poses, &points_w));
+        found.filter(|found| found.objective > known.objective).unwrap_or(known)
+    }
+
+    fn query<'h>(
+        &'h self,
+        grasp: &BoardGrasp,
+        point: usize,
+        link_poses: &'h [Pose],
+        robot_points_w: &'h [Point3<f64>],
+    ) -> comfort::Hold<'h> {
+        let problem = &self.evaluators[point].problem;
+        evaluate::response_query(problem, problem.scenario.operation, link_poses, grasp.x_wo, robot_points_w)
+    }
+
+    /// The plan of a grasp with a response at a point, if its check finds no flaw.
+    pub fn plan(&mut self, grasp: &BoardGrasp, point: usize, response: &Answer) -> Result<Option<Plan>, PlanError> {
+        let evaluations = self.evaluations;
+        let robot = &self.library.robot;
+        let points_w = comfort::robot_points_w(&robot.robot, &robot.link_poses(&grasp.arms));
+        let evaluator = &mut self.evaluators[point];
+        let Problem { scenario, human, objective, .. } = &evaluator.problem;
+        let wrench_w = scenario.operation.wrench_w(&grasp.x_wo);
+        let comfort = comfort::of_posture(human, objective, &points_w, &response.x_wb, &response.q_rad, &wrench_w);
+        let mut candidate = Candidate::without_person(grasp);
+        let heading_rad = response.x_wb.rotation.euler_angles().2;
+        candidate.work = WorkPose { q_h_rad: response.q_rad, heading_rad, ..candidate.work };
+        let placement = Placement { x_wo: grasp.x_wo, x_wb: response.x_wb };
+        let Some(plan) = assemble_placed(evaluator, &candidate, &placement, &comfort, evaluations) else {
+            return Ok(None);
+        };
+        Ok(is_sound(evaluator, &plan)?.then_some(plan))
+    }
+
+    /// Seed of the search.
+    pub fn seed(&self) -> u64 {
+        self.evaluators.first().map_or(0, |evaluator| evaluator.problem.scenario.planner.seed)
+    }
+
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.evaluators.len()
+    }
+
+    /// True if the observer stops the search.
+    pub fn is_stopped(&mut self) -> bool {
+        let progress = Progress { evaluations: self.evaluations, better: None };
+        self.observer.as_mut().is_some_and(|observer| observer(&progress).is_break())
+    }
+}
+
+/// A grasp with the person's responses to it.
+#[derive(Clone)]
+pub struct Coverage {
+    pub grasp: BoardGrasp,
+    /// The response at each point; `None` where the point is not covered.
+    pub responses: Vec<Option<Answer>>,
+    pub score: Score,
+}
+
+impl Coverage {
+    /// The coverage of a grasp with these responses.
+    pub fn new(grasp: BoardGrasp, responses: Vec<Option<Answer>>) -> Self {
+        let objectives = responses.iter().map(|response| response.map_or(f64::NAN, |response| response.objective));
+        let score = Score::of(objectives);
+        Self { grasp, responses, score }
+    }
+}
+
+/// How many points are covered and the least objective of those: more points come first.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Score {
+    pub covered: usize,
+    pub worst: f64,
+}
+
+impl Score {
+    /// The score of the objectives at the points; one that is not finite is not covered.
+    pub fn of(objectives: impl Iterator<Item = f64>) -> Self {
+        let none = Self { covered: 0, worst: f64::INFINITY };
+        objectives
+            .filter(|objective| objective.is_finite())
+            .fold(none, |score, objective| Self { covered: score.covered + 1, worst: score.worst.min(objective) })
+    }
+
+    /// The better first.
+    pub fn order(&self, other: &Self) -> std::cmp::Ordering {
+        other.covered.cmp(&self.covered).then(other.worst.total_cmp(&self.worst))
+    }
+}
+
+/// A board pose turned and shifted about the board's centre.
+pub fn displaced(x_wo: &Pose, shift_w_m: Vector3<f64>, turn_o_rad: Vector3<f64>) -> Pose {
+    let rotation = x_wo.rotation * UnitQuaternion::from_scaled_axis(turn_o_rad);
+    Isometry3::from_parts((x_wo.translation.vector + shift_w_m).into(), rotation)
+}

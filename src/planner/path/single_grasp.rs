@@ -1,0 +1,136 @@
+//! One grasp for the whole circle: as many points as possible, then the least comfortable of them as comfortable as possible.
+//!
+//! Every grasp of the library is estimated at all points by the posture map, and the best of them by their stability too;
+//! boards oriented like theirs are resampled. The best estimates of both are evaluated exactly, and the best few are improved
+//! by random steps of board, grasps and joints that shrink while none is better. That is a local search from a few starts: it
+//! does not prove that no grasp covers more points or covers them better.
+
+use nalgebra::Vector3;
+
+use super::{
+    super::{
+        domain::{ANGLE_RAD, DEPTH_M, uniform},
+        library::{ArmGrasp, BoardGrasp, LibraryEntry, resample},
+        params::path::{
+            EVALUATED_PER_START, GRASP, JOINTS_RAD, NARROWER, RESAMPLED_BOARDS, SHIFT_M, TRIES_PER_STEP, TURN_RAD,
+            WIDER,
+        },
+    },
+    coverage::{Coverage, PathProblem, Score, displaced},
+};
+use crate::comfort::Answer;
+
+/// The best grasps that are found for all points, the best first.
+pub fn search(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
+    let mut starts = starts(problem);
+    starts.truncate(problem.budget.path.local_searches);
+    let mut improved: Vec<_> = starts.into_iter().map(|start| improve(problem, start)).collect();
+    improved.sort_by(|a, b| a.score.order(&b.score));
+    improved
+}
+
+/// The grasps with the best coverage, evaluated exactly, the best first: of the library, and of boards oriented like the best
+/// of the library.
+fn starts(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
+    let library = problem.library;
+    let mut estimated = best_estimates(problem, &library.entries);
+    let boards: Vec<_> = estimated.iter().take(RESAMPLED_BOARDS).map(|(_, grasp)| grasp.x_wo).collect();
+    let count = problem.budget.path.resampled_boards;
+    let resampled = resample(&library.robot, &boards, count, [problem.seed(), 1]);
+    estimated.extend(best_estimates(problem, &resampled));
+    estimated.sort_by(|a, b| a.0.order(&b.0));
+    let mut coverages = Vec::new();
+    for (_, grasp) in estimated.into_iter().take(EVALUATED_PER_START * problem.budget.starts) {
+        if problem.is_stopped() {
+            break;
+        }
+        let responses = (0..problem.points()).map(|point| problem.response(grasp, point, None)).collect();
+        coverages.push(Coverage::new(grasp.clone(), responses));
+    }
+    coverages.retain(|coverage| coverage.score.covered > 0);
+    coverages.sort_by(|a, b| a.score.order(&b.score));
+    coverages
+}
+
+/// The grasps with the best estimates, ordered by them with unstable points removed. Stability costs a hundred times as much as
+/// an estimate, so it is computed for the best only.
+fn best_estimates<'b>(problem: &mut PathProblem<'_>, entries: &'b [LibraryEntry]) -> Vec<(Score, &'b BoardGrasp)> {
+    let estimate = |LibraryEntry { grasp, .. }: &'b LibraryEntry| {
+        let estimates = problem.estimates(grasp);
+        (Score::of(estimates.iter().copied()), grasp, estimates)
+    };
+    let mut estimated: Vec<_> = entries.iter().map(estimate).collect();
+    estimated.sort_by(|a, b| a.0.order(&b.0));
+    estimated.truncate(problem.budget.path.estimates);
+    for (score, grasp, estimates) in &mut estimated {
+        if problem.is_stopped() {
+            break;
+        }
+        problem.remove_unstable(grasp, estimates);
+        *score = Score::of(estimates.iter().copied());
+    }
+    let mut estimated: Vec<_> = estimated.into_iter().map(|(score, grasp, _)| (score, grasp)).collect();
+    estimated.sort_by(|a, b| a.0.order(&b.0));
+    estimated
+}
+
+/// Random steps from a grasp, each kept if it is better.
+fn improve(problem: &mut PathProblem<'_>, mut here: Coverage) -> Coverage {
+    let mut scale = 1.0_f64;
+    for _ in 0..TRIES_PER_STEP * problem.budget.path.steps {
+        if problem.is_stopped() {
+            break;
+        }
+        let better = displaced_grasp(problem, &here.grasp, scale).and_then(|grasp| better(problem, grasp, &here));
+        scale = if better.is_some() { (WIDER * scale).min(1.0) } else { NARROWER * scale };
+        here = better.unwrap_or(here);
+    }
+    here
+}
+
+/// A random collision-free grasp near another that the arms reach.
+fn displaced_grasp(problem: &mut PathProblem<'_>, from: &BoardGrasp, scale: f64) -> Option<BoardGrasp> {
+    let robot = &problem.library.robot;
+    let random = &mut problem.random;
+    let mut within = |most: f64| uniform(random, -scale * most, scale * most);
+    let shift = Vector3::from_fn(|_, _| within(SHIFT_M));
+    let turn = Vector3::from_fn(|_, _| within(TURN_RAD));
+    let x_wo = displaced(&from.x_wo, shift, turn);
+    let mut arms = Vec::with_capacity(from.arms.len());
+    for (arm, own) in robot.arms.iter().zip(&from.arms) {
+        let mut grasp = own.grasp;
+        grasp.along_m += within(GRASP[0]);
+        grasp.depth_m = (grasp.depth_m + within(GRASP[1])).clamp(DEPTH_M[0], DEPTH_M[1]);
+        grasp.angle_rad = (grasp.angle_rad + within(GRASP[2])).clamp(ANGLE_RAD[0], ANGLE_RAD[1]);
+        let seed: Vec<_> = own.q_rad.iter().map(|q| q + within(JOINTS_RAD)).collect();
+        if !robot.pads_on_board(arm, &grasp) {
+            return None;
+        }
+        arms.push(ArmGrasp { grasp, q_rad: arm.inverse.local(&(x_wo * grasp.x_og(robot.size_m)), &seed).found()? });
+    }
+    let grasp = BoardGrasp { x_wo, arms };
+    problem.is_clear(&grasp).then_some(grasp)
+}
+
+/// The coverage of a grasp if it is better than another; the points with the least objective are evaluated first.
+fn better(problem: &mut PathProblem<'_>, grasp: BoardGrasp, than: &Coverage) -> Option<Coverage> {
+    let objective = |response: &Option<Answer>| response.map_or(f64::INFINITY, |response| response.objective);
+    let mut order: Vec<_> = (0..problem.points()).collect();
+    order.sort_by(|&a, &b| objective(&than.responses[a]).total_cmp(&objective(&than.responses[b])));
+    let mut responses = vec![None; order.len()];
+    // The number of points that may still be covered.
+    let mut possible = order.len();
+    for point in order {
+        let response = problem.response(&grasp, point, than.responses[point].as_ref());
+        possible -= usize::from(response.is_none());
+        let too_few = possible < than.score.covered;
+        let too_bad =
+            possible == than.score.covered && response.is_some_and(|found| found.objective <= than.score.worst);
+        if too_few || too_bad {
+            return None;
+        }
+        responses[point] = response;
+    }
+    let coverage = Coverage::new(grasp, responses);
+    coverage.score.order(&than.score).is_lt().then_some(coverage)
+}

@@ -1,0 +1,262 @@
+//! The planner: the maps that it keeps, and the searches on them.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::{
+    assemble::verified,
+    evaluate::Evaluator,
+    front::{self, Front},
+    library::GraspLibrary,
+    normalise::{alone, needs_optima, with_optima},
+    outcome::{Outcome, PlanError},
+    params::SearchBudget,
+    path::{self, CirclePlans},
+    problem::Problem,
+    search::search,
+    select,
+    stats::{Observer, SearchStats, reborrow},
+    task_family::TaskFamily,
+    warm_starts::WarmStarts,
+};
+use crate::{
+    model::{
+        plan::Plan,
+        scenario::{PlannerKind, PlannerSettings, Scenario},
+    },
+    robot::Robot,
+};
+
+/// Plans for one robot. It keeps what many plans share: a grasp library per size of board (about a second) and warm starts per
+/// task family (seconds). A plan does not depend on what was kept.
+pub struct Planner {
+    robot: Robot,
+    maps: Mutex<Vec<Arc<Maps>>>,
+}
+
+/// The grasp library for one size of board, and the warm starts on it.
+struct Maps {
+    size_m: [f64; 3],
+    library: GraspLibrary,
+    warm_starts: Mutex<Vec<Arc<WarmStarts>>>,
+}
+
+impl Planner {
+    /// A planner without maps: they are made when a scenario needs them.
+    #[must_use]
+    pub fn new(robot: &Robot) -> Self {
+        Self { robot: robot.clone(), maps: Mutex::default() }
+    }
+
+    /// Makes the maps that a plan of this scenario needs, unless they are kept already.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn prepare(&self, scenario: &Scenario) -> Result<(), PlanError> {
+        self.warm_starts(&self.maps(scenario), scenario).map(drop)
+    }
+
+    /// Makes the grasp library for the scenario's board, unless it is kept already.
+    pub fn prepare_library(&self, scenario: &Scenario) {
+        self.maps(scenario);
+    }
+
+    /// The best plan of a scenario. The same scenario and seed give the same plan, bit for bit.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn plan(&self, scenario: &Scenario) -> Result<Outcome<Plan>, PlanError> {
+        self.search(scenario).plan()
+    }
+
+    /// A search of a scenario, for several plans or with an observer.
+    #[must_use]
+    pub fn search<'a>(&'a self, scenario: &'a Scenario) -> Search<'a> {
+        Search { planner: self, scenario, observer: None }
+    }
+
+    /// The maps for a scenario's size of board. They are made outside the lock, so threads never wait for each other; two that
+    /// make the same maps at once make equal ones.
+    fn maps(&self, scenario: &Scenario) -> Arc<Maps> {
+        let size_m = scenario.object.size_m;
+        let kept = |maps: &[Arc<Maps>]| maps.iter().find(|maps| maps.size_m == size_m).cloned();
+        if let Some(maps) = kept(&lock(&self.maps)) {
+            return maps;
+        }
+        let made = Maps { size_m, library: GraspLibrary::new(&self.robot, size_m), warm_starts: Mutex::default() };
+        let mut maps = lock(&self.maps);
+        kept(&maps).unwrap_or_else(|| {
+            maps.push(Arc::new(made));
+            maps[maps.len() - 1].clone()
+        })
+    }
+
+    /// The warm starts for a scenario's task family; made as [`Planner::maps`].
+    fn warm_starts(&self, maps: &Maps, scenario: &Scenario) -> Result<Arc<WarmStarts>, PlanError> {
+        let family = TaskFamily::of(scenario);
+        let kept = |warm: &[Arc<WarmStarts>]| warm.iter().find(|warm| warm.family == family).cloned();
+        if let Some(warm) = kept(&lock(&maps.warm_starts)) {
+            return Ok(warm);
+        }
+        let shared = self.with_solved_optima(maps, scenario, family.scenario())?;
+        let made = WarmStarts::new(family.clone(), &shared, &maps.library)?;
+        let mut warm_starts = lock(&maps.warm_starts);
+        Ok(kept(&warm_starts).unwrap_or_else(|| {
+            warm_starts.push(Arc::new(made));
+            warm_starts[warm_starts.len() - 1].clone()
+        }))
+    }
+
+    /// A family's scenario with the optima of a normalised objective, taken from the warm starts of the two planners of one
+    /// comfort: they depend on the family alone.
+    fn with_solved_optima(&self, maps: &Maps, scenario: &Scenario, shared: &Scenario) -> Result<Scenario, PlanError> {
+        if !needs_optima(shared) {
+            return Ok(shared.clone());
+        }
+        let [muscular, peripersonal] = alone(scenario).map(|scenario| self.warm_starts(maps, &scenario));
+        let optima = (
+            muscular?.best(|comfort| comfort.muscular_regularised),
+            peripersonal?.best(|comfort| comfort.peripersonal_m),
+        );
+        Ok(match optima {
+            (Some(muscular), Some(peripersonal_m)) => with_optima(shared, [muscular, peripersonal_m]),
+            _ => shared.clone(),
+        })
+    }
+
+    /// The scenario with the optima of its normalised objective, which two plans find; unchanged if it does not need them.
+    fn normalised(&self, maps: &Maps, scenario: &Scenario) -> Result<Outcome<Scenario>, PlanError> {
+        if !needs_optima(scenario) {
+            return Ok(Outcome::Found(scenario.clone()));
+        }
+        let mut optima = [0.0; 2];
+        for (scenario, optimum) in alone(scenario).iter().zip(&mut optima) {
+            let warm = self.warm_starts(maps, scenario)?;
+            match best_plan(scenario, maps, &warm, None)? {
+                // One of the weights is 1 and the other 0.
+                Outcome::Found(plan) => *optimum = plan.comfort.map_or(0.0, |comfort| comfort.objective),
+                Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
+            }
+        }
+        Ok(Outcome::Found(with_optima(scenario, optima)))
+    }
+}
+
+/// The best plan of a scenario whose objective needs no optima.
+fn best_plan<'a>(
+    scenario: &'a Scenario,
+    maps: &'a Maps,
+    warm: &WarmStarts,
+    observer: Option<&'a mut Observer<'a>>,
+) -> Result<Outcome<Plan>, PlanError> {
+    let mut evaluator = evaluator(scenario, maps, observer)?;
+    let budget = SearchBudget::of(scenario.planner.budget);
+    for found in search(&mut evaluator, &maps.library, warm, &budget) {
+        if let Some(plan) = verified(&mut evaluator, &found)? {
+            return Ok(Outcome::Found(plan));
+        }
+    }
+    Ok(Outcome::Infeasible(evaluator.stats.into_infeasible()))
+}
+
+fn evaluator<'a>(
+    scenario: &'a Scenario,
+    maps: &'a Maps,
+    observer: Option<&'a mut Observer<'a>>,
+) -> Result<Evaluator<'a>, PlanError> {
+    let stats = SearchStats::new(scenario.planner.evaluations, observer);
+    Ok(Evaluator::new(Problem::new(scenario, &maps.library.robot)?, stats))
+}
+
+/// A list stays valid if a thread panics: it only grows by whole entries.
+fn lock<T>(list: &Mutex<T>) -> MutexGuard<'_, T> {
+    list.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A search of one scenario on a planner's maps.
+#[must_use]
+pub struct Search<'a> {
+    planner: &'a Planner,
+    scenario: &'a Scenario,
+    observer: Option<&'a mut Observer<'a>>,
+}
+
+impl<'a> Search<'a> {
+    /// Reports progress to an observer, which may stop the search; the best candidate so far is the result then. The searches
+    /// for the optima of a normalised objective and the maps are not observed.
+    pub fn observer(self, observer: &'a mut Observer<'a>) -> Self {
+        Self { observer: Some(observer), ..self }
+    }
+
+    /// The best plan.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn plan(self) -> Result<Outcome<Plan>, PlanError> {
+        let Self { planner, scenario, mut observer } = self;
+        let maps = planner.maps(scenario);
+        let warm = planner.warm_starts(&maps, scenario)?;
+        match planner.normalised(&maps, scenario)? {
+            Outcome::Found(scenario) => best_plan(&scenario, &maps, &warm, reborrow(&mut observer)),
+            Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
+        }
+    }
+
+    /// The best `wanted` plans that [`super::differ`] from one another, the best first: at least one, perhaps fewer than
+    /// wanted. The search is that of [`Search::plan`] from more starts.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn top(self, wanted: usize) -> Result<Outcome<Vec<Plan>>, PlanError> {
+        let Self { planner, scenario, mut observer } = self;
+        let maps = planner.maps(scenario);
+        match planner.normalised(&maps, scenario)? {
+            Outcome::Found(scenario) => {
+                let warm = planner.warm_starts(&maps, &scenario)?;
+                let evaluator = evaluator(&scenario, &maps, reborrow(&mut observer))?;
+                select::top(evaluator, &maps.library, &warm, wanted)
+            }
+            Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
+        }
+    }
+
+    /// The Pareto front of the two comforts with the person's best response, whatever planner the scenario names. A limit of
+    /// evaluations applies to each weighting. A stopped search gives the front of what was found.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn front(self) -> Result<Outcome<Front>, PlanError> {
+        let Self { planner, scenario, mut observer } = self;
+        let maps = planner.maps(scenario);
+        let settings = PlannerSettings { kind: PlannerKind::Comfort, ..scenario.planner.clone() };
+        match planner.normalised(&maps, &Scenario { planner: settings, ..scenario.clone() })? {
+            Outcome::Found(scenario) => {
+                let warm = planner.warm_starts(&maps, &front::own_weights(&scenario))?;
+                front::front(&scenario, &maps.library, &warm, reborrow(&mut observer))
+            }
+            Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
+        }
+    }
+
+    /// Plans for a whole circle that is cut, with the person's best response: one grasp, a sequence of board poses with one
+    /// grasp, and a plan for every point by itself. A stopped search gives what was found.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid, or its operation is not a cut along a circle.
+    pub fn circle(self) -> Result<Outcome<CirclePlans>, PlanError> {
+        let Self { planner, scenario, mut observer } = self;
+        let maps = planner.maps(scenario);
+        // The optima of the scenario's own cut serve for all points, and make them comparable.
+        let scenario = match planner.normalised(&maps, scenario)? {
+            Outcome::Found(scenario) => scenario,
+            Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
+        };
+        let points = path::points(&scenario).ok_or(PlanError::NoCircle)?;
+        let continuous = path::continuous(&points, &maps.library, reborrow(&mut observer))?;
+        let mut separate = Vec::with_capacity(points.len());
+        for point in &points {
+            let warm = planner.warm_starts(&maps, point)?;
+            separate.push(best_plan(point, &maps, &warm, reborrow(&mut observer))?.found());
+        }
+        Ok(Outcome::Found(CirclePlans { continuous, separate }))
+    }
+}

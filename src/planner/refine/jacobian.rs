@@ -1,0 +1,318 @@
+//! First derivatives of a candidate's objective and constraints by its free variables.
+//!
+//! By the chain rule: what depends on the poses of links is differentiated by the arms' joints once, and the joints'
+//! derivatives by the variables do the rest; board and body move as rigid bodies. Only what the person's joints change is
+//! computed by differences.
+
+use nalgebra::{DVector, Point3, Vector3};
+
+use super::{
+    super::{
+        evaluate::Feasible,
+        library::posture_muscular,
+        params::refine::{DIFFERENCE, GRASP, PERSON_RAD, PLACE_M},
+        problem::Problem,
+    },
+    variables::{RigidTwist, Variables, perturbed, perturbed_grasp},
+};
+use crate::{
+    collision::{Carrier, Near, PersonPart},
+    comfort,
+    human::{ArmAngles, BODY_POINTS, CAPSULES, Muscular, peripersonal_pulls},
+};
+
+/// The person's joints.
+const JOINTS: usize = 7;
+
+/// A candidate and the derivatives of everything about it.
+pub struct Jacobian<'a, 'p> {
+    problem: &'a Problem<'p>,
+    here: &'a Feasible,
+    variables: &'a Variables,
+    arms: Vec<ArmAxes>,
+    /// Body points, W.
+    body_w: [Point3<f64>; BODY_POINTS],
+    /// The person after a small step of each joint.
+    perturbed: Vec<PerturbedPerson>,
+}
+
+/// The axes of an arm's joints in W.
+struct ArmAxes {
+    origins_w: Vec<Point3<f64>>,
+    axes_w: Vec<Vector3<f64>>,
+}
+
+/// The person with one joint moved by [`DIFFERENCE`] of a unit.
+struct PerturbedPerson {
+    body_w: [Point3<f64>; BODY_POINTS],
+    capsules: [PersonPart; CAPSULES],
+    muscular: Muscular,
+}
+
+impl<'a, 'p> Jacobian<'a, 'p> {
+    /// Computes what all derivatives share.
+    pub fn new(problem: &'a Problem<'p>, here: &'a Feasible, variables: &'a Variables) -> Self {
+        let arms = problem.robot.arms.iter().zip(&here.candidate.arms).map(|(arm, own)| {
+            let frames = arm.chain.joint_frames(&own.q_rad);
+            ArmAxes {
+                axes_w: arm.chain.axes_w(&frames),
+                origins_w: frames.iter().map(|x_wj| x_wj.translation.vector.into()).collect(),
+            }
+        });
+        let perturbed = (0..JOINTS).map(|joint| {
+            let work = perturbed(here.candidate.work, joint);
+            let (q_h_rad, x_wb) = (&work.q_h_rad, work.placement(problem).x_wb);
+            PerturbedPerson {
+                body_w: problem.human.body_points_w(&x_wb, q_h_rad),
+                capsules: problem.human.capsules_w(&x_wb, q_h_rad).map(PersonPart::from),
+                muscular: muscular(problem, q_h_rad),
+            }
+        });
+        Self {
+            problem,
+            here,
+            variables,
+            arms: arms.collect(),
+            body_w: problem.human.body_points_w(&here.configuration.placement.x_wb, &here.candidate.work.q_h_rad),
+            perturbed: perturbed.collect(),
+        }
+    }
+
+    fn zeros(&self) -> DVector<f64> {
+        DVector::zeros(self.variables.count())
+    }
+
+    /// Gradient of the objective.
+    pub fn objective_gradient(&self) -> DVector<f64> {
+        let settings = &self.problem.objective;
+        let robot = &self.problem.robot.robot;
+        let robot_w = comfort::robot_points_w(robot, &self.here.configuration.link_poses);
+        let pulls = peripersonal_pulls(settings.peripersonal, settings.saturation_m, &self.body_w, &robot_w);
+        let mut gradient = self.zeros();
+        let mut robot_pulls = vec![Vector3::zeros(); robot_w.len()];
+        for (point, pull) in pulls.iter().enumerate() {
+            let away = pull.away * settings.weight_peripersonal;
+            robot_pulls[pull.nearest] -= away;
+            self.add_body_point(point, &away, &mut gradient);
+        }
+        let points = robot.body_points.iter().zip(robot_w.iter().zip(&robot_pulls));
+        self.add_link_points(points.map(|(point, (p_w, pull))| (point.link, *p_w, *pull)), &mut gradient);
+        let here = self.here.comfort.muscular_regularised;
+        for (joint, perturbed) in self.perturbed.iter().enumerate() {
+            gradient[joint] += settings.weight_muscular * (perturbed.muscular.regularised - here) / DIFFERENCE;
+        }
+        gradient
+    }
+
+    /// Adds `along . v`, v the derivative of a point of the body by each variable.
+    fn add_body_point(&self, point: usize, along: &Vector3<f64>, gradient: &mut DVector<f64>) {
+        for (number, work) in self.variables.work.iter().enumerate() {
+            gradient[number] += match self.perturbed.get(number) {
+                Some(perturbed) => along.dot(&(perturbed.body_w[point] - self.body_w[point])) / DIFFERENCE,
+                None => along.dot(&work.body.at(&self.body_w[point])),
+            };
+        }
+    }
+
+    /// Adds `sum along . v`, v the derivatives of points of links: the link, the point in W, and `along`.
+    fn add_link_points(
+        &self,
+        points: impl Iterator<Item = (usize, Point3<f64>, Vector3<f64>)>,
+        gradient: &mut DVector<f64>,
+    ) {
+        let mut of_joints: Vec<_> = self.arms.iter().map(|arm| DVector::zeros(arm.axes_w.len())).collect();
+        for (link, p_w, along) in points {
+            let Some((arm, last)) = self.problem.robot.moved_by[link] else { continue };
+            let ArmAxes { origins_w, axes_w } = &self.arms[arm];
+            let joints = of_joints[arm].iter_mut().zip(origins_w.iter().zip(axes_w)).take(last + 1);
+            joints.for_each(|(sum, (origin_w, axis_w))| *sum += axis_w.dot(&(p_w - origin_w).cross(&along)));
+        }
+        for (derivatives, of_joints) in self.variables.joints.iter().zip(&of_joints) {
+            gradient.gemv_tr(1.0, derivatives, of_joints, 1.0);
+        }
+    }
+
+    /// Gradient of the distance of two bodies.
+    pub fn distance_gradient(&self, near: &Near) -> DVector<f64> {
+        let mut gradient = self.zeros();
+        for (side, sign) in [(0, -1.0), (1, 1.0)] {
+            let (p_w, along) = (near.p_w[side], near.normal_w * sign);
+            match near.carriers[side].0 {
+                Carrier::Link(link) => self.add_link_points(std::iter::once((link, p_w, along)), &mut gradient),
+                Carrier::Board => {
+                    for (number, work) in self.variables.work.iter().enumerate() {
+                        gradient[number] += along.dot(&work.board.at(&p_w));
+                    }
+                }
+                Carrier::Person(part) => self.add_person_part(part, &p_w, &along, &mut gradient),
+            }
+        }
+        gradient
+    }
+
+    fn add_person_part(&self, part: usize, p_w: &Point3<f64>, along: &Vector3<f64>, gradient: &mut DVector<f64>) {
+        let here = &self.here.configuration.person[part];
+        let share = share_along(p_w, &here.p0_w, &here.p1_w);
+        for (number, work) in self.variables.work.iter().enumerate() {
+            gradient[number] += match self.perturbed.get(number) {
+                Some(perturbed) => {
+                    let there = &perturbed.capsules[part];
+                    let moved = (there.p0_w - here.p0_w) * (1.0 - share) + (there.p1_w - here.p1_w) * share;
+                    along.dot(&moved) / DIFFERENCE
+                }
+                None => along.dot(&work.body.at(p_w)),
+            };
+        }
+    }
+
+    /// Gradients of the margins of [`super::linearization::simple_margins`], in their order.
+    pub fn simple_gradients(&self) -> Vec<DVector<f64>> {
+        let mut gradients = Vec::with_capacity(96);
+        let mut between = |gradient: DVector<f64>| {
+            let opposite = -&gradient;
+            gradients.extend([gradient, opposite]);
+        };
+        for joint in 0..JOINTS {
+            between(self.single(joint, PERSON_RAD));
+        }
+        between(self.single(8, PLACE_M));
+        between(self.single(9, PLACE_M));
+        between(self.of_board(|board| board.linear.z));
+        for (arm, joints) in self.variables.joints.iter().enumerate() {
+            for joint in 0..joints.nrows() {
+                between(joints.row(joint).transpose());
+            }
+            let grasp = self.variables.of_grasp(arm);
+            between(self.single(grasp.start + 1, GRASP[1]));
+            between(self.single(grasp.start + 2, GRASP[2]));
+        }
+        let normal_w = self.here.configuration.placement.x_wo.rotation * Vector3::z();
+        gradients.push(self.of_board(|board| board.angular.cross(&normal_w).x));
+        gradients.extend((0..JOINTS).map(|joint| self.activation_gradient(joint)));
+        gradients.extend((0..self.arms.len()).flat_map(|arm| self.pad_gradients(arm)));
+        gradients
+    }
+
+    /// A gradient with one entry.
+    fn single(&self, number: usize, entry: f64) -> DVector<f64> {
+        let mut gradient = self.zeros();
+        gradient[number] = entry;
+        gradient
+    }
+
+    /// A gradient from the board's derivatives.
+    fn of_board(&self, derivative: impl Fn(&RigidTwist) -> f64) -> DVector<f64> {
+        let mut gradient = self.zeros();
+        for (number, work) in self.variables.work.iter().enumerate() {
+            gradient[number] = derivative(&work.board);
+        }
+        gradient
+    }
+
+    /// Gradient of `1 - alpha` of one of the person's joints.
+    fn activation_gradient(&self, joint: usize) -> DVector<f64> {
+        let mut gradient = self.zeros();
+        let here = self.here.comfort.activations[joint];
+        for (number, perturbed) in self.perturbed.iter().enumerate() {
+            gradient[number] = (here - perturbed.muscular.activations[joint]) / DIFFERENCE;
+        }
+        gradient
+    }
+
+    /// Gradients of the distances of a gripper's pads inside each edge of the board.
+    fn pad_gradients(&self, arm: usize) -> [DVector<f64>; 4] {
+        let robot = self.problem.robot;
+        let grasp = self.here.candidate.arms[arm].grasp;
+        let margins_m = |grasp| robot.pad_margins_m(&robot.arms[arm], &grasp);
+        let here_m = margins_m(grasp);
+        let mut gradients = [(); 4].map(|()| self.zeros());
+        for (part, number) in self.variables.of_grasp(arm).enumerate() {
+            let there_m = margins_m(perturbed_grasp(grasp, part, DIFFERENCE));
+            for (side, gradient) in gradients.iter_mut().enumerate() {
+                gradient[number] = (there_m[side] - here_m[side]) / DIFFERENCE;
+            }
+        }
+        gradients
+    }
+}
+
+/// The muscular comfort of a posture, which does not depend on where the person stands.
+fn muscular(problem: &Problem<'_>, q_h_rad: &ArmAngles) -> Muscular {
+    let human = &problem.human;
+    let direction = problem.scenario.comfort.direction;
+    posture_muscular(human, q_h_rad, &human.tool_pose_b(q_h_rad), &problem.wrench_t, direction)
+}
+
+/// Position of a point along a segment, from 0 to 1.
+fn share_along(p: &Point3<f64>, p0: &Point3<f64>, p1: &Point3<f64>) -> f64 {
+    let axis = p1 - p0;
+    let length2 = axis.norm_squared();
+    if length2 == 0.0 { 0.0 } else { ((p - p0).dot(&axis) / length2).clamp(0.0, 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::super::{
+            evaluate::{Configuration, Evaluator, comfort},
+            library::GraspLibrary,
+            params::SearchBudget,
+            search::screened,
+            stats::SearchStats,
+        },
+        super::linearization::simple_margins,
+        *,
+    };
+    use crate::{model::scenario::Budget, scenario::paper};
+
+    /// The gradients against differences of the figures themselves, on starts of a search for a cut and a drill.
+    #[test]
+    fn gradients_equal_differences() {
+        for name in ["cut-03", "drill-2"] {
+            let operation = paper::operations().into_iter().find(|operation| operation.name == name).unwrap();
+            let mut loaded = operation.load().unwrap();
+            loaded.scenario.planner.budget = Budget::Fast;
+            let library = GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m);
+            let problem = Problem::new(&loaded.scenario, &library.robot).unwrap();
+            let mut evaluator = Evaluator::new(problem, SearchStats::unlimited());
+            let starts = screened(&mut evaluator, &library, None, &SearchBudget::of(Budget::Fast));
+            assert!(starts.len() > 2);
+            starts.iter().for_each(|start| compare(&evaluator.problem, start));
+        }
+    }
+
+    fn compare(problem: &Problem<'_>, here: &Feasible) {
+        /// Truncation errors grow with it, rounding errors shrink.
+        const STEP: f64 = 1e-4;
+        let variables = Variables::new(problem, &here.candidate, &here.configuration.placement);
+        let jacobian = Jacobian::new(problem, here, &variables);
+        let (objective, simple) = (jacobian.objective_gradient(), jacobian.simple_gradients());
+        let figures = |step: f64, number: usize| {
+            let mut d = DVector::zeros(variables.count());
+            d[number] = step;
+            let candidate = variables.apply_linear(&here.candidate, &d);
+            let configuration = Configuration::new(problem, &candidate);
+            let comfort = comfort(problem, &candidate, &configuration);
+            let simple = simple_margins(problem, &candidate, &configuration, &comfort.activations);
+            (comfort.objective, simple)
+        };
+        let near = problem.robot.collision.near(&here.configuration.scene(problem), 0.06);
+        let distances: Vec<_> = near.iter().map(|near| jacobian.distance_gradient(near)).collect();
+        assert_eq!(distances.len(), near.len());
+        for number in 0..variables.count() {
+            let [(forth, simple_forth), (back, simple_back)] = [STEP, -STEP].map(|step| figures(step, number));
+            let slope = (forth - back) / (2.0 * STEP);
+            // An objective of some hundred whose third derivatives are of order one; where the robot point that is nearest to a
+            // body point changes within the step, a kink of some thousandths.
+            let close = |found: f64, slope: f64, size: f64| (found - slope).abs() < 2e-3 * (size + slope.abs());
+            let found = objective[number];
+            assert!(close(found, slope, 10.0), "objective, variable {number}: {found} {slope}");
+            assert_eq!(simple.len(), simple_forth.len());
+            for (row, gradient) in simple.iter().enumerate() {
+                let slope = (simple_forth[row] - simple_back[row]) / (2.0 * STEP);
+                let found = gradient[number];
+                assert!(close(found, slope, 0.1), "margin {row}, variable {number}: {found} {slope}");
+            }
+        }
+    }
+}

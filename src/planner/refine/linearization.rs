@@ -1,0 +1,213 @@
+//! Objective and constraints of a candidate, linearised along its free variables.
+
+use nalgebra::DVector;
+
+use super::{
+    super::{
+        candidate::Candidate,
+        domain::{ANGLE_RAD, DEPTH_M},
+        evaluate::{self, Configuration, Evaluator, Feasible},
+        params::refine::{
+            CLEARANCE_MARGIN_M, FULL_UTILISATION, MARGIN, NEAR_M, RELAXED_UTILISATION, STABILITY_DIFFERENCE,
+        },
+        problem::Problem,
+    },
+    jacobian::Jacobian,
+    qp::LinearConstraint,
+    variables::Variables,
+};
+use crate::{
+    collision::{Carrier, Near},
+    model::plan::Comfort,
+};
+
+/// The linearisation about a candidate.
+#[derive(Clone, Debug)]
+pub struct Linearization {
+    /// The free variables.
+    pub variables: Variables,
+    /// Gradient of the objective.
+    pub gradient: DVector<f64>,
+    /// The constraints: simple ones, then pairs of near bodies, then stability if it is included.
+    pub constraints: Vec<LinearConstraint>,
+    /// The pairs of near bodies.
+    near: Vec<[(Carrier, usize); 2]>,
+    /// Gradient of the utilisation of stability, if it is included.
+    stability: Option<DVector<f64>>,
+    /// True if that gradient is an update of one at another candidate.
+    stability_is_updated: bool,
+}
+
+impl Linearization {
+    /// Linearises about a candidate, without stability.
+    pub fn new(problem: &Problem<'_>, here: &Feasible) -> Self {
+        let Feasible { candidate, configuration, comfort, .. } = here;
+        let variables = Variables::new(problem, candidate, &configuration.placement);
+        let margins = simple_margins(problem, candidate, configuration, &comfort.activations);
+        let near = problem.robot.collision.near(&configuration.scene(problem), NEAR_M);
+        let jacobian = Jacobian::new(problem, here, &variables);
+        let simple = jacobian.simple_gradients().into_iter().zip(margins);
+        let mut constraints: Vec<_> =
+            simple.map(|(gradient, margin)| LinearConstraint { gradient, margin: margin - MARGIN }).collect();
+        constraints.extend(near.iter().map(|near| LinearConstraint {
+            gradient: jacobian.distance_gradient(near),
+            margin: near.margin_m - CLEARANCE_MARGIN_M,
+        }));
+        let gradient = jacobian.objective_gradient();
+        drop(jacobian);
+        let near = near.iter().map(|near| near.carriers).collect();
+        Self { variables, gradient, constraints, near, stability: None, stability_is_updated: false }
+    }
+
+    /// Compares the constraints after a step with their linearisation. True if one is violated; then `corrected` (the
+    /// constraints of the step's program) is shifted by the linearisation's error.
+    pub fn correct(
+        &self,
+        problem: &Problem<'_>,
+        candidate: &Candidate,
+        configuration: &Configuration,
+        comfort: &Comfort,
+        d: &DVector<f64>,
+        corrected: &mut [LinearConstraint],
+    ) -> bool {
+        let simple = simple_margins(problem, candidate, configuration, &comfort.activations);
+        let near = problem.robot.collision.near(&configuration.scene(problem), NEAR_M);
+        let mut violated = near.iter().any(|near| near.margin_m <= 0.0 && !self.near.contains(&near.carriers));
+        let near_margin = |bodies: &[(Carrier, usize); 2]| {
+            near.iter().find(|near: &&Near| near.carriers == *bodies).map(|near| near.margin_m - CLEARANCE_MARGIN_M)
+        };
+        let margins = simple.iter().map(|&margin| Some(margin - MARGIN)).chain(self.near.iter().map(near_margin));
+        for ((corrected, linear), margin) in corrected.iter_mut().zip(&self.constraints).zip(margins) {
+            let Some(margin) = margin else { continue };
+            let error = margin - (linear.margin + linear.gradient.dot(d));
+            if error < 0.0 {
+                corrected.margin = corrected.margin.min(linear.margin + error);
+            }
+            violated |= margin < -MARGIN.max(CLEARANCE_MARGIN_M);
+        }
+        violated
+    }
+
+    /// Includes stability in the constraints after a step that violated it; false if nothing can be learned from it.
+    pub fn correct_stability(
+        &mut self,
+        evaluator: &mut Evaluator<'_>,
+        here: &Feasible,
+        utilisation: f64,
+        d: &DVector<f64>,
+        corrected: &mut Vec<LinearConstraint>,
+    ) -> bool {
+        if !utilisation.is_finite() {
+            return false;
+        }
+        let was_included = self.stability.is_some();
+        let gradient = self.stability_gradient(evaluator, here);
+        let margin = FULL_UTILISATION - here.utilisation;
+        if !was_included {
+            self.constraints.push(LinearConstraint { gradient: -&gradient, margin });
+            corrected.push(LinearConstraint { gradient: -gradient, margin });
+        } else if let Some(stability) = corrected.last_mut() {
+            let error = (here.utilisation + gradient.dot(d)) - utilisation;
+            stability.margin = stability.margin.min(margin + error.min(0.0));
+        }
+        true
+    }
+
+    /// Includes stability in the constraints if it is near its limit or beyond.
+    pub fn include_stability(&mut self, evaluator: &mut Evaluator<'_>, here: &Feasible) {
+        if here.utilisation >= RELAXED_UTILISATION && here.utilisation.is_finite() {
+            let gradient = -self.stability_gradient(evaluator, here);
+            self.constraints.push(LinearConstraint { gradient, margin: FULL_UTILISATION - here.utilisation });
+        }
+    }
+
+    /// The gradient of the utilisation by differences, unless it is known.
+    fn stability_gradient(&mut self, evaluator: &mut Evaluator<'_>, here: &Feasible) -> DVector<f64> {
+        if let Some(known) = &self.stability {
+            return known.clone();
+        }
+        let count = self.variables.count();
+        // Around a compliant equilibrium a whole gradient costs less than one equilibrium.
+        let local = evaluator.local_equilibrium(&here.candidate, &here.configuration.placement.x_wo);
+        let limits = evaluator.problem.stability_limits();
+        let mut gradient = DVector::zeros(count);
+        for number in 0..count {
+            let mut d = DVector::zeros(count);
+            d[number] = STABILITY_DIFFERENCE;
+            let candidate = self.variables.apply_linear(&here.candidate, &d);
+            let x_wo = candidate.x_wo(&evaluator.problem);
+            let there = local
+                .as_ref()
+                .and_then(|local| {
+                    let model = evaluate::contact_model(&evaluator.problem, &candidate, &x_wo).ok()?;
+                    local.utilisation(&model, &limits)
+                })
+                .unwrap_or_else(|| evaluator.utilisation(&candidate, &x_wo));
+            // Where there is no equilibrium the difference says nothing: a positive entry keeps the step away.
+            gradient[number] = if there.is_finite() { (there - here.utilisation) / STABILITY_DIFFERENCE } else { 1.0 };
+        }
+        self.stability = Some(gradient.clone());
+        gradient
+    }
+
+    /// Takes over the gradient of the utilisation from the linearisation before a step (Broyden's rank-one update).
+    pub fn update_stability(&mut self, before: &Self, from: &Feasible, to: &Feasible, d: &DVector<f64>) {
+        let Some(known) = &before.stability else { return };
+        if to.utilisation < RELAXED_UTILISATION {
+            return;
+        }
+        let error = to.utilisation - from.utilisation - known.dot(d);
+        let gradient = known + d * (error / d.norm_squared());
+        self.constraints.push(LinearConstraint { gradient: -&gradient, margin: FULL_UTILISATION - to.utilisation });
+        self.stability = Some(gradient);
+        self.stability_is_updated = true;
+    }
+
+    /// Recomputes an updated gradient of the utilisation; false if there is none.
+    pub fn refresh_stability(&mut self, evaluator: &mut Evaluator<'_>, here: &Feasible) -> bool {
+        if !self.stability_is_updated {
+            return false;
+        }
+        self.stability = None;
+        self.stability_is_updated = false;
+        let gradient = -self.stability_gradient(evaluator, here);
+        if let Some(stability) = self.constraints.last_mut() {
+            *stability = LinearConstraint { gradient, margin: FULL_UTILISATION - here.utilisation };
+        }
+        true
+    }
+}
+
+/// The margins of all constraints that cost next to nothing, at least 0 if satisfied, in the order of
+/// [`Jacobian::simple_gradients`].
+pub fn simple_margins(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    configuration: &Configuration,
+    activations: &[f64; 7],
+) -> Vec<f64> {
+    let mut margins = Vec::with_capacity(96);
+    let mut between = |value: f64, [low, high]: [f64; 2]| margins.extend([value - low, high - value]);
+    for (q, limits) in candidate.work.q_h_rad.iter().zip(problem.human.arm().limits_rad) {
+        between(*q, limits);
+    }
+    let domain = &problem.robot.domain;
+    let x_wo = &configuration.placement.x_wo;
+    let p_wo = x_wo.translation.vector;
+    between(p_wo.x, domain.x_m);
+    between(p_wo.y, domain.y_m);
+    between(p_wo.z, domain.z_m);
+    for (arm, own) in problem.robot.arms.iter().zip(&candidate.arms) {
+        for (q, (&low, &high)) in own.q_rad.iter().zip(arm.chain.lower().iter().zip(arm.chain.upper())) {
+            between(*q, [low, high]);
+        }
+        between(own.grasp.depth_m, DEPTH_M);
+        between(own.grasp.angle_rad, ANGLE_RAD);
+    }
+    margins.push(domain.facing_margin(x_wo));
+    margins.extend(activations.iter().map(|activation| 1.0 - activation));
+    for (arm, own) in problem.robot.arms.iter().zip(&candidate.arms) {
+        margins.extend(problem.robot.pad_margins_m(arm, &own.grasp));
+    }
+    margins
+}

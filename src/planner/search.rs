@@ -1,0 +1,85 @@
+//! The search of one plan: starts, refinement, ranking.
+
+use rand_pcg::Pcg64;
+
+use super::{
+    evaluate::{self, Evaluator, Feasible},
+    library::{GraspLibrary, PostureMap},
+    params::{SearchBudget, screening::MEAN_RESPONSES},
+    problem, random, refine, screen,
+    task_family::TaskFamily,
+    warm_starts::WarmStarts,
+};
+use crate::{
+    comfort,
+    human::Human,
+    model::scenario::{PlannerKind, PlannerSettings, ResponseKind},
+};
+
+/// The candidates that the scenario's planner finds, the best first.
+pub fn search(
+    evaluator: &mut Evaluator<'_>,
+    library: &GraspLibrary,
+    warm: &WarmStarts,
+    budget: &SearchBudget,
+) -> Vec<Feasible> {
+    let PlannerSettings { kind, seed, .. } = evaluator.problem.scenario.planner;
+    let found = if kind == PlannerKind::Random {
+        random::draw(evaluator, &mut Pcg64::new(u128::from(seed), 0)).into_iter().collect()
+    } else {
+        let mut starts = warm.starts(evaluator, budget.warm_starts);
+        match &budget.warm_rounds {
+            Some(rounds) if !starts.is_empty() => refine::refine(evaluator, starts, rounds),
+            _ => {
+                starts.extend(screened(evaluator, library, warm.postures.as_ref(), budget));
+                refine::refine(evaluator, starts, &budget.rounds)
+            }
+        }
+    };
+    rank(evaluator, found)
+}
+
+/// Starts from screening the library; the posture map is made if there is none.
+pub fn screened(
+    evaluator: &mut Evaluator<'_>,
+    library: &GraspLibrary,
+    postures: Option<&PostureMap>,
+    budget: &SearchBudget,
+) -> Vec<Feasible> {
+    match postures {
+        Some(postures) => screen::screen(evaluator, &library.entries, library.draws, postures, budget),
+        None => {
+            let postures = own_postures(&evaluator.problem.human, evaluator.problem.scenario);
+            screen::screen(evaluator, &library.entries, library.draws, &postures, budget)
+        }
+    }
+}
+
+/// The posture map of the scenario's task family.
+fn own_postures(human: &Human, scenario: &crate::model::scenario::Scenario) -> PostureMap {
+    problem::posture_map(TaskFamily::of(scenario).scenario(), human)
+}
+
+/// Ranks candidates by the person's response that the scenario asks for, the best first.
+///
+/// With the best response they stay as they are: the search optimises it together with the grasp. With the mean response
+/// the search has optimised the best response too; the first few candidates are ranked by the mean over all responses, and
+/// the others are dropped. So the result is the best of those few.
+fn rank(evaluator: &Evaluator<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
+    let problem = &evaluator.problem;
+    if problem.objective.person == ResponseKind::Best {
+        return found;
+    }
+    let mut ranked: Vec<_> = found
+        .into_iter()
+        .take(MEAN_RESPONSES)
+        .filter_map(|mut found| {
+            let mean = evaluate::mean_response(problem, &found)?;
+            comfort::rate_by_average(&mut found.comfort, mean, &problem.objective);
+            found.objective = found.comfort.objective;
+            Some(found)
+        })
+        .collect();
+    ranked.sort_by(|a, b| b.objective.total_cmp(&a.objective));
+    ranked
+}

@@ -1,0 +1,67 @@
+//! The best plans that differ from one another.
+
+use super::{
+    assemble::{assemble, is_sound},
+    evaluate::Evaluator,
+    library::GraspLibrary,
+    outcome::{Outcome, PlanError},
+    params::{SearchBudget, select::STARTS_PER_PLAN},
+    search::search,
+    warm_starts::WarmStarts,
+};
+use crate::model::{
+    grasp::Edge,
+    plan::{ArmHold, Plan},
+};
+
+/// Plans whose boards are farther apart than this differ, m.
+pub const APART_M: f64 = 0.05;
+/// Plans whose boards are turned against each other by more than this differ, rad: 15 degrees.
+pub const APART_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
+/// Plans in which a joint of the robot differs by more than this differ, rad: 30 degrees.
+pub const JOINT_APART_RAD: f64 = 30.0 * std::f64::consts::PI / 180.0;
+/// True if two plans differ: an arm grasps another edge, the board is farther away than [`APART_M`] or turned by more than
+/// [`APART_RAD`], or a joint of the robot differs by more than [`JOINT_APART_RAD`]. The person's posture does not count.
+#[must_use]
+pub fn differ(one: &Plan, other: &Plan) -> bool {
+    let (a, b) = (&one.object.x_wo, &other.object.x_wo);
+    let apart = (a.translation.vector - b.translation.vector).norm() > APART_M;
+    let turned = a.rotation.angle_to(&b.rotation) > APART_RAD;
+    let arms_differ = |(a, b): (&ArmHold, &ArmHold)| {
+        let joint = a.q_rad.iter().zip(&b.q_rad).any(|(a, b)| (a - b).abs() > JOINT_APART_RAD);
+        joint || Edge::of(&a.x_og, one.object.size_m) != Edge::of(&b.x_og, other.object.size_m)
+    };
+    apart || turned || one.arms.len() != other.arms.len() || one.arms.iter().zip(&other.arms).any(arms_differ)
+}
+
+/// The best `wanted` plans that [`differ`] from one another, at least one, perhaps fewer than wanted. The search is that of one
+/// plan with more starts. Every plan is checked.
+///
+/// # Errors
+/// When the scenario's person or tool is invalid.
+pub fn top(
+    mut evaluator: Evaluator<'_>,
+    library: &GraspLibrary,
+    warm: &WarmStarts,
+    wanted: usize,
+) -> Result<Outcome<Vec<Plan>>, PlanError> {
+    let budget = SearchBudget::of(evaluator.problem.scenario.planner.budget);
+    let starts = budget.starts.max(STARTS_PER_PLAN.saturating_mul(wanted));
+    let mut budget = SearchBudget { starts, warm_rounds: None, ..budget };
+    for round in &mut budget.rounds {
+        round.candidates = round.candidates.max(2 * wanted) + budget.warm_starts;
+    }
+    let mut plans: Vec<Plan> = Vec::with_capacity(wanted);
+    for found in search(&mut evaluator, library, warm, &budget) {
+        if plans.len() == wanted {
+            break;
+        }
+        let evaluations = evaluator.stats.candidates();
+        let Some(plan) = assemble(&mut evaluator, &found, evaluations) else { continue };
+        // The comparison is cheap beside the check.
+        if plans.iter().all(|other| differ(other, &plan)) && is_sound(&evaluator, &plan)? {
+            plans.push(plan);
+        }
+    }
+    Ok(if plans.is_empty() { Outcome::Infeasible(evaluator.stats.into_infeasible()) } else { Outcome::Found(plans) })
+}

@@ -1,0 +1,92 @@
+//! Task families: tasks that differ only in the place and direction of the operation on the board.
+//!
+//! The holes of a board, or the points of a line that is cut, pose nearly the same problem: the same person, tool and force,
+//! at another place or in another direction. Warm starts are solved once for a family.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+use super::{
+    params::warm_starts::{DIRECTIONS, LEVEL, PLACE_UNIT_M, ROUNDING_UNIT},
+    problem::wrench_t,
+};
+use crate::model::{
+    frames::Pose,
+    operation::Operation,
+    scenario::{PlannerSettings, Scenario},
+    wrench::Wrench,
+};
+
+/// A family, represented by the scenario that all its tasks share: the operation is at the board's centre with the tool's x
+/// axis above x_O, and every figure is rounded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskFamily(Scenario);
+
+impl TaskFamily {
+    /// The family of a scenario's task.
+    pub fn of(scenario: &Scenario) -> Self {
+        let Operation { x_ot, .. } = scenario.operation;
+        let axes = [Vector3::x(), Vector3::y()].map(|axis| x_ot.rotation * axis);
+        let pointer = if axes[0].xy().norm() > LEVEL { axes[0] } else { axes[1] };
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -pointer.y.atan2(pointer.x));
+        let mut coords = (turn * x_ot.rotation).into_inner().coords;
+        // Of the two quaternions of a rotation the one whose largest part is positive.
+        coords *= coords[coords.iamax()].signum();
+        let rotation = UnitQuaternion::from_quaternion(coords.map(rounded).into());
+        let wrench_t = wrench_t(&scenario.operation);
+        let wrench_t = Wrench::new(wrench_t.force_n.map(rounded), wrench_t.moment_nm.map(rounded));
+        let p_ot_m = turn * x_ot.translation.vector;
+        let roll_is_free = scenario.operation.kind.roll_is_free();
+        let coarse = |v: f64| if roll_is_free { 0.0 } else { (v / PLACE_UNIT_M).round() * PLACE_UNIT_M };
+        let p_ot_m = Vector3::new(coarse(p_ot_m.x), coarse(p_ot_m.y), rounded(p_ot_m.z));
+        Self(Scenario {
+            name: String::new(),
+            operation: placed(&scenario.operation, &wrench_t, p_ot_m, rotation),
+            planner: PlannerSettings { evaluations: None, ..scenario.planner.clone() },
+            ..scenario.clone()
+        })
+    }
+
+    /// The scenario that the family's tasks share.
+    pub fn scenario(&self) -> &Scenario {
+        &self.0
+    }
+}
+
+fn rounded(v: f64) -> f64 {
+    (v / ROUNDING_UNIT).round() * ROUNDING_UNIT
+}
+
+/// An operation with a wrench in T axes, the tool at a pose on the board.
+fn placed(operation: &Operation, wrench_t: &Wrench, p_ot_m: Vector3<f64>, r_ot: UnitQuaternion<f64>) -> Operation {
+    Operation {
+        x_ot: Isometry3::from_parts(p_ot_m.into(), r_ot),
+        wrench_o: Wrench::new(r_ot * wrench_t.force_n, r_ot * wrench_t.moment_nm),
+        ..*operation
+    }
+}
+
+/// The tasks of a family for which warm starts are solved; half turns of the board transfer them to its other half.
+/// `shared` is the family's scenario, with the optima of its objective filled in.
+pub fn solved_tasks(shared: &Scenario) -> Vec<Scenario> {
+    let operation = &shared.operation;
+    let wrench_t = wrench_t(operation);
+    let Pose { translation, rotation } = operation.x_ot;
+    let at = |p_ot_m: Vector3<f64>, turn_rad: f64| {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad);
+        Scenario { operation: placed(operation, &wrench_t, p_ot_m, turn * rotation), ..shared.clone() }
+    };
+    if operation.kind.roll_is_free() {
+        // The tool's roll takes care of directions.
+        let [width_m, height_m, _] = shared.object.size_m;
+        let place = |x: f64, y: f64| translation.vector + Vector3::new(x * width_m, y * height_m, 0.0);
+        return [place(0.25, 0.25), place(0.25, -0.25), place(0.125, 0.0)].map(|p_ot_m| at(p_ot_m, 0.0)).to_vec();
+    }
+    // Between the board's axes and diagonals, so that the common directions all have neighbours at some distance.
+    let direction = |number: usize| {
+        let turn_rad = PI * (number as f64 + 0.5) / DIRECTIONS as f64;
+        at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * translation.vector, turn_rad)
+    };
+    (0..DIRECTIONS).map(direction).collect()
+}

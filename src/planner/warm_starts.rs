@@ -1,0 +1,236 @@
+//! Warm starts: solutions of a few tasks of a family, transferred to a new task.
+//!
+//! A few tasks of a family are solved with a larger budget than a plan's: first from the grasp library, then from resampled
+//! boards oriented like the best solutions so far and from the solutions of the other tasks. The best that differ are kept.
+//! To transfer a solution, the board is turned by quarters about its normal (a rectangle is the same after half a turn, and
+//! nearly so after a quarter), then the person or the board moves so that the tool is where the new task needs it. A
+//! transferred candidate that violates a constraint slightly is repaired.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+use rayon::prelude::*;
+
+use super::{
+    candidate::{Candidate, WorkPose},
+    evaluate::{self, Configuration, Evaluator, Feasible},
+    library::{ArmGrasp, BoardGrasp, GraspLibrary, GraspPattern, GraspingRobot, LibraryEntry, PostureMap, resample},
+    outcome::{PlanError, Rejection},
+    params::{
+        SearchBudget, WarmStartBudget,
+        screening::{REPAIRS_PER_START, STARTS_PER_PATTERN},
+        warm_starts::{KEPT, KEPT_PER_PATTERN, SAME_OPTIMUM},
+    },
+    problem::{self, Problem},
+    refine,
+    screen::{self, align, aligning_roll},
+    stats::SearchStats,
+    task_family::{TaskFamily, solved_tasks},
+};
+use crate::{
+    comfort,
+    human::Human,
+    model::{
+        frames::Pose,
+        grasp::{Edge, EdgeGrasp},
+        plan::Comfort,
+        scenario::{PlannerKind, Scenario},
+    },
+};
+
+/// The warm starts of one task family. They do not depend on which of the family's tasks asked for them.
+pub struct WarmStarts {
+    /// The family that they serve.
+    pub family: TaskFamily,
+    /// The posture map of the family; `None` for the random planner, which does not use it.
+    pub postures: Option<PostureMap>,
+    solutions: Vec<Solution>,
+}
+
+/// A solution of one of the solved tasks.
+#[derive(Clone, Debug)]
+struct Solution {
+    candidate: Candidate,
+    x_wo: Pose,
+    comfort: Comfort,
+    /// The tool tip on the board.
+    p_ot_m: Point3<f64>,
+}
+
+impl WarmStarts {
+    /// Solves the tasks of a family. `shared` is the family's scenario, with the optima of a normalised objective filled in.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn new(family: TaskFamily, shared: &Scenario, library: &GraspLibrary) -> Result<Self, PlanError> {
+        let human = Human::new(&shared.human, &shared.tool)?;
+        let planner = &shared.planner;
+        if planner.kind == PlannerKind::Random {
+            return Ok(Self { family, postures: None, solutions: Vec::new() });
+        }
+        let postures = problem::posture_map(shared, &human);
+        let (seed, budget) = (planner.seed, WarmStartBudget::of(planner.budget));
+        let mut warm = Self { family, postures: Some(postures), solutions: Vec::new() };
+        if let Some(budget) = budget {
+            warm.solve(&solved_tasks(shared), library, &budget, seed)?;
+        }
+        Ok(warm)
+    }
+
+    /// Solves the tasks pass by pass, at first from the library, then from boards oriented like the best solutions so far.
+    fn solve(
+        &mut self,
+        tasks: &[Scenario],
+        library: &GraspLibrary,
+        budget: &WarmStartBudget,
+        seed: u64,
+    ) -> Result<(), PlanError> {
+        for pass in 0..budget.passes {
+            let resampled;
+            let (entries, task_budget) = if pass == 0 {
+                (&library.entries, &budget.first)
+            } else {
+                let boards: Vec<_> = self.solutions.iter().map(|solution| solution.x_wo).collect();
+                resampled = resample(&library.robot, &boards, budget.resampled_boards, [seed, pass]);
+                (&resampled, &budget.later)
+            };
+            // Each task uses the solutions of the pass before, so their order does not matter.
+            let solve = |task: &Scenario| self.solve_task(task, &library.robot, entries, task_budget);
+            let found: Result<Vec<_>, PlanError> = tasks.par_iter().map(solve).collect();
+            self.solutions = found?.concat();
+        }
+        Ok(())
+    }
+
+    /// Solves one task from the solutions so far and the given entries.
+    fn solve_task(
+        &self,
+        task: &Scenario,
+        robot: &GraspingRobot,
+        entries: &[LibraryEntry],
+        budget: &SearchBudget,
+    ) -> Result<Vec<Solution>, PlanError> {
+        let mut evaluator = Evaluator::new(Problem::new(task, robot)?, SearchStats::unlimited());
+        let mut starts = self.starts(&mut evaluator, budget.warm_starts);
+        if let Some(postures) = &self.postures {
+            starts.extend(screen::screen(&mut evaluator, entries, 0, postures, budget));
+        }
+        let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds));
+        let p_ot_m = task.operation.x_ot.translation.vector.into();
+        let solution = |Feasible { candidate, configuration, comfort, .. }| Solution {
+            candidate,
+            x_wo: configuration.placement.x_wo,
+            comfort,
+            p_ot_m,
+        };
+        Ok(found.into_iter().map(solution).collect())
+    }
+
+    /// Transfers the solutions to the evaluator's task: at most `count` candidates that satisfy every constraint. They are
+    /// ranked by the sum of their objectives after the transfer and in the task that they come from: the former says how
+    /// well a solution fits, the latter what refinement can make of it.
+    pub fn starts(&self, evaluator: &mut Evaluator<'_>, count: usize) -> Vec<Feasible> {
+        let mut transferred = Vec::with_capacity(8 * self.solutions.len());
+        for solution in &self.solutions {
+            let at_origin = comfort::weighted(solution.comfort, &evaluator.problem.objective).objective;
+            for quarters in 0..Edge::ALL.len() {
+                for candidate in solution.transferred(&evaluator.problem, quarters) {
+                    let Some(candidate) = candidate else {
+                        evaluator.stats.count();
+                        evaluator.stats.reject(Rejection::RobotReach);
+                        continue;
+                    };
+                    let configuration = Configuration::new(&evaluator.problem, &candidate);
+                    let objective = evaluate::comfort(&evaluator.problem, &candidate, &configuration).objective;
+                    transferred.push((objective + at_origin, candidate));
+                }
+            }
+        }
+        transferred.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut kept: Vec<Feasible> = Vec::with_capacity(count);
+        let mut repairs = 0;
+        for (_, candidate) in transferred {
+            if kept.len() == count || repairs == REPAIRS_PER_START * count || evaluator.stats.is_exhausted() {
+                break;
+            }
+            let alike = kept.iter().filter(|other| other.candidate.pattern() == candidate.pattern()).count();
+            if alike == STARTS_PER_PATTERN {
+                continue;
+            }
+            repairs += 1;
+            kept.extend(refine::repair(evaluator, candidate));
+        }
+        kept
+    }
+
+    /// The largest value of a comfort among the solutions; `None` without a solution.
+    pub fn best(&self, of: impl Fn(&Comfort) -> f64) -> Option<f64> {
+        self.solutions.iter().map(|solution| of(&solution.comfort)).max_by(f64::total_cmp)
+    }
+}
+
+impl Solution {
+    /// The solution with the board turned by quarters about its normal and the tool where the problem's operation needs it:
+    /// once with the board left in place and the person moved, once with the person left in place and the board moved.
+    fn transferred(&self, problem: &Problem<'_>, quarters: usize) -> [Option<Candidate>; 2] {
+        let grasp = BoardGrasp { x_wo: self.x_wo, arms: self.candidate.arms.clone() };
+        let Some(grasp) = turned(problem.robot, &grasp, quarters) else { return [None, None] };
+        [self.with_person_moved(problem, &grasp), self.with_board_moved(problem, &grasp)]
+    }
+
+    fn with_person_moved(&self, problem: &Problem<'_>, grasp: &BoardGrasp) -> Option<Candidate> {
+        let q_h_rad = &self.candidate.work.q_h_rad;
+        let x_bt = problem.human.tool_pose_b(q_h_rad);
+        align(problem, grasp, q_h_rad, &x_bt)
+    }
+
+    fn with_board_moved(&self, problem: &Problem<'_>, grasp: &BoardGrasp) -> Option<Candidate> {
+        let work = self.candidate.work;
+        let x_bt = problem.human.tool_pose_b(&work.q_h_rad);
+        let roll_rad = aligning_roll(problem, &grasp.x_wo, &x_bt);
+        let mut candidate = Candidate { work: WorkPose { roll_rad, ..work }, arms: grasp.arms.clone() };
+        // The tip stays where it is, and the board moves under it.
+        let p_ot_m = Point3::from(problem.scenario.operation.x_ot.translation.vector);
+        let missed = self.x_wo * self.p_ot_m - candidate.x_wo(problem) * p_ot_m;
+        candidate.work.p_wo_xy_m[0] += missed.x;
+        candidate.work.p_wo_xy_m[1] += missed.y;
+        let x_wo = candidate.x_wo(problem);
+        problem.robot.follow(&mut candidate.arms, &x_wo).then_some(candidate)
+    }
+}
+
+/// The grasp with the board turned by quarters about its normal: each gripper takes the edge that is now where its own was.
+/// `None` if an arm cannot make up for the board's unequal sides.
+fn turned(robot: &GraspingRobot, grasp: &BoardGrasp, quarters: usize) -> Option<BoardGrasp> {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2 * quarters as f64);
+    let x_wo = Isometry3::from_parts(grasp.x_wo.translation, grasp.x_wo.rotation * turn);
+    let arms = grasp.arms.iter().map(|ArmGrasp { grasp, q_rad }| {
+        let edge = grasp.edge.turned(Edge::ALL.len() - quarters);
+        let half_m = |edge: Edge| edge.reach_and_half_length_m(robot.size_m).1;
+        let along_m = grasp.along_m * half_m(edge) / half_m(grasp.edge);
+        ArmGrasp { grasp: EdgeGrasp { edge, along_m, ..*grasp }, q_rad: q_rad.clone() }
+    });
+    let mut arms: Vec<_> = arms.collect();
+    // After half a turn the grippers are where they were.
+    (quarters.is_multiple_of(2) || robot.follow(&mut arms, &x_wo)).then_some(BoardGrasp { x_wo, arms })
+}
+
+/// The best solutions that differ: at most [`KEPT_PER_PATTERN`] have the same pattern but for a turn of the board, and those
+/// have different objectives.
+fn distinct(found: Vec<Feasible>) -> Vec<Feasible> {
+    let mut kept: Vec<(Feasible, GraspPattern)> = Vec::with_capacity(KEPT);
+    for solution in found {
+        if kept.len() == KEPT {
+            break;
+        }
+        let pattern = solution.candidate.normalised_pattern();
+        let mut alike = kept.iter().filter(|(_, other)| *other == pattern);
+        let same = |(other, _): &(Feasible, _)| {
+            (other.objective - solution.objective).abs() < SAME_OPTIMUM * solution.objective.abs()
+        };
+        if alike.clone().count() < KEPT_PER_PATTERN && !alike.any(same) {
+            kept.push((solution, pattern));
+        }
+    }
+    kept.into_iter().map(|(solution, _)| solution).collect()
+}

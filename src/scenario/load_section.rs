@@ -1,0 +1,226 @@
+//! The section `[load]` of a scenario file, and measured forces from a CSV file.
+
+use std::path::Path;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{InputError, InputErrorKind, check::Checker, error::read_text};
+use crate::model::{
+    load::{ForceFrame, ForceProfile, Load, Uncertainty},
+    operation::OperationKind,
+    scenario::Scenario,
+};
+
+/// The header of a file of measured forces.
+const HEADER: [&str; 7] = ["time_s", "fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm"];
+
+/// Fewest simulation steps per period of a vibration; fewer do not sample a sine.
+const STEPS_PER_PERIOD: f64 = 4.0;
+
+/// The kind of a load.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LoadKind {
+    /// The operation's wrench; it grows linearly in the ramp.
+    #[default]
+    Ramp,
+    /// A drill with spindle torque, vibration and breakthrough.
+    Drill,
+    /// A knife that moves along a circle during the hold.
+    Path,
+    /// A measured wrench from a file.
+    Measured,
+}
+
+/// `[load]`: `kind` determines which other keys are allowed.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LoadSection {
+    /// `ramp`, `drill`, `path` or `measured`; `ramp` by default.
+    pub kind: LoadKind,
+    /// The frame in which the wrench's direction is constant: `board`, the default, or `world`.
+    pub frame: ForceFrame,
+    /// For `drill`: torque of the spindle on the board about the tool's axis z_T, N m; 0 by default.
+    pub spindle_torque_nm: Option<f64>,
+    /// For `drill`: amplitude of the thrust's vibration, N; 0 by default.
+    pub vibration_n: Option<f64>,
+    /// For `drill`: frequency of the vibration, Hz.
+    pub vibration_hz: Option<f64>,
+    /// For `drill`: when the drill breaks through, s after the start of the hold; the thrust then falls to zero within 20 ms. By
+    /// default it does not break through.
+    pub breakthrough_s: Option<f64>,
+    /// For `path`: speed of the knife along the circle, m/s.
+    pub speed_m_s: Option<f64>,
+    /// For `path`: the circle's centre on the worked face, m along x_O and y_O; by default the board's centre.
+    pub centre_m: Option<[f64; 2]>,
+    /// For `path`: force into the face as a fraction of the cutting force; 0 by default.
+    pub normal_share: Option<f64>,
+    /// For `measured`: a CSV file with the columns `time_s, fx_n, fy_n, fz_n, mx_nm, my_nm, mz_nm`: s since the ramp began, N,
+    /// and N m about the tool tip, O axes. The path is relative to the scenario file's folder.
+    pub file: Option<String>,
+}
+
+/// The load that a section describes. The file of measured forces is relative to `folder`.
+///
+/// # Errors
+/// If a key is missing or belongs to another kind, or the file of measured forces is invalid.
+pub fn load(check: &Checker<'_>, section: &LoadSection, folder: &Path) -> Result<Load, InputError> {
+    check_keys(check, section)?;
+    let profile = match section.kind {
+        LoadKind::Ramp => ForceProfile::Ramp,
+        LoadKind::Drill => ForceProfile::Drill {
+            spindle_torque_nm: section.spindle_torque_nm.unwrap_or(0.0),
+            vibration_n: section.vibration_n.unwrap_or(0.0),
+            vibration_hz: match section.vibration_n {
+                Some(_) => check.present("load.vibration_hz", section.vibration_hz, "a frequency in Hz")?,
+                None => section.vibration_hz.unwrap_or(0.0),
+            },
+            breakthrough_s: section.breakthrough_s,
+        },
+        LoadKind::Path => ForceProfile::Path {
+            speed_m_s: check.present("load.speed_m_s", section.speed_m_s, "a speed in m/s")?,
+            centre_m: section.centre_m.unwrap_or_default(),
+            normal_share: section.normal_share.unwrap_or(0.0),
+        },
+        LoadKind::Measured => {
+            let file = check.present("load.file", section.file.as_ref(), "the path of a CSV file")?;
+            ForceProfile::Measured { samples: measured(&folder.join(file))? }
+        }
+    };
+    Ok(Load { frame: section.frame, profile })
+}
+
+fn check_keys(check: &Checker<'_>, section: &LoadSection) -> Result<(), InputError> {
+    let keys = [
+        ("load.spindle_torque_nm", section.spindle_torque_nm.is_some(), LoadKind::Drill),
+        ("load.vibration_n", section.vibration_n.is_some(), LoadKind::Drill),
+        ("load.vibration_hz", section.vibration_hz.is_some(), LoadKind::Drill),
+        ("load.breakthrough_s", section.breakthrough_s.is_some(), LoadKind::Drill),
+        ("load.speed_m_s", section.speed_m_s.is_some(), LoadKind::Path),
+        ("load.centre_m", section.centre_m.is_some(), LoadKind::Path),
+        ("load.normal_share", section.normal_share.is_some(), LoadKind::Path),
+        ("load.file", section.file.is_some(), LoadKind::Measured),
+    ];
+    keys.into_iter().filter(|&(_, _, kind)| kind != section.kind).try_for_each(|(key, given, kind)| {
+        check.absent(key, given, &format!("kind = \"{}\"", format!("{kind:?}").to_lowercase()))
+    })
+}
+
+/// Reads a file of measured forces.
+///
+/// # Errors
+/// If the file cannot be read or has other columns, a cell that is not a finite number, times that do not increase, or
+/// only zero wrenches. The error names the file and the line.
+pub fn measured(path: &Path) -> Result<Vec<[f64; 7]>, InputError> {
+    let text = read_text(path)?;
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut rows: Vec<[f64; 7]> = Vec::new();
+    let mut records = reader.records();
+    let first = records.next().transpose().map_err(|error| unreadable(path, &error))?;
+    let found = first.map(|record| record.iter().collect::<Vec<_>>().join(", ")).unwrap_or_default();
+    if found != HEADER.join(", ") {
+        return Err(at(path, Some(1), None, format!("\"{found}\""), &format!("the columns {}", HEADER.join(", "))));
+    }
+    for record in records {
+        let record = record.map_err(|error| unreadable(path, &error))?;
+        let line = record.position().map(|position| position.line() as usize);
+        if record.len() != HEADER.len() {
+            return Err(at(path, line, None, format!("{} cells", record.len()), "7, one a column"));
+        }
+        let mut row = [0.0; 7];
+        for ((value, cell), column) in row.iter_mut().zip(&record).zip(HEADER) {
+            let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
+            let expected = "a finite number";
+            *value = number.ok_or_else(|| at(path, line, Some(column), format!("\"{cell}\""), expected))?;
+        }
+        if let Some(last) = rows.last().filter(|last| last[0] >= row[0]) {
+            let expected = format!("a time after {}, that of the row before", last[0]);
+            return Err(at(path, line, Some(HEADER[0]), row[0].to_string(), &expected));
+        }
+        rows.push(row);
+    }
+    if !loads(&rows) {
+        return Err(at(path, None, None, format!("{} rows without a load", rows.len()), "forces that load the board"));
+    }
+    Ok(rows)
+}
+
+/// True if at least one row has a nonzero wrench.
+fn loads(rows: &[[f64; 7]]) -> bool {
+    rows.iter().any(|row| row[1..].iter().any(|&component| component != 0.0))
+}
+
+fn at(path: &Path, line: Option<usize>, column: Option<&str>, found: String, expected: &str) -> InputError {
+    let kind = InputErrorKind::Value { found, expected: expected.to_owned() };
+    InputError { file: path.to_owned(), line, key: column.map(str::to_owned), kind }
+}
+
+fn unreadable(path: &Path, error: &csv::Error) -> InputError {
+    let line = error.position().map(|position| position.line() as usize);
+    InputError { file: path.to_owned(), line, key: None, kind: InputErrorKind::Syntax(error.to_string()) }
+}
+
+/// Checks the load of a resolved scenario against its operation and phases.
+pub fn check_load(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError> {
+    let kind = scenario.operation.kind;
+    match &scenario.load.profile {
+        ForceProfile::Ramp => Ok(()),
+        ForceProfile::Drill { spindle_torque_nm, vibration_n, vibration_hz, breakthrough_s } => {
+            let found = format!("\"drill\" for an operation that is to {kind}");
+            check.that(kind == OperationKind::Drill, "load.kind", found, "an operation of the kind \"drill\"")?;
+            check.within("load.spindle_torque_nm", *spindle_torque_nm, -100.0, 100.0, "N m")?;
+            check.not_negative("load.vibration_n", *vibration_n, "N")?;
+            let most_hz = 1.0 / (STEPS_PER_PERIOD * scenario.simulation.timestep_s);
+            check.within("load.vibration_hz", *vibration_hz, 0.0, most_hz, "Hz, four time steps a period")?;
+            let Some(breakthrough_s) = *breakthrough_s else { return Ok(()) };
+            check.within("load.breakthrough_s", breakthrough_s, 0.0, scenario.simulation.hold_s, "s, within the hold")
+        }
+        ForceProfile::Path { .. } => {
+            let found = format!("\"path\" for an operation that is to {kind}");
+            check.that(kind == OperationKind::Cut, "load.kind", found, "an operation of the kind \"cut\"")?;
+            check_path(check, scenario)
+        }
+        ForceProfile::Measured { samples } => {
+            let ordered = samples.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+            let fine = ordered && loads(samples) && samples.iter().flatten().all(|figure| figure.is_finite());
+            let expected = "finite rows in the order of time, with some load";
+            check.that(fine, "load.profile.samples", format!("{} rows", samples.len()), expected)
+        }
+    }
+}
+
+/// Requires a knife that does not start at the circle's centre and stays on the board.
+fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError> {
+    let ForceProfile::Path { speed_m_s, centre_m, normal_share } = scenario.load.profile else { return Ok(()) };
+    check.within("load.speed_m_s", speed_m_s, 0.0, 10.0, "m/s")?;
+    check.within("load.normal_share", normal_share, -10.0, 10.0, "a share of the cutting force")?;
+    check.finite("load.centre_m", &centre_m)?;
+    let x_ot = scenario.operation.x_ot;
+    let p_ot_m = x_ot.translation.vector;
+    let radius_m = libm::hypot(p_ot_m.x - centre_m[0], p_ot_m.y - centre_m[1]);
+    check.that(radius_m > 1e-6, "load.centre_m", "the tool point", "a centre beside the tool point")?;
+    let force_o_n = scenario.operation.wrench_o.force_n;
+    let turned = |time_s| ForceProfile::travel_angle_rad(speed_m_s, centre_m, &p_ot_m, &force_o_n, time_s);
+    let whole_rad = turned(scenario.simulation.hold_s).clamp(-std::f64::consts::TAU, std::f64::consts::TAU);
+    let centre = Vector3::new(centre_m[0], centre_m[1], 0.0);
+    // At every 360th of the path.
+    (0..=360).try_for_each(|part| {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), whole_rad * f64::from(part) / 360.0);
+        let mut x_ot = x_ot;
+        x_ot.translation.vector = centre + turn * (p_ot_m - centre);
+        check.on_board("load.centre_m", &x_ot, scenario.object.size_m)
+    })
+}
+
+/// Checks the deviations of a simulation from its plan.
+pub fn check_uncertainty(check: &Checker<'_>, uncertainty: &Uncertainty) -> Result<(), InputError> {
+    let Uncertainty { friction_scale, grip_force_scale, contact_stiffness_scale, joint_stiffness_scale } = *uncertainty;
+    check.within("uncertainty.friction_scale", friction_scale, 0.0, 10.0, "a factor")?;
+    check.within("uncertainty.grip_force_scale", grip_force_scale, 0.01, 10.0, "a factor")?;
+    // Below this range pads penetrate by millimetres; above 16/9, two oscillations per substep, boards oscillate.
+    check.within("uncertainty.contact_stiffness_scale", contact_stiffness_scale, 0.001, 1.75, "a factor")?;
+    check.within("uncertainty.joint_stiffness_scale", joint_stiffness_scale, 0.01, 100.0, "a factor")
+}

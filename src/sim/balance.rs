@@ -1,0 +1,89 @@
+//! The simulation's own balance: what the engine makes of momentum and energy, kept beside it step by step.
+//!
+//! They look at the engine from outside, at poses, velocities and forces alone, so that a solver that goes wrong cannot
+//! hide it. They must never change what is simulated.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use rapier3d_f64::prelude::{PhysicsWorld, RigidBody, RigidBodyHandle};
+
+use super::convert;
+use crate::model::{GRAVITY_W, frames::Pose, wrench::Wrench};
+
+/// A joint before a step, to account for the work that its drive does in the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct JointState {
+    /// Position, rad or m.
+    pub position: f64,
+    /// Velocity, rad/s or m/s.
+    pub velocity: f64,
+}
+
+/// Work of a drive between two states, J: the mean of its effort `stiffness (rest - q) - damping q'` at both, times the
+/// way between them.
+pub(super) fn drive_work_j(stiffness: f64, damping: f64, rest: f64, states: [JointState; 2]) -> f64 {
+    let [before, after] =
+        states.map(|JointState { position, velocity }| stiffness * (rest - position) - damping * velocity);
+    (before + after) / 2.0 * (states[1].position - states[0].position)
+}
+
+/// Kinetic energy and weight's potential of a body, J.
+pub(super) fn mechanical_energy_j(body: &RigidBody) -> f64 {
+    body.kinetic_energy() - body.mass() * GRAVITY_W.dot(&convert::from_engine_vector(body.center_of_mass()))
+}
+
+/// The board before a step, and the energy of the scene until then.
+pub(super) struct Balance {
+    board: RigidBodyHandle,
+    x_wo: Pose,
+    com_w: Vector3<f64>,
+    velocity_m_s: Vector3<f64>,
+    energy_j: f64,
+    /// Tool's wrench on the board about its centre of mass, world axes, in the step.
+    tool_w: Wrench,
+    /// What contacts and integration brought in, J.
+    pub contact_energy_j: f64,
+}
+
+impl Balance {
+    /// Opens the books on a scene with this energy.
+    pub fn new(world: &PhysicsWorld, board: RigidBodyHandle, energy_j: f64) -> Self {
+        let body = &world.bodies[board];
+        Self {
+            board,
+            x_wo: convert::from_engine_pose(body.position()),
+            com_w: convert::from_engine_vector(body.center_of_mass()),
+            velocity_m_s: convert::from_engine_vector(body.linvel()),
+            energy_j,
+            tool_w: Wrench::default(),
+            contact_energy_j: 0.0,
+        }
+    }
+
+    /// Before a step: the tool's wrench in it, about a point, world axes.
+    pub fn begin_step(&mut self, world: &PhysicsWorld, tool_w: &Wrench, p_wt_m: &Vector3<f64>) {
+        let body = &world.bodies[self.board];
+        self.x_wo = convert::from_engine_pose(body.position());
+        self.com_w = convert::from_engine_vector(body.center_of_mass());
+        self.velocity_m_s = convert::from_engine_vector(body.linvel());
+        self.tool_w = tool_w.about(&(p_wt_m - self.com_w));
+    }
+
+    /// After a step: the scene's energy now, and the work that servos and fingers did in the step.
+    pub fn end_step(&mut self, world: &PhysicsWorld, energy_j: f64, drives_j: f64) {
+        let body = &world.bodies[self.board];
+        let moved_m = convert::from_engine_vector(body.center_of_mass()) - self.com_w;
+        let turned: UnitQuaternion<f64> =
+            convert::from_engine_pose(body.position()).rotation * self.x_wo.rotation.inverse();
+        let tool_j = self.tool_w.force_n.dot(&moved_m) + self.tool_w.moment_nm.dot(&turned.scaled_axis());
+        self.contact_energy_j += energy_j - self.energy_j - drives_j - tool_j;
+        self.energy_j = energy_j;
+    }
+
+    /// What the board's change of momentum in the last step leaves unexplained by these forces of the pads, N.
+    pub fn force_residual_n(&self, world: &PhysicsWorld, pads_w_n: &Vector3<f64>) -> f64 {
+        let body = &world.bodies[self.board];
+        let change_n = (convert::from_engine_vector(body.linvel()) - self.velocity_m_s)
+            * (body.mass() / world.integration_parameters.dt);
+        (change_n - pads_w_n - self.tool_w.force_n - GRAVITY_W * body.mass()).norm()
+    }
+}

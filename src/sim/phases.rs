@@ -1,0 +1,116 @@
+//! The phases of a simulation: when the tool's wrench acts.
+
+use super::SimError;
+use crate::model::{scenario::SimulationSettings, trace::Phase};
+
+/// The load over the steps of a simulation: none while settling, growing evenly in the ramp, whole in the hold, none
+/// after the release.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PhaseSchedule {
+    settle: usize,
+    ramp: usize,
+    hold: usize,
+    release: usize,
+}
+
+impl PhaseSchedule {
+    /// The profile of these settings, each phase rounded to whole steps.
+    ///
+    /// # Errors
+    /// [`SimError::Settings`] when the time step is not positive or longer than 4 ms, a phase negative or not finite,
+    /// or the whole longer than 100 000 steps.
+    pub fn new(settings: &SimulationSettings) -> Result<Self, SimError> {
+        let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
+        if !(timestep_s > 0.0 && timestep_s <= SimulationSettings::MAX_TIMESTEP_S) {
+            let expected = "a positive time of at most 0.004 s";
+            return Err(SimError::Settings { key: "timestep_s", found: timestep_s, expected });
+        }
+        let steps = |key, duration_s: f64| {
+            if duration_s.is_finite() && duration_s >= 0.0 {
+                // The cast saturates; what it rounds is not negative.
+                Ok((duration_s / timestep_s).round() as usize)
+            } else {
+                Err(SimError::Settings { key, found: duration_s, expected: "a time of at least zero" })
+            }
+        };
+        let profile = Self {
+            settle: steps("settle_s", settle_s)?,
+            ramp: steps("ramp_s", ramp_s)?,
+            hold: steps("hold_s", hold_s)?,
+            release: steps("release_s", release_s)?,
+        };
+        if profile.steps() > SimulationSettings::MAX_STEPS {
+            let found = settle_s + ramp_s + hold_s + release_s;
+            return Err(SimError::Settings { key: "duration in s", found, expected: "at most 100000 time steps" });
+        }
+        Ok(profile)
+    }
+
+    /// How many steps there are.
+    pub fn steps(&self) -> usize {
+        self.settle.saturating_add(self.ramp).saturating_add(self.hold).saturating_add(self.release)
+    }
+
+    /// How many of them come before the load.
+    pub fn settle_steps(&self) -> usize {
+        self.settle
+    }
+
+    /// In how many of them the load grows.
+    pub fn ramp_steps(&self) -> usize {
+        self.ramp
+    }
+
+    /// The phase and the multiple of the operation's wrench that acts in a step; steps count from 1, and 0 stands for
+    /// the state at the start.
+    pub fn at(&self, step: usize) -> (Phase, f64) {
+        let ramp_end = self.settle + self.ramp;
+        if step <= self.settle {
+            (Phase::Settle, 0.0)
+        } else if step <= ramp_end {
+            (Phase::Ramp, (step - self.settle) as f64 / self.ramp as f64)
+        } else if step <= ramp_end + self.hold {
+            (Phase::Hold, 1.0)
+        } else {
+            (Phase::Release, 0.0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn profile(settle_s: f64, ramp_s: f64) -> PhaseSchedule {
+        PhaseSchedule::new(&SimulationSettings { settle_s, ramp_s, hold_s: 1.0, release_s: 0.5, timestep_s: 0.002 })
+            .unwrap()
+    }
+
+    #[test]
+    fn the_load_grows_evenly_to_one_and_goes() {
+        let profile = profile(0.5, 1.0);
+        assert_eq!(profile.steps(), 1500);
+        assert_eq!(profile.at(250), (Phase::Settle, 0.0));
+        assert_eq!(profile.at(500), (Phase::Ramp, 0.5));
+        assert_eq!(profile.at(750), (Phase::Ramp, 1.0));
+        assert_eq!(profile.at(1250), (Phase::Hold, 1.0));
+        assert_eq!(profile.at(1251), (Phase::Release, 0.0));
+    }
+
+    #[test]
+    fn without_a_ramp_the_load_comes_at_once() {
+        assert_eq!(profile(0.5, 0.0).at(251), (Phase::Hold, 1.0));
+    }
+
+    #[test]
+    fn settings_that_make_no_sense_are_refused() {
+        for timestep_s in [0.0, -0.002, 0.005, f64::NAN, f64::INFINITY] {
+            let settings = SimulationSettings { timestep_s, ..SimulationSettings::default() };
+            assert!(matches!(PhaseSchedule::new(&settings), Err(SimError::Settings { key: "timestep_s", .. })));
+        }
+        let settings = SimulationSettings { hold_s: -1.0, ..SimulationSettings::default() };
+        assert!(matches!(PhaseSchedule::new(&settings), Err(SimError::Settings { key: "hold_s", .. })));
+        let settings = SimulationSettings { hold_s: 1e300, ..SimulationSettings::default() };
+        assert!(matches!(PhaseSchedule::new(&settings), Err(SimError::Settings { key: "duration in s", .. })));
+    }
+}

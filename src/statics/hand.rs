@@ -1,0 +1,113 @@
+//! One hand of a grasp: two soft-finger pads at the end of a compliant arm.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Matrix6, Matrix6xX, Vector3};
+
+use super::patch::mean_distance_from_centre_m;
+use crate::model::{frames::Pose, wrench::Wrench};
+
+/// One pad on the object: a soft finger with a rectangular patch (docs/method.md#62-pad-limits).
+///
+/// With `(ft1, ft2, fn)` the force and `(mt1, mt2, mn)` the moment on the object about the pad's centre in pad axes,
+/// half sides a and b and the torsion radius e: `|(ft1, ft2, mn / e)| <= mu fn` (friction and torsion), `|mt1| <= b
+/// fn`, `|mt2| <= a fn` (centre of pressure).
+#[derive(Clone, Debug, PartialEq)]
+pub struct PadModel {
+    /// Which of the hand's pads it is, such as `upper`.
+    pub name: String,
+    /// X_OP, P at the centre of the part of the pad that lies on the face; z_P points into the object.
+    pub x_op: Pose,
+    /// Half sides of that part along x_P and y_P, m.
+    pub half_sides_m: [f64; 2],
+    /// Coulomb friction coefficient between pad and object.
+    pub friction: f64,
+}
+
+impl PadModel {
+    /// Torsion radius e of the patch, m: the mean distance of its points from its centre.
+    pub fn torsion_radius_m(&self) -> f64 {
+        mean_distance_from_centre_m(self.half_sides_m)
+    }
+
+    /// R_OP.
+    pub(super) fn rotation(&self) -> Matrix3<f64> {
+        self.x_op.rotation.to_rotation_matrix().into_inner()
+    }
+
+    /// A wrench on the object about O's origin in O axes, from the same wrench about the pad's centre in pad axes.
+    pub fn wrench_about_object(&self, wrench_p: &Wrench) -> Wrench {
+        wrench_p.moved(&self.x_op)
+    }
+}
+
+/// One hand of a grasp; everything in O axes unless noted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HandModel {
+    /// The arm's name, such as `left`.
+    pub name: String,
+    /// The names of the arm's n joints, from the base outward.
+    pub joints: Vec<String>,
+    /// Its two pads.
+    pub pads: [PadModel; 2],
+    /// Force F that pushes each finger, N. The fingers are coupled, so the two normal forces add up to 2 F.
+    pub grip_force_n: f64,
+    /// The grasp point between the pads, in O, m. The hand's wrench is taken about it.
+    pub grasp_point_o: Vector3<f64>,
+    /// Jacobian J of the grasp point, 6 x n, O axes: rows 0 to 2 its velocity (m/s), rows 3 to 5 the angular velocity
+    /// (rad/s), for joint velocities in rad/s.
+    pub jacobian_o: Matrix6xX<f64>,
+    /// Joint torques g that hold arm and gripper against gravity, n, N m.
+    pub gravity_torque_nm: DVector<f64>,
+    /// Torque limit of each joint, n, N m.
+    pub effort_nm: DVector<f64>,
+    /// Stiffness K_q of each joint's position control, n, N m/rad.
+    pub stiffness_nm_rad: DVector<f64>,
+    /// `dg/dq`, n x n, N m/rad. The controller compensates gravity at the planned angles, so the change of the gravity
+    /// torque with the angles adds to the joint stiffness.
+    pub gravity_stiffness_nm_rad: DMatrix<f64>,
+}
+
+impl HandModel {
+    /// The number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The hand's wrench on the object about the grasp point in O axes, from its pads' wrenches, each about the pad's
+    /// centre in pad axes.
+    pub fn wrench_about_grasp_point(&self, pads_p: &[Wrench; 2]) -> Wrench {
+        let about_object = |index: usize| self.pads[index].wrench_about_object(&pads_p[index]);
+        (about_object(0) + about_object(1)).about(&-self.grasp_point_o)
+    }
+
+    /// Joint torques `g + J' w` under its pads' wrenches on the object, N m.
+    pub(super) fn joint_torque_nm(&self, pads_p: &[Wrench; 2]) -> DVector<f64> {
+        let wrench = self.wrench_about_grasp_point(pads_p).to_vector();
+        self.jacobian_o.tr_mul(&wrench) + &self.gravity_torque_nm
+    }
+
+    /// Compliance of the arm at the grasp point, `C = J (K_q + dg/dq)^-1 J'`, 6 x 6, O axes (m/N, rad/(N m)): a wrench
+    /// w on the hand displaces it by `C w`. NaN if `K_q + dg/dq` is not positive definite, which
+    /// [`ContactModel::check`](super::ContactModel::check) rejects.
+    #[must_use]
+    pub fn compliance(&self) -> Matrix6<f64> {
+        let Some(factor) = self.stiffness_factor() else { return Matrix6::repeat(f64::NAN) };
+        // As a product of L^-1 J' with itself the matrix is symmetric to the last bit.
+        let mut half = self.jacobian_o.transpose();
+        factor.l_dirty().solve_lower_triangular_mut(&mut half);
+        Matrix6::from_iterator(half.tr_mul(&half).iter().copied())
+    }
+
+    /// Joint displacements `(K_q + dg/dq)^-1 tau`, rad, under joint torques tau, N m.
+    pub(super) fn joint_deflection_rad(&self, torque_nm: &DVector<f64>) -> DVector<f64> {
+        self.stiffness_factor().map_or_else(|| torque_nm * f64::NAN, |factor| factor.solve(torque_nm))
+    }
+
+    /// Cholesky factor of `K_q + dg/dq`; `None` if it is not positive definite.
+    pub(super) fn stiffness_factor(&self) -> Option<Cholesky<f64, Dyn>> {
+        let mut stiffness = self.gravity_stiffness_nm_rad.clone();
+        for (joint, stiffness_nm_rad) in self.stiffness_nm_rad.iter().enumerate() {
+            stiffness[(joint, joint)] += stiffness_nm_rad;
+        }
+        stiffness.cholesky()
+    }
+}

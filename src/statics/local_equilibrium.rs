@@ -1,0 +1,74 @@
+//! First-order response of a contact model to small changes of it, without a new solve.
+//!
+//! The planner's refinement differentiates the response by some twenty variables. If all pads are below their limits,
+//! [`super::elastic`] gives the changed response in closed form; otherwise one Newton step with the factorised system
+//! of the equilibrium, exact to first order ([`super::solvers::interior_point`]).
+
+use super::{
+    contact_model::ContactModel,
+    elastic,
+    equilibrium::{CompliantResponse, Equilibrium},
+    solvers::{energy::HandEnergy, interior_point::InteriorPoint},
+    welded::WeldedStiffness,
+};
+use crate::model::scenario::Limits;
+
+/// The equilibria of a contact model with and without its load, ready for evaluation of slightly different models.
+#[derive(Clone, Debug)]
+pub struct LocalEquilibrium {
+    load_factor: f64,
+    unloaded: Base,
+    loaded: Base,
+}
+
+/// An equilibrium by the method that found it.
+#[derive(Clone, Debug)]
+enum Base {
+    Welded,
+    InteriorPoint(Box<InteriorPoint>),
+}
+
+impl LocalEquilibrium {
+    /// `None` without an equilibrium under the weight alone or at the load factor, or if a pad has no friction.
+    pub fn new(model: &ContactModel, load_factor: f64) -> Option<Self> {
+        let welded = WeldedStiffness::new(model);
+        let energies = HandEnergy::of_hands(model);
+        let base = |load_factor: f64| {
+            if welded.as_ref().is_some_and(|welded| elastic::equilibrium(model, welded, load_factor).is_some()) {
+                return Some(Base::Welded);
+            }
+            InteriorPoint::solve(model, &energies, load_factor).map(|point| Base::InteriorPoint(Box::new(point)))
+        };
+        Some(Self { load_factor, unloaded: base(0.0)?, loaded: base(load_factor)? })
+    }
+
+    /// The response of a slightly different model, to first order in the difference; `None` if it has another number of
+    /// hands, a pad without friction or pads that are not opposite.
+    fn response(&self, model: &ContactModel) -> Option<CompliantResponse> {
+        let mut energies = None;
+        let mut welded = None;
+        let mut equilibrium = |base: &Base, load_factor: f64| -> Option<Equilibrium> {
+            match base {
+                Base::Welded => {
+                    let welded = welded.get_or_insert_with(|| WeldedStiffness::new(model)).as_ref()?;
+                    elastic::first_order(model, welded, load_factor)
+                }
+                Base::InteriorPoint(point) => {
+                    let energies: &Vec<HandEnergy> = energies.get_or_insert_with(|| HandEnergy::of_hands(model));
+                    let found = point.first_order(model, energies, load_factor)?;
+                    Some(Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board))
+                }
+            }
+        };
+        let unloaded = equilibrium(&self.unloaded, 0.0)?;
+        let loaded = equilibrium(&self.loaded, self.load_factor)?;
+        Some(CompliantResponse::between(model, &unloaded, loaded))
+    }
+
+    /// The largest ratio of torque, deflection and slip to their limits in the first-order response of a slightly
+    /// different model.
+    #[must_use]
+    pub fn utilisation(&self, model: &ContactModel, limits: &Limits) -> Option<f64> {
+        self.response(model).map(|response| response.utilisation(model, limits))
+    }
+}

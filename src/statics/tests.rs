@@ -1,0 +1,106 @@
+//! The interior point against clarabel on the ten grasps of `tests/data/holds`.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::{
+    contact_model::ContactModel,
+    equilibrium::{self, Equilibrium, EquilibriumOutcome},
+    solvers::{
+        clarabel::ReusedSolver,
+        cone_program::ConeProgram,
+        energy::HandEnergy,
+        interior_point::{InteriorPoint, Solution},
+    },
+};
+use crate::scenario::read_plan;
+
+/// Friction of pad and board, docs/method.md#76-robot-figures.
+const FRICTION: f64 = 0.6;
+
+/// The contact models of `tests/data/holds`.
+fn models() -> Vec<ContactModel> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/holds");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let (_, robot) = read_plan(&paths[0], None).unwrap();
+    let model = |path: &std::path::PathBuf| {
+        let (plan, _) = read_plan(path, Some(&robot)).unwrap();
+        ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap()
+    };
+    paths.iter().map(model).collect()
+}
+
+/// The equilibrium by clarabel.
+fn by_program(model: &ContactModel, load_factor: f64) -> EquilibriumOutcome {
+    let program = ConeProgram::equilibrium(model, &HandEnergy::of_hands(model), load_factor);
+    let mut solver = ReusedSolver::default();
+    equilibrium::interpret(model, &program, load_factor, &solver.solve(&program).unwrap())
+}
+
+fn equilibrium(model: &ContactModel, load_factor: f64, found: Solution) -> Equilibrium {
+    Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board)
+}
+
+/// Differences of two equilibria: displacement of the tool tip, m, and largest joint torque, N m.
+fn apart(one: &Equilibrium, other: &Equilibrium, model: &ContactModel) -> (f64, f64) {
+    let tip = |found: &Equilibrium| found.board.at(&model.p_ot).linear;
+    let torque = one.joint_torque_nm.iter().zip(&other.joint_torque_nm).map(|(one, other)| (one - other).amax());
+    ((tip(one) - tip(other)).norm(), torque.fold(0.0, f64::max))
+}
+
+#[test]
+fn the_interior_point_agrees_with_clarabel() {
+    let mut found = 0;
+    for model in models() {
+        for load_factor in [0.0, 0.5, 1.0, 1.1] {
+            let EquilibriumOutcome::Found(expected) = by_program(&model, load_factor) else { continue };
+            let point = InteriorPoint::solve(&model, &HandEnergy::of_hands(&model), load_factor).unwrap();
+            let (tip_m, torque_nm) =
+                apart(&equilibrium(&model, load_factor, point.solution(&model)), &expected, &model);
+            // Clarabel's tolerance is 1e-7 of a unit; along the flattest directions of the energy that is 1e-4 of it.
+            assert!(tip_m < 1e-6 && torque_nm < 1e-3, "at {load_factor}: {tip_m:e} m, {torque_nm:e} N m");
+            found += 1;
+        }
+    }
+    assert!(found > 30, "{found}");
+}
+
+#[test]
+fn the_interior_point_does_not_converge_without_an_equilibrium() {
+    for model in models() {
+        assert!(InteriorPoint::solve(&model, &HandEnergy::of_hands(&model), 50.0).is_none());
+        assert_eq!(by_program(&model, 50.0), EquilibriumOutcome::NoEquilibrium);
+    }
+}
+
+#[test]
+fn the_newton_step_to_another_model_is_exact_to_first_order() {
+    // The tool's force a little larger and turned, one hand shifted.
+    let moved = |model: &ContactModel, step: f64| {
+        let mut moved = model.clone();
+        moved.load.force_n += Vector3::new(0.4, -0.3, 0.5) * step;
+        moved.load.moment_nm += Vector3::new(0.02, 0.05, -0.04) * step;
+        moved.hands[0].grasp_point_o.x += 1e-3 * step;
+        moved.hands[0].pads.iter_mut().for_each(|pad| pad.x_op.translation.vector.x += 1e-3 * step);
+        moved
+    };
+    for model in models() {
+        let energies = HandEnergy::of_hands(&model);
+        let point = InteriorPoint::solve(&model, &energies, 1.0).unwrap();
+        let error = |step: f64| {
+            let there = moved(&model, step);
+            let energies = HandEnergy::of_hands(&there);
+            let solved = |found: Solution| equilibrium(&there, 1.0, found);
+            let exact = solved(InteriorPoint::solve(&there, &energies, 1.0).unwrap().solution(&there));
+            let guess = solved(point.first_order(&there, &energies, 1.0).unwrap());
+            let moved_m = apart(&exact, &equilibrium(&model, 1.0, point.solution(&model)), &model).0;
+            (apart(&guess, &exact, &model).0, moved_m)
+        };
+        let (error_m, moved_m) = error(0.01);
+        // The error is of second order, here a hundredth of the motion; a pad that reaches or leaves its limit between
+        // the two models causes a few times that.
+        assert!(error_m < 0.05 * moved_m + 1e-9, "{error_m:e} m of {moved_m:e} m");
+    }
+}

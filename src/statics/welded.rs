@@ -1,0 +1,80 @@
+//! The stiffness of a board whose hands are welded to it.
+
+use nalgebra::{Cholesky, Const, Matrix3, Matrix6, Vector3};
+
+use super::{contact_model::ContactModel, twist::Twist};
+use crate::model::wrench::Wrench;
+
+/// The smallest squared ratio of two pivots of a compliance that still counts as invertible. Rounding leaves about
+/// 1e-15 where the exact figure is 0; no real arm's directions differ in stiffness by a factor of more than a million.
+const SINGULAR_PIVOT_RATIO: f64 = 1e-10;
+
+/// Lever at which rotations are measured when pivots are compared, m: about the half size of a board.
+const PIVOT_LEVER_M: f64 = 0.2;
+
+/// The board on the springs of its arms, hands welded to it: exact as long as no pad is at its limit
+/// (docs/method.md#67-welded-stiffness).
+#[derive(Clone, Debug)]
+pub struct WeldedStiffness {
+    p_ot: Vector3<f64>,
+    /// Of K_O about the tool tip, O axes (N/m, N, N m/rad).
+    factor: Cholesky<f64, Const<6>>,
+    /// For each hand: its stiffness at the grasp point, and the map of twists from the tool tip to the grasp point.
+    hands: Vec<(Matrix6<f64>, Matrix6<f64>)>,
+}
+
+impl WeldedStiffness {
+    /// `K_O = sum_i Ad_i' C_i^-1 Ad_i` about the tool tip; `Ad_i` maps the board's twist at the tool tip to that at the
+    /// grasp point. `None` if an arm is rigid in some direction (fewer than six joints, or a singular posture): its
+    /// stiffness there is not finite.
+    pub fn new(model: &ContactModel) -> Option<Self> {
+        let mut stiffness_t = Matrix6::zeros();
+        let mut hands = Vec::with_capacity(model.hands.len());
+        for hand in &model.hands {
+            let stiffness = inverse(&hand.compliance())?;
+            let map = twist_map(&(hand.grasp_point_o - model.p_ot));
+            stiffness_t += map.transpose() * stiffness * map;
+            hands.push((stiffness, map));
+        }
+        Some(Self { p_ot: model.p_ot, factor: stiffness_t.cholesky()?, hands })
+    }
+
+    /// Displacement of the board at the tool tip, `delta = K_O^-1 w`, under a wrench w about O's origin.
+    #[must_use]
+    pub fn twist_at_tip(&self, wrench: &Wrench) -> Twist {
+        let about_tip = wrench.about(&-self.p_ot).to_vector();
+        Twist::from_vector(&self.factor.solve(&about_tip))
+    }
+
+    /// The wrench of each hand on the board, `-C_i^-1 Ad_i delta`, about its grasp point, under a wrench on the board
+    /// about O's origin.
+    #[must_use]
+    pub fn hand_wrenches(&self, wrench: &Wrench) -> Vec<Wrench> {
+        let delta = self.twist_at_tip(wrench).to_vector();
+        let reaction = |(stiffness, map): &(Matrix6<f64>, Matrix6<f64>)| -(stiffness * (map * delta));
+        self.hands
+            .iter()
+            .map(|hand| {
+                let [fx, fy, fz, mx, my, mz] = reaction(hand).into();
+                Wrench::from([fx, fy, fz, mx, my, mz])
+            })
+            .collect()
+    }
+}
+
+/// `[1, -[p]x; 0, 1]`: maps a twist at a point to the twist at the point p away from it.
+fn twist_map(lever: &Vector3<f64>) -> Matrix6<f64> {
+    let mut map = Matrix6::identity();
+    map.fixed_view_mut::<3, 3>(0, 3).copy_from(&-lever.cross_matrix());
+    map
+}
+
+/// The inverse of a positive definite compliance; `None` if it is singular up to rounding.
+fn inverse(compliance: &Matrix6<f64>) -> Option<Matrix6<f64>> {
+    let mut scale = Matrix6::identity();
+    scale.fixed_view_mut::<3, 3>(3, 3).copy_from(&(Matrix3::identity() * PIVOT_LEVER_M));
+    let factor = (scale * compliance * scale).cholesky()?;
+    let pivots = factor.l_dirty().diagonal();
+    let ratio = (pivots.min() / pivots.max()).powi(2);
+    (ratio > SINGULAR_PIVOT_RATIO).then(|| scale * factor.inverse() * scale)
+}
