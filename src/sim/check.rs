@@ -1,8 +1,8 @@
-//! Whether a plan can be built at all.
+//! Checks whether the scene of a plan can be built.
 
 use nalgebra::Vector3;
 
-use super::SimError;
+use super::error::SimError;
 use crate::{
     model::{
         frames::Pose,
@@ -11,14 +11,14 @@ use crate::{
     robot::Robot,
 };
 
-/// How far a hand may be from where the plan says, m: what a plan written with three decimals may be off, and little
-/// against the pad.
+/// Largest distance of a hand from the planned pose, m: a plan written with three decimals may be off by this much, and
+/// it is small compared to the pad.
 const HAND_TOLERANCE_M: f64 = 1e-3;
 
-/// How far a hand may be turned from what the plan says, rad: 0.1 degrees.
+/// Largest rotation of a hand from the planned pose, rad: 0.1 degrees.
 const HAND_TOLERANCE_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
-/// An arm that holds, and how.
+/// An arm of the plan.
 pub(super) struct Holding<'a> {
     /// An index into [`Robot::arms`].
     pub arm_index: usize,
@@ -26,7 +26,7 @@ pub(super) struct Holding<'a> {
     pub hold: &'a ArmHold,
 }
 
-/// The arms that hold, each with its part of the plan.
+/// The robot's arms that hold the board, each with its part of the plan.
 pub(super) fn holds<'a>(robot: &'a Robot, plan: &'a Plan) -> Result<Vec<Holding<'a>>, SimError> {
     board(plan)?;
     let mut holds: Vec<Holding> = Vec::with_capacity(plan.arms.len());
@@ -39,7 +39,7 @@ pub(super) fn holds<'a>(robot: &'a Robot, plan: &'a Plan) -> Result<Vec<Holding<
     if holds.is_empty() { Err(SimError::NoArm) } else { Ok(holds) }
 }
 
-/// The board's size and mass, and the operation's wrench.
+/// Checks the board's size and mass, and the operation's wrench.
 fn board(plan: &Plan) -> Result<(), SimError> {
     let keys = ["object.size_m[0]", "object.size_m[1]", "object.size_m[2]"];
     for (key, found) in keys.into_iter().zip(plan.object.size_m).chain([("object.mass_kg", plan.object.mass_kg)]) {
@@ -50,7 +50,7 @@ fn board(plan: &Plan) -> Result<(), SimError> {
     if plan.operation.wrench_o.is_finite() { Ok(()) } else { Err(SimError::Wrench) }
 }
 
-/// One arm's part of the plan against the robot.
+/// Checks one arm's part of the plan against the robot.
 fn holding<'a>(robot: &'a Robot, plan: &Plan, hold: &'a ArmHold) -> Result<Holding<'a>, SimError> {
     let arm_index = robot.arm_index(&hold.name).ok_or_else(|| SimError::UnknownArm {
         found: hold.name.clone(),
@@ -81,22 +81,22 @@ fn holding<'a>(robot: &'a Robot, plan: &Plan, hold: &'a ArmHold) -> Result<Holdi
     Ok(Holding { arm_index, hold })
 }
 
-/// The fingers must close on the two faces of the board, which must lie between them.
+/// Checks that the fingers close on the two faces of the board and G is in its middle plane.
 fn straddles(hold: &ArmHold) -> Result<(), SimError> {
     let off_rad = (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos();
     let off_m = hold.x_og.translation.vector.z.abs();
-    // Written so that what is not a number is refused.
+    // NaN is refused.
     if off_rad <= HAND_TOLERANCE_RAD && off_m <= HAND_TOLERANCE_M {
         return Ok(());
     }
     Err(SimError::Astride { arm: hold.name.clone(), off_mm: off_m * 1e3, off_deg: off_rad.to_degrees() })
 }
 
-/// The arm's angles must put its gripper where the plan says that it holds the board.
+/// Checks that the arm's angles put its gripper at the planned grasp pose.
 pub(super) fn hand_is_where_planned(hold: &ArmHold, x_wo: &Pose, x_wg: &Pose) -> Result<(), SimError> {
     let off = (x_wo * hold.x_og).inverse() * x_wg;
     let (off_m, off_rad) = (off.translation.vector.norm(), off.rotation.angle());
-    // Written so that what is not a number is refused.
+    // NaN is refused.
     if off_m <= HAND_TOLERANCE_M && off_rad <= HAND_TOLERANCE_RAD {
         return Ok(());
     }

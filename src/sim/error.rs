@@ -5,7 +5,7 @@ use crate::human::HumanError;
 /// Why a plan cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimError {
-    /// A setting that makes no sense.
+    /// An invalid setting.
     #[error("found {key} = {found}, expected {expected}")]
     Settings {
         /// The setting.
@@ -15,35 +15,35 @@ pub enum SimError {
         /// What it should be.
         expected: &'static str,
     },
-    /// A board without size or mass.
+    /// The board's size or mass is not positive.
     #[error("found {key} = {found}, expected a positive number")]
     Board {
-        /// The figure.
+        /// The plan's key.
         key: &'static str,
         /// Its value.
         found: f64,
     },
-    /// An operation that is not finite.
+    /// The operation's wrench is not finite.
     #[error("found a wrench that is not finite, expected N and N m")]
     Wrench,
-    /// A load over time that makes no sense.
+    /// An invalid load profile.
     #[error("found {found}, expected {expected}")]
     Profile {
-        /// What the load is.
+        /// The load.
         found: String,
         /// What it should be.
         expected: &'static str,
     },
-    /// A person or a tool that is none.
+    /// An invalid person or tool.
     #[error("failed to place the person: {0}")]
     Person(HumanError),
-    /// A person who stands nowhere.
+    /// A pose or angle of the person is not finite.
     #[error("found a posture of the person that is not finite, expected m and rad")]
     Posture,
-    /// Nothing holds the board.
+    /// No arm holds the board.
     #[error("found no arm that holds the board, expected at least one")]
     NoArm,
-    /// An arm that the robot has not.
+    /// An arm that the robot does not have.
     #[error("found arm \"{found}\", expected one of {expected}")]
     UnknownArm {
         /// The plan's name.
@@ -51,13 +51,13 @@ pub enum SimError {
         /// The robot's names.
         expected: String,
     },
-    /// An arm that holds twice.
+    /// An arm occurs twice.
     #[error("found arm \"{arm}\" twice, expected every arm at most once")]
     ArmTwice {
         /// The arm.
         arm: String,
     },
-    /// Joints that are not those of the arm.
+    /// The joints are not the arm's.
     #[error("arm \"{arm}\": found the joints [{found}], expected [{expected}]")]
     Joints {
         /// The arm.
@@ -67,7 +67,7 @@ pub enum SimError {
         /// The robot's joints.
         expected: String,
     },
-    /// The wrong number of angles, or angles that are not finite.
+    /// The number of angles is wrong, or an angle is not finite.
     #[error("arm \"{arm}\": found {found} angles, expected {expected} that are finite")]
     Angles {
         /// The arm.
@@ -77,7 +77,7 @@ pub enum SimError {
         /// How many joints the arm has.
         expected: usize,
     },
-    /// A force that the gripper has not.
+    /// A grip force out of the gripper's range.
     #[error("arm \"{arm}\": found a grip force of {found_n} N, expected more than 0 and at most {max_n} N")]
     GripForce {
         /// The arm.
@@ -87,7 +87,7 @@ pub enum SimError {
         /// The gripper's largest force, N.
         max_n: f64,
     },
-    /// A board that does not fit between the pads.
+    /// The board does not fit between the pads.
     #[error(
         "arm \"{arm}\": found a board {:.1} mm thick, expected {:.1} to {:.1} mm, what the gripper closes on",
         thickness_m * 1e3, closed_m * 1e3, open_m * 1e3
@@ -102,7 +102,7 @@ pub enum SimError {
         /// Gap between the pads when open, m.
         open_m: f64,
     },
-    /// Fingers that do not close on the board's faces.
+    /// The fingers do not close on the board's faces.
     #[error(
         "arm \"{arm}\": found its fingers {off_mm:.3} mm and {off_deg:.3} degrees off the board's middle plane, \
          expected at most 1 mm and 0.1 degrees"
@@ -115,7 +115,7 @@ pub enum SimError {
         /// Angle between the finger axis and the board's normal, degrees.
         off_deg: f64,
     },
-    /// Angles that put the gripper elsewhere than the plan says.
+    /// The arm's angles do not put the gripper at the planned grasp pose.
     #[error(
         "arm \"{arm}\": found its gripper {off_mm:.3} mm and {off_deg:.3} degrees from where it should hold the board, \
          expected at most 1 mm and 0.1 degrees"
@@ -128,7 +128,7 @@ pub enum SimError {
         /// Angle, degrees.
         off_deg: f64,
     },
-    /// A part that moves without mass.
+    /// A moving body without mass.
     #[error("found no mass on link \"{link}\" and what is fixed to it, expected a mass: it moves")]
     Massless {
         /// The link.
