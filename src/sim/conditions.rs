@@ -3,7 +3,7 @@
 use super::SimError;
 use crate::model::{
     load::{Load, Uncertainty},
-    scenario::{Scenario, SimulationSettings, Tool},
+    scenario::{Scenario, SimulationSettings},
 };
 
 /// What a hold is simulated under.
@@ -19,22 +19,12 @@ pub struct Conditions {
     pub load_scale: f64,
     /// How far the simulation departs from what the plan counts on.
     pub uncertainty: Uncertainty,
-    /// The tool in the hand of the plan's person, whose arm ends where it begins; the usual one for the operation when none is
-    /// given.
-    pub tool: Option<Tool>,
 }
 
 impl Conditions {
     /// A ramp of the operation's wrench, and nothing that the plan does not count on.
     pub fn new(friction: f64, settings: SimulationSettings) -> Self {
-        Self {
-            friction,
-            settings,
-            load: Load::default(),
-            load_scale: 1.0,
-            uncertainty: Uncertainty::default(),
-            tool: None,
-        }
+        Self { friction, settings, load: Load::default(), load_scale: 1.0, uncertainty: Uncertainty::default() }
     }
 
     /// What a scenario asks for.
@@ -45,7 +35,6 @@ impl Conditions {
             load: scenario.load.clone(),
             load_scale: 1.0,
             uncertainty: scenario.uncertainty,
-            tool: Some(scenario.tool),
         }
     }
 

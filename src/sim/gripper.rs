@@ -50,8 +50,6 @@ pub(super) struct SimGripper {
     hand: RigidBodyHandle,
     /// The frame with the axes of G at the centre between the pads, in that body.
     x_bc: Pose,
-    /// G in that body.
-    x_bg: Pose,
 }
 
 impl SimGripper {
@@ -90,7 +88,6 @@ impl SimGripper {
             pads: [first_pad, second_pad],
             hand: chain.body(placement.body),
             x_bc: placement.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
-            x_bg: placement.x_bl,
         }
     }
 
@@ -157,11 +154,6 @@ impl SimGripper {
     /// Travel of each finger from its closed limit, m.
     pub fn travel_m(&self, multibody: &Multibody) -> [f64; 2] {
         self.fingers.each_ref().map(|f| f.finger.opening_sign * (f.place.position(multibody) - f.finger.closed_m))
-    }
-
-    /// Pose of G in the world.
-    pub fn x_wg(&self, world: &PhysicsWorld) -> Pose {
-        convert::from_engine_pose(world.bodies[self.hand].position()) * self.x_bg
     }
 
     /// Pose of the frame with the axes of G at the centre between the pads, in the world.

@@ -7,12 +7,13 @@ use super::{
     Conditions, SimError,
     arm::SimArm,
     balance::{Balance, mechanical_energy_j},
-    check, convert,
+    convert,
     pad::BoardHandles,
     tool_load::{ToolState, wrench_w},
     world::{board_groups, new_world},
 };
 use crate::{
+    check::{CheckedArm, CheckedPlan},
     model::{
         GRAVITY_W,
         frames::Pose,
@@ -21,7 +22,6 @@ use crate::{
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },
-    robot::Robot,
 };
 
 /// A joint speed that no servo reaches, rad/s: beyond it the engine has lost the state. (A board that was dropped may
@@ -61,18 +61,16 @@ impl SimScene {
     /// board, and the board.
     ///
     /// # Errors
-    /// [`SimError`] when the plan does not fit the robot or itself.
-    pub fn new(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Self, SimError> {
-        let holds = check::holds(robot, plan)?;
+    /// If the conditions are invalid, or the robot has a moving part without mass.
+    pub fn new(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Self, SimError> {
+        let plan = checked.plan;
         conditions.check()?;
         let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
         let mut world = new_world(conditions.settings.timestep_s, stiffness_scale, plan.object.mass_kg);
         let board = insert_board(&mut world, &plan.object, conditions.real_friction());
-        let mut arms = Vec::with_capacity(holds.len());
-        for hold in holds {
-            let arm = SimArm::new(&mut world, robot, hold.arm_index, hold.hold, &plan.object, conditions)?;
-            check::hand_is_where_planned(hold.hold, &plan.object.x_wo, &arm.gripper.x_wg(&world))?;
-            arms.push(arm);
+        let mut arms = Vec::with_capacity(checked.arms.len());
+        for CheckedArm { index, hold, .. } in &checked.arms {
+            arms.push(SimArm::new(&mut world, checked.robot, *index, hold, &plan.object, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;
