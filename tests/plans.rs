@@ -51,7 +51,7 @@ fn comforts(plan: &Plan) -> [f64; 2] {
 }
 
 fn verified(plan: &Plan, scenario: &Scenario) {
-    assert_eq!(planner::verify(plan, scenario, &ROBOT).unwrap(), []);
+    assert_eq!(planner::verify(plan, scenario, &ROBOT), []);
 }
 
 #[test]

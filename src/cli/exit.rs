@@ -65,6 +65,9 @@ pub enum CliError {
     /// The person or the tool is invalid.
     #[error(transparent)]
     Human(#[from] crate::human::HumanError),
+    /// A plan does not fit its robot or person.
+    #[error("failed to check the plan: {0}")]
+    Flaws(#[from] crate::check::Flaws),
     /// A scenario cannot be planned.
     #[error(transparent)]
     Plan(#[from] crate::planner::PlanError),
@@ -118,6 +121,7 @@ impl CliError {
             | Self::Simulation(_)
             | Self::Human(_)
             | Self::Plan(_)
+            | Self::Flaws(_)
             | Self::OverwritesInput(_)
             | Self::OverwritesPlan(_)
             | Self::Write(_)

@@ -6,6 +6,7 @@ use super::{
     inputs,
 };
 use crate::{
+    check::CheckedPlan,
     report, scenario,
     sim::{self, Conditions},
 };
@@ -14,8 +15,8 @@ use crate::{
 pub fn export(args: &ExportArgs) -> Result<Exit, CliError> {
     let loaded = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
     inputs::protect(&loaded.inputs, [args.mjcf.clone()])?;
-    let text =
-        sim::mjcf(&loaded.robot, &loaded.plan, &Conditions::of(&loaded.scenario)).map_err(CliError::Simulation)?;
+    let checked = CheckedPlan::new(&loaded.robot, &loaded.plan, &loaded.scenario.tool)?;
+    let text = sim::mjcf(&checked, &Conditions::of(&loaded.scenario)).map_err(CliError::Simulation)?;
     report::file::write_whole(&args.mjcf, text.as_bytes())?;
     Ok(Exit::Met)
 }

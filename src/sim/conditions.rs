@@ -3,7 +3,7 @@
 use super::error::SimError;
 use crate::model::{
     load::{Load, Uncertainty},
-    scenario::{Scenario, SimulationSettings, Tool},
+    scenario::{Scenario, SimulationSettings},
 };
 
 /// The conditions of a simulation.
@@ -19,21 +19,12 @@ pub struct Conditions {
     pub load_scale: f64,
     /// Deviations of the simulation from what the plan assumes.
     pub uncertainty: Uncertainty,
-    /// The tool in the hand of the plan's person; the operation's default tool if `None`.
-    pub tool: Option<Tool>,
 }
 
 impl Conditions {
     /// A ramp of the operation's wrench, without deviations from the plan.
     pub fn new(friction: f64, settings: SimulationSettings) -> Self {
-        Self {
-            friction,
-            settings,
-            load: Load::default(),
-            load_scale: 1.0,
-            uncertainty: Uncertainty::default(),
-            tool: None,
-        }
+        Self { friction, settings, load: Load::default(), load_scale: 1.0, uncertainty: Uncertainty::default() }
     }
 
     /// The conditions of a scenario.
@@ -44,7 +35,6 @@ impl Conditions {
             load: scenario.load.clone(),
             load_scale: 1.0,
             uncertainty: scenario.uncertainty,
-            tool: Some(scenario.tool),
         }
     }
 

@@ -49,8 +49,6 @@ pub(super) struct SimGripper {
     hand: RigidBodyHandle,
     /// Frame C, with the axes of G at the centre between the pads, in that body.
     x_bc: Pose,
-    /// G in that body.
-    x_bg: Pose,
 }
 
 impl SimGripper {
@@ -89,7 +87,6 @@ impl SimGripper {
             pads: [first_pad, second_pad],
             hand: chain.body(placement.body),
             x_bc: placement.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
-            x_bg: placement.x_bl,
         }
     }
 
@@ -156,11 +153,6 @@ impl SimGripper {
     /// Travel of each finger from its closed limit, m.
     pub fn travel_m(&self, multibody: &Multibody) -> [f64; 2] {
         self.fingers.each_ref().map(|f| f.finger.opening_sign * (f.place.position(multibody) - f.finger.closed_m))
-    }
-
-    /// X_WG.
-    pub fn x_wg(&self, world: &PhysicsWorld) -> Pose {
-        convert::from_engine_pose(world.bodies[self.hand].position()) * self.x_bg
     }
 
     /// X_WC, C with the axes of G at the centre between the pads.

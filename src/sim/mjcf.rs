@@ -24,7 +24,6 @@ use quick_xml::Writer;
 use super::{
     arm::weight_torque_nm,
     bodies::{ArmBodies, MovingBody},
-    check,
     conditions::Conditions,
     error::SimError,
     gripper::FINGER_DAMPING_N_S_M,
@@ -33,6 +32,7 @@ use super::{
     tool_load::ToolLoad,
 };
 use crate::{
+    check::{CheckedArm, CheckedPlan},
     model::{
         GRAVITY_W,
         frames::Pose,
@@ -64,19 +64,20 @@ struct ExportedArm<'a> {
 /// Writes the scene of a plan as MJCF.
 ///
 /// # Errors
-/// [`SimError`] if the plan does not match the robot, is inconsistent, or the conditions are invalid.
-pub fn mjcf(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<String, SimError> {
+/// If the conditions or the load over time are invalid.
+pub fn mjcf(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<String, SimError> {
+    let CheckedPlan { robot, plan, .. } = *checked;
     conditions.check()?;
     let tool = ToolLoad::new(plan, conditions)?;
-    let arms: Vec<_> = check::holds(robot, plan)?
-        .into_iter()
-        .map(|holding| {
-            let arm = &robot.arms[holding.arm_index];
+    let arms: Vec<_> = checked
+        .arms
+        .iter()
+        .map(|&CheckedArm { index, hold, .. }| {
+            let arm = &robot.arms[index];
             let gap_m = plan.object.size_m[2];
             let finger_m =
                 [0, 1].map(|k| arm.gripper.fingers[k].joint_position_m(arm.gripper.travel_for_gap_m(k, gap_m)));
-            let weight_nm = weight_torque_nm(robot, holding.arm_index, &holding.hold.q_rad, gap_m);
-            let hold = holding.hold;
+            let weight_nm = weight_torque_nm(robot, index, &hold.q_rad, gap_m);
             let bodies = ArmBodies::new(robot, arm);
             let hand = GraspingHand { arm, bodies: &bodies, x_og: hold.x_og };
             let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;

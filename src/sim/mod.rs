@@ -72,7 +72,6 @@ mod arm;
 mod balance;
 mod bodies;
 mod body_chain;
-mod check;
 mod conditions;
 mod convert;
 mod error;
@@ -95,11 +94,8 @@ pub use scene::{SimScene, blank_sample};
 use tool_load::ToolLoad;
 
 use crate::{
-    model::{
-        plan::Plan,
-        trace::{ArmTrace, Trace},
-    },
-    robot::Robot,
+    check::{CheckedArm, CheckedPlan},
+    model::trace::{ArmTrace, Trace},
 };
 
 /// Time without any contact after which the board counts as lost, s: it has then fallen by 5 cm.
@@ -117,13 +113,13 @@ const LOST_AFTER_S: f64 = 0.1;
 /// says why. Equal inputs give equal traces, bit for bit.
 ///
 /// # Errors
-/// [`SimError`] if the plan does not match the robot, is inconsistent, or the settings are invalid.
-pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Trace, SimError> {
-    let tool = ToolLoad::new(plan, conditions)?;
+/// If the settings or the load over time are invalid, or a moving part of the robot has no mass.
+pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Trace, SimError> {
+    let tool = ToolLoad::new(checked.plan, conditions)?;
     let timestep_s = conditions.settings.timestep_s;
-    let mut scene = SimScene::new(robot, plan, conditions)?;
-    let mut person = PersonMonitor::of(robot, plan, conditions)?;
-    let mut trace = empty_trace(robot, plan, conditions, tool.steps() + 1);
+    let mut scene = SimScene::new(checked, conditions)?;
+    let mut person = PersonMonitor::of(checked, conditions);
+    let mut trace = empty_trace(checked, conditions, tool.steps() + 1);
     let mut untouched_s = 0.0;
     for step in 0..=tool.steps() {
         let (phase, state) = tool.at(step);
@@ -152,16 +148,17 @@ pub fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<T
 }
 
 /// A trace with room for every sample, so that steps do not allocate.
-fn empty_trace(robot: &Robot, plan: &Plan, conditions: &Conditions, samples: usize) -> Trace {
-    let arms = plan.arms.iter().filter_map(|hold| {
-        let arm = &robot.arms[robot.arm_index(&hold.name)?];
-        Some(ArmTrace {
+fn empty_trace(checked: &CheckedPlan<'_>, conditions: &Conditions, samples: usize) -> Trace {
+    let plan = checked.plan;
+    let arms = checked.arms.iter().map(|CheckedArm { index, hold, .. }| {
+        let arm = &checked.robot.arms[*index];
+        ArmTrace {
             name: hold.name.clone(),
             joints: hold.joints.clone(),
             effort_nm: arm.effort_nm.clone(),
             pads: [0, 1].map(|finger| arm.gripper.pad_name(finger, &hold.x_og).to_owned()).to_vec(),
             grip_force_n: hold.grip_force_n * conditions.uncertainty.grip_force_scale,
-        })
+        }
     });
     Trace {
         arms: arms.collect(),

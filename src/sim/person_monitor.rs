@@ -4,14 +4,11 @@
 //! board are measured against them, without the body parts that move with the tool (see [`StandingPerson`]). The judge
 //! interprets the distance.
 
-use super::{conditions::Conditions, error::SimError};
+use super::conditions::Conditions;
 use crate::{
-    collision::{CollisionModel, Nearest, PersonPart, StandingPerson},
-    human::{Human, default_tool},
-    model::{
-        plan::Plan,
-        trace::{PersonTouch, Sample},
-    },
+    check::CheckedPlan,
+    collision::{CollisionModel, Nearest, StandingPerson},
+    model::trace::{PersonTouch, Sample},
     robot::{ArmState, Robot},
 };
 
@@ -42,27 +39,17 @@ pub(super) struct PersonMonitor<'a> {
 
 impl<'a> PersonMonitor<'a> {
     /// The monitor of a plan's person; `None` if the plan has no person.
-    ///
-    /// # Errors
-    /// [`SimError::Person`] if the person or the tool is invalid, [`SimError::Posture`] if the posture is not finite.
-    pub fn of(robot: &'a Robot, plan: &Plan, conditions: &Conditions) -> Result<Option<Self>, SimError> {
-        let Some(posture) = &plan.human else { return Ok(None) };
-        let tool = conditions.tool.unwrap_or_else(|| default_tool(plan.operation.kind));
-        let human = Human::new(&posture.person(), &tool).map_err(SimError::Person)?;
-        let finite = posture.x_wb.translation.vector.iter().chain(&posture.q_rad).all(|figure| figure.is_finite());
-        if !finite {
-            return Err(SimError::Posture);
-        }
-        let parts = human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from);
-        Ok(Some(Self {
-            robot,
-            model: CollisionModel::new(robot),
-            person: StandingPerson::new(&parts, plan.object.size_m),
-            arms: plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect(),
+    pub fn of(checked: &CheckedPlan<'a>, conditions: &Conditions) -> Option<Self> {
+        checked.human.as_ref()?;
+        Some(Self {
+            robot: checked.robot,
+            model: CollisionModel::new(checked.robot),
+            person: StandingPerson::new(&checked.person_parts(), checked.plan.object.size_m),
+            arms: checked.arms.iter().map(|arm| arm.index).collect(),
             interval_steps: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             distance_m: f64::INFINITY,
             touch: None,
-        }))
+        })
     }
 
     /// The smallest distance of robot and board from the person after a step, m, negative if they overlap. Measured if

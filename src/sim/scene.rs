@@ -6,7 +6,6 @@ use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use super::{
     arm::SimArm,
     balance::{Balance, mechanical_energy_j},
-    check,
     conditions::Conditions,
     convert,
     error::SimError,
@@ -15,6 +14,7 @@ use super::{
     world::{board_groups, new_world},
 };
 use crate::{
+    check::{CheckedArm, CheckedPlan},
     model::{
         GRAVITY_W,
         frames::Pose,
@@ -23,7 +23,6 @@ use crate::{
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },
-    robot::Robot,
 };
 
 /// A joint speed that no servo reaches, rad/s: beyond it the engine's state is invalid. (A dropped board may reach any
@@ -63,18 +62,16 @@ impl SimScene {
     /// Builds the scene of a plan: the board, and the arms at rest at the planned angles with their pads on the board.
     ///
     /// # Errors
-    /// [`SimError`] if the plan does not match the robot or is inconsistent.
-    pub fn new(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Self, SimError> {
-        let holds = check::holds(robot, plan)?;
+    /// If the conditions are invalid, or a moving part of the robot has no mass.
+    pub fn new(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Self, SimError> {
+        let plan = checked.plan;
         conditions.check()?;
         let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
         let mut world = new_world(conditions.settings.timestep_s, stiffness_scale, plan.object.mass_kg);
         let board = insert_board(&mut world, &plan.object, conditions.real_friction());
-        let mut arms = Vec::with_capacity(holds.len());
-        for hold in holds {
-            let arm = SimArm::new(&mut world, robot, hold.arm_index, hold.hold, &plan.object, conditions)?;
-            check::hand_is_where_planned(hold.hold, &plan.object.x_wo, &arm.gripper.x_wg(&world))?;
-            arms.push(arm);
+        let mut arms = Vec::with_capacity(checked.arms.len());
+        for CheckedArm { index, hold, .. } in &checked.arms {
+            arms.push(SimArm::new(&mut world, checked.robot, *index, hold, &plan.object, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;

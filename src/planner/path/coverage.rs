@@ -147,7 +147,7 @@ impl<'a, 'o> PathProblem<'a> {
     }
 
     /// The plan of a grasp with a response at a point, if its check finds no flaw.
-    pub fn plan(&mut self, grasp: &BoardGrasp, point: usize, response: &Answer) -> Result<Option<Plan>, PlanError> {
+    pub fn plan(&mut self, grasp: &BoardGrasp, point: usize, response: &Answer) -> Option<Plan> {
         let evaluations = self.evaluations;
         let robot = &self.library.robot;
         let points_w = comfort::robot_points_w(&robot.robot, &robot.link_poses(&grasp.arms));
@@ -159,10 +159,8 @@ impl<'a, 'o> PathProblem<'a> {
         let heading_rad = response.x_wb.rotation.euler_angles().2;
         candidate.work = WorkPose { q_h_rad: response.q_rad, heading_rad, ..candidate.work };
         let placement = Placement { x_wo: grasp.x_wo, x_wb: response.x_wb };
-        let Some(plan) = assemble_placed(evaluator, &candidate, &placement, &comfort, evaluations) else {
-            return Ok(None);
-        };
-        Ok(is_sound(evaluator, &plan)?.then_some(plan))
+        let plan = assemble_placed(evaluator, &candidate, &placement, &comfort, evaluations)?;
+        is_sound(evaluator, &plan).then_some(plan)
     }
 
     /// Seed of the search.
