@@ -10,6 +10,7 @@
 
 mod assemble;
 mod candidate;
+mod configurations;
 mod domain;
 mod evaluate;
 mod front;

@@ -141,6 +141,14 @@ pub mod refine {
 pub mod select {
     /// Starts of the search per plan that is wanted: neighbouring starts lead to the same optimum.
     pub const STARTS_PER_PLAN: usize = 4;
+    /// Other configurations of the arms that are kept of a grasp.
+    pub const CONFIGURATIONS: usize = 2;
+    /// Combinations of the arms' solutions that are tested for them, at most: each costs a microsecond until it is evaluated.
+    pub const COMBINATIONS: usize = 200;
+    /// Starts of the inverse kinematics for arms without a closed form.
+    pub const SOLUTION_STARTS: usize = 60;
+    /// Steps of refinement from another configuration.
+    pub const CONFIGURATION_STEPS: usize = 10;
     /// Shares of the peripersonal comfort in the sweep of a Pareto front, besides the scenario's own: denser towards both
     /// ends, where a little of one comfort buys much of the other.
     pub const FRONT_SHARES: [f64; 13] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0];

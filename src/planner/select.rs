@@ -2,16 +2,22 @@
 
 use super::{
     assemble::{assemble, is_sound},
-    evaluate::Evaluator,
+    configurations::other_configurations,
+    evaluate::{Evaluator, Feasible},
     library::GraspLibrary,
     outcome::Outcome,
-    params::{SearchBudget, select::STARTS_PER_PLAN},
+    params::{
+        RefinementRound, SearchBudget,
+        select::{CONFIGURATION_STEPS, STARTS_PER_PLAN},
+    },
+    refine,
     search::search,
     warm_starts::WarmStarts,
 };
 use crate::model::{
     grasp::Edge,
     plan::{ArmHold, Plan},
+    scenario::ResponseKind,
 };
 
 /// Plans whose boards are farther apart than this differ, m.
@@ -35,7 +41,7 @@ pub fn differ(one: &Plan, other: &Plan) -> bool {
 }
 
 /// The best `wanted` plans that [`differ`] from one another, at least one, perhaps fewer than wanted. The search is that of one
-/// plan with more starts. Every plan is checked.
+/// plan with more starts; the best grasps are also tried with other configurations of the arms. Every plan is checked.
 pub fn top(
     mut evaluator: Evaluator<'_>,
     library: &GraspLibrary,
@@ -48,8 +54,10 @@ pub fn top(
     for round in &mut budget.rounds {
         round.candidates = round.candidates.max(2 * wanted) + budget.warm_starts;
     }
+    let found = search(&mut evaluator, library, warm, &budget);
+    let found = with_other_configurations(&mut evaluator, found, wanted);
     let mut plans: Vec<Plan> = Vec::with_capacity(wanted);
-    for found in search(&mut evaluator, library, warm, &budget) {
+    for found in found {
         if plans.len() == wanted {
             break;
         }
@@ -61,4 +69,19 @@ pub fn top(
         }
     }
     if plans.is_empty() { Outcome::Infeasible(evaluator.stats.into_infeasible()) } else { Outcome::Found(plans) }
+}
+
+/// The candidates, the best `wanted` of them also with other configurations of the arms, refined; the best first.
+fn with_other_configurations(evaluator: &mut Evaluator<'_>, found: Vec<Feasible>, wanted: usize) -> Vec<Feasible> {
+    // The mean response ranks candidates by another objective than refinement's.
+    if evaluator.problem.objective.person == ResponseKind::Mean {
+        return found;
+    }
+    let other = |found: &Feasible| other_configurations(evaluator, found, JOINT_APART_RAD);
+    let others: Vec<_> = found.iter().take(wanted).flat_map(other).collect();
+    let round = RefinementRound { candidates: others.len(), steps: CONFIGURATION_STEPS };
+    let mut all = found;
+    all.extend(refine::refine(evaluator, others, &[round]));
+    all.sort_by(|a, b| b.objective.total_cmp(&a.objective));
+    all
 }

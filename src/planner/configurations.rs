@@ -1,0 +1,75 @@
+//! Other configurations of the arms for a grasp: the same board pose and grasps, other joint angles.
+//!
+//! An arm with a redundant joint, or with several branches of its inverse kinematics, reaches a grasp in many ways.
+//! Refinement follows one of them continuously and never changes the branch. All branches are enumerated here, and the
+//! combinations of the arms' solutions are tested from the one that is farthest from its joint limits.
+
+use super::{
+    candidate::Candidate,
+    evaluate::{Evaluator, Feasible},
+    library::{ArmGrasp, GraspingArm},
+    params::select::{COMBINATIONS, CONFIGURATIONS, SOLUTION_STARTS},
+};
+use crate::{
+    model::frames::Pose,
+    robot::{
+        InverseKinematics,
+        bimanual::{Combination, Combinations, RankedSolutions},
+    },
+};
+
+/// Feasible candidates with the grasp of `found` whose arms differ from it, and from each other, by more than `apart_rad` in
+/// some joint; at most [`CONFIGURATIONS`].
+pub fn other_configurations(evaluator: &mut Evaluator<'_>, found: &Feasible, apart_rad: f64) -> Vec<Feasible> {
+    let Feasible { candidate, configuration, .. } = found;
+    let robot = evaluator.problem.robot;
+    let solutions: Vec<_> = robot
+        .arms
+        .iter()
+        .zip(&candidate.arms)
+        .map(|(arm, own)| solutions(arm, &configuration.placement.x_wo, &own.grasp.x_og(robot.size_m)))
+        .collect();
+    let mut kept: Vec<Feasible> = Vec::new();
+    for combination in Combinations::new(&solutions).take(COMBINATIONS) {
+        if kept.len() == CONFIGURATIONS || evaluator.stats.is_exhausted() {
+            break;
+        }
+        let other = with_joints(candidate, &combination);
+        let differs = |known: &Candidate| largest_difference_rad(known, &other) > apart_rad;
+        if !differs(candidate) || !kept.iter().all(|known| differs(&known.candidate)) {
+            continue;
+        }
+        evaluator.stats.count();
+        match evaluator.evaluate(other) {
+            Ok(feasible) => kept.push(feasible),
+            Err(rejected) => evaluator.stats.reject(rejected.why),
+        }
+    }
+    kept
+}
+
+/// All solutions of an arm for a grasp, those farthest from the joint limits first.
+fn solutions(arm: &GraspingArm, x_wo: &Pose, x_og: &Pose) -> RankedSolutions {
+    let least_margin = |q_rad: &[f64]| {
+        let margins = arm.chain.limit_distances(q_rad);
+        -margins.into_iter().fold(f64::INFINITY, f64::min)
+    };
+    match &arm.inverse {
+        InverseKinematics::ClosedForm(closed_form) => RankedSolutions::of_grasp(closed_form, x_wo, x_og, least_margin),
+        InverseKinematics::General(_) => {
+            RankedSolutions::new(arm.inverse.samples(&(x_wo * x_og), SOLUTION_STARTS), least_margin)
+        }
+    }
+}
+
+fn with_joints(candidate: &Candidate, combination: &Combination<'_>) -> Candidate {
+    let arms = candidate.arms.iter().zip(&combination.q_rad);
+    let arms = arms.map(|(arm, q_rad)| ArmGrasp { grasp: arm.grasp, q_rad: q_rad.to_vec() }).collect();
+    Candidate { work: candidate.work, arms }
+}
+
+/// The largest difference of a joint, rad.
+fn largest_difference_rad(one: &Candidate, other: &Candidate) -> f64 {
+    let arms = one.arms.iter().zip(&other.arms);
+    arms.flat_map(|(a, b)| a.q_rad.iter().zip(&b.q_rad).map(|(a, b)| (a - b).abs())).fold(0.0, f64::max)
+}
