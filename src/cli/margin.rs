@@ -6,6 +6,7 @@ use super::{
     args::{Format, MarginArgs},
     exit::{CliError, Exit},
     output,
+    predicted::{Predicted, predicted},
 };
 use crate::{
     judge::{FailingLoad, Judgement, failing_load, judge},
@@ -18,7 +19,6 @@ use crate::{
     robot::Robot,
     scenario,
     sim::{self, Conditions},
-    statics::{ContactModel, ContactModelError, StabilityWorkspace},
 };
 
 /// How much load a hold stands, by the simulation and by both predictions.
@@ -37,26 +37,16 @@ struct Margin {
     /// Why there is no such check, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
-    /// What the statics predict; none when they have no answer to the plan.
+    /// What the statics predict.
     predicted: Option<Predicted>,
+    /// Why there is no prediction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    no_prediction: Option<String>,
     /// How many simulations it took.
     simulations: usize,
     /// What the author expected, and whether it is so.
     expected: VerdictKind,
     met: bool,
-}
-
-/// What the statics predict.
-#[derive(Clone, Debug, Serialize)]
-struct Predicted {
-    /// The largest multiple that any distribution of forces holds, with a certificate (lambda*).
-    best_case: f64,
-    /// What limits it.
-    binding: Vec<String>,
-    /// The largest multiple that compliant arms hold.
-    compliant: f64,
-    /// What ends it.
-    compliant_ended_by: Option<String>,
 }
 
 /// Finds and reports the margin of a plan.
@@ -75,8 +65,11 @@ pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
 }
 
 fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, CliError> {
-    // Statics that have no answer to a plan which can be simulated are no reason to have no margin.
-    let predicted = predicted(plan, robot, scenario).ok().flatten();
+    // A plan that can be simulated has a margin even without a prediction.
+    let (predicted, no_prediction) = match predicted(plan, robot, scenario) {
+        Ok(predicted) => (Some(predicted), None),
+        Err(reason) => (None, Some(reason)),
+    };
     let expected = scenario.expect.verdict;
     let empty = Margin {
         name: plan.name.clone(),
@@ -86,6 +79,7 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
         check: None,
         reason: None,
         predicted,
+        no_prediction,
         simulations: 0,
         expected,
         met: expected == VerdictKind::Touches,
@@ -127,20 +121,6 @@ fn judged(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Resul
     Ok(judge(&trace, &scenario.limits))
 }
 
-/// What the statics say of the plan, under the friction that it counts on.
-fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, ContactModelError> {
-    let hold = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
-    let mut workspace = StabilityWorkspace::new();
-    let crate::statics::LoadFactorOutcome::Solved(best_case) = workspace.load_factor(&hold)? else { return Ok(None) };
-    let compliant = workspace.compliant_load_factor(&hold, &scenario.limits)?;
-    Ok(Some(Predicted {
-        best_case: best_case.load_factor,
-        binding: best_case.binding,
-        compliant: compliant.load_factor,
-        compliant_ended_by: compliant.first_limit.map(|limit| limit.to_string()),
-    }))
-}
-
 fn for_people(margin: &Margin) -> String {
     let why = match (&margin.check, &margin.reason) {
         (Some(check), _) => format!(" ({} {:.3} {}, at most {})", check.name, check.value, check.unit, check.limit),
@@ -160,11 +140,10 @@ fn for_people(margin: &Margin) -> String {
         "simulated            {:7.3}  {} simulations, each with its whole load\n",
         margin.load_factor, margin.simulations
     ));
-    if let Some(predicted) = &margin.predicted {
-        let ended_by = predicted.compliant_ended_by.as_deref().unwrap_or("nothing up to 100");
-        text.push_str(&format!("compliant prediction {:7.3}  {ended_by}\n", predicted.compliant));
-        let binding = predicted.binding.join(", ");
-        text.push_str(&format!("best case (lambda*)  {:7.3}  {binding}\n", predicted.best_case));
+    match (&margin.predicted, &margin.no_prediction) {
+        (Some(predicted), _) => text.push_str(&predicted.for_people()),
+        (None, Some(reason)) => text.push_str(&format!("prediction           none: {reason}\n")),
+        (None, None) => {}
     }
     text
 }

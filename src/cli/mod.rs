@@ -19,6 +19,7 @@ mod margin;
 mod output;
 mod pipeline;
 mod plan;
+mod predicted;
 mod progress;
 #[cfg(feature = "recording")]
 mod recording;
