@@ -45,8 +45,13 @@ fn a_margin_says_what_larger_limits_and_uncertainty_change() {
     let folder = tempfile::tempdir().unwrap();
     let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/holds/cut-04.json");
     let scenario = folder.path().join("slippery.toml");
-    let text = "format = 1\nname = \"slippery\"\n[operation]\nkind = \"cut\"\npoint_m = [0.0, 0.12]\n\
-        direction_o = [-1.0, 0.0]\nforce_n = 30.0\n[uncertainty]\nfriction_scale = 0.8\n";
+    // The plan's operation, with slippery pads.
+    let text = r#"
+        format = 1
+        name = "slippery"
+        operation = { kind = "cut", point_m = [0.04592201188381078, 0.1108655439013544], direction_o = [-27.716385975338603, 11.480502970952696, 0.0], force_n = 30.0 }
+        uncertainty = { friction_scale = 0.8 }
+    "#;
     fs::write(&scenario, text).unwrap();
     let (text, _) = benchdog(&["margin", plan, "--scenario", scenario.to_str().unwrap(), "--format", "json"]);
     let margin: Value = serde_json::from_str(&text).unwrap();
