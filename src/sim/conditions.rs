@@ -25,6 +25,7 @@ pub struct Conditions {
 
 impl Conditions {
     /// A ramp of the operation's wrench, without deviations from the plan.
+    #[must_use]
     pub fn new(friction: f64, settings: SimulationSettings) -> Self {
         Self {
             friction,
@@ -37,6 +38,7 @@ impl Conditions {
     }
 
     /// The conditions of a scenario.
+    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self {
             friction: scenario.grip.friction,

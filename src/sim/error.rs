@@ -4,6 +4,7 @@ use crate::human::HumanError;
 
 /// Why a plan cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimError {
     /// An invalid setting.
     #[error("found {key} = {found}, expected {expected}")]

@@ -27,7 +27,7 @@ const MAX_FINGER_LEAN_DEG: f64 = 2.0;
 
 impl ContactModel {
     /// The contact model of a plan. Board, pads and arms are at the plan's poses and angles. Pads lie flat on the two
-    /// faces; only the part of a pad that is on the face counts (see [`clip_to_rectangle`]).
+    /// faces; only the part of a pad that is on the face counts (see `patch.rs`).
     ///
     /// # Errors
     /// If an arm is unknown, its joints are not the robot's, the number of angles is wrong, the finger axis is not

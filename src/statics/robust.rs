@@ -15,8 +15,9 @@
 //!
 //! # More than the listed variations
 //! A grasp that resists several loads at one friction resists every convex combination of them: the same combination of
-//! the forces stays in the cones, and `a_i` is linear. A grasp that resists a load at one friction resists it at any
-//! higher one. So for a polytope of loads and an interval of frictions the vertices at the lowest friction are enough.
+//! the forces stays in the cones, and `a_i` is linear. A grasp that resists a load at one friction and grip force
+//! resists it at any higher ones. So for a polytope of loads and intervals of friction and grip force the vertices at
+//! the lowest friction and grip force are enough.
 
 use clarabel::{
     algebra::CscMatrix,
@@ -148,8 +149,8 @@ fn varied(model: &ContactModel, variation: &Variation) -> ContactModel {
     varied
 }
 
-/// The outcome if the hands cannot carry the board in some variation. A load that lifts the board may then be held where
-/// less of it is not, and the feasible load factors are no interval from 0.
+/// The outcome if the hands cannot carry the board in some variation. A load that lifts the board may then be held
+/// where less of it is not, and the feasible load factors are no interval from 0.
 fn weight_not_held(
     workspace: &mut StabilityWorkspace,
     models: &[ContactModel],
