@@ -1,5 +1,5 @@
-//! A step of the simulation: a hundred steps of two arms that hold the foam board of the quickstart under half of a
-//! cut's load, of one arm that holds it, and a whole run with its judgement.
+//! The simulation: a hundred steps of two arms with the foam board of the quickstart under half of a cut's load, the
+//! same with one arm, and a whole run with its judgement.
 
 use std::{hint::black_box, path::Path};
 
@@ -17,9 +17,9 @@ use benchdog::{
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 
-/// METHOD section 7.
+/// docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
-/// METHOD section 8, for a cut.
+/// docs/method.md#810-default-limits, for a cut.
 const LIMITS: Limits =
     Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 15.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 };
 

@@ -40,6 +40,34 @@ fn a_margin_below_one_is_exit_code_1() {
     assert!(text.contains("FAIL") && text.contains("then deflects (deflection "), "{text}");
 }
 
+#[test]
+fn a_margin_says_what_larger_limits_and_uncertainty_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/holds/cut-04.json");
+    let scenario = folder.path().join("slippery.toml");
+    // The plan's operation, with slippery pads.
+    let text = r#"
+        format = 1
+        name = "slippery"
+        operation = { kind = "cut", point_m = [0.04592201188381078, 0.1108655439013544], direction_o = [-27.716385975338603, 11.480502970952696, 0.0], force_n = 30.0 }
+        uncertainty = { friction_scale = 0.8 }
+    "#;
+    fs::write(&scenario, text).unwrap();
+    let (text, _) = benchdog(&["margin", plan, "--scenario", scenario.to_str().unwrap(), "--format", "json"]);
+    let margin: Value = serde_json::from_str(&text).unwrap();
+    let predicted = &margin["predicted"];
+    let number = |value: &Value| value.as_f64().unwrap();
+    let (best, bound) = (number(&predicted["best_case"]), number(&predicted["best_case_bound"]));
+    // The certificate bounds the best case, and tightly.
+    assert!(bound >= best - 1e-5 * best && bound <= best + 1e-4 * best, "{best} {bound}");
+    let robust = &predicted["robust"];
+    assert_eq!(number(&robust["friction_scale"]), 0.8);
+    assert!(number(&robust["load_factor"]) < best && number(&robust["load_factor"]) > 0.0, "{robust}");
+    let gains: Vec<f64> =
+        predicted["gains"].as_array().unwrap().iter().map(|gain| number(&gain["load_factor"])).collect();
+    assert!(!gains.is_empty() && gains.is_sorted_by(|one, other| one >= other), "{gains:?}");
+}
+
 /// All start tags of a document with their attributes; panics if it is not well formed.
 fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {
     let mut reader = Reader::from_str(text);

@@ -1,5 +1,5 @@
-//! What the statics predict against what the simulation shows, on ten planned holds: five cuts and five drills on the
-//! foam board of METHOD section 2. `cargo test --release --test prediction -- --nocapture` prints both tables.
+//! Predictions of the statics against the simulation for ten plans: five cuts and five drills on the foam board
+//! (docs/method.md#24-board). `cargo test --release --test prediction -- --nocapture` prints both tables.
 
 use std::{convert::Infallible, fs, path::Path, thread};
 
@@ -19,13 +19,13 @@ use benchdog::{
     statics::{CompliantResponse, ContactModel, LimitCrossing, ResponseOutcome, StabilityWorkspace},
 };
 
-/// METHOD section 7.
+/// docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
 
-/// The share of the operation's load at which hardly any pad is near its limits.
+/// A share of the load at which most pads are far from their limits.
 const SMALL_LOAD: f64 = 0.1;
 
-/// The settings of a run, without the release: it is not judged.
+/// Settings without the release, which is not judged.
 const SETTINGS: SimulationSettings =
     SimulationSettings { settle_s: 0.5, ramp_s: 1.0, hold_s: 1.0, release_s: 0.0, timestep_s: 0.002 };
 
@@ -40,7 +40,8 @@ fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
     CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).unwrap()
 }
 
-/// The plans of `tests/data/holds` in the order of their names: object, arms and operation as `benchdog plan` wrote them.
+/// The plans of `tests/data/holds` in the order of their names: object, arms and operation as `benchdog plan` wrote
+/// them.
 fn cases() -> (Robot, Vec<Case>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/holds");
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -57,13 +58,13 @@ fn cases() -> (Robot, Vec<Case>) {
     (robot, cases)
 }
 
-/// METHOD section 8.
+/// docs/method.md#810-default-limits.
 fn limits(kind: OperationKind) -> Limits {
     let deflection_mm = if kind == OperationKind::Drill { 5.0 } else { 15.0 };
     Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 }
 }
 
-/// What the simulation makes of a multiple of the operation.
+/// The judgement under a multiple of the load.
 fn simulated(robot: &Robot, case: &Case, load_factor: f64) -> Judgement {
     let trace =
         simulate(&checked(robot, &case.plan), &Conditions::new(FRICTION, SETTINGS).scaled(load_factor)).unwrap();
@@ -77,15 +78,15 @@ fn predicted(case: &Case, load_factor: f64) -> CompliantResponse {
     }
 }
 
-/// One answer a case, two at a time.
-fn of_each<T: Send>(cases: &[Case], answer: impl Fn(&Case) -> T + Sync) -> Vec<T> {
-    let half = |cases: &[Case]| cases.iter().map(&answer).collect::<Vec<_>>();
+/// The result of each case, two at a time.
+fn of_each<T: Send>(cases: &[Case], result: impl Fn(&Case) -> T + Sync) -> Vec<T> {
+    let half = |cases: &[Case]| cases.iter().map(&result).collect::<Vec<_>>();
     let (first, second) = cases.split_at(cases.len() / 2);
     thread::scope(|scope| {
         let second = scope.spawn(|| half(second));
-        let mut answers = half(first);
-        answers.extend(second.join().unwrap());
-        answers
+        let mut results = half(first);
+        results.extend(second.join().unwrap());
+        results
     })
 }
 
@@ -100,7 +101,7 @@ fn small_deflections_are_predicted() {
     for (case, (predicted, simulated)) in cases.iter().zip(found) {
         let (name, off) = (&case.plan.name, predicted / simulated - 1.0);
         println!("| {name} | {predicted:.4} | {simulated:.4} | {:+.1} % |", 100.0 * off);
-        // What the contacts of the simulation give way, and pads of five points for a face, cost up to 4.5 %.
+        // Contact compliance in the simulation, and pads of five contacts instead of a face, cause up to 4.5 %.
         if off.abs() > 0.05 {
             too_far.push(name.as_str());
         }
@@ -108,7 +109,7 @@ fn small_deflections_are_predicted() {
     assert!(too_far.is_empty(), "{too_far:?}");
 }
 
-/// The load factor up to which the simulated hold stands, and what ends it, as `benchdog margin` finds them.
+/// The simulated load factor and the verdict at failure, as `benchdog margin` finds them.
 fn simulated_failing_load(robot: &Robot, case: &Case, predicted: f64) -> (f64, VerdictKind) {
     let judged = |load_factor| Ok::<_, Infallible>(simulated(robot, case, load_factor));
     let Ok(found) = failing_load(predicted, judged);
@@ -136,7 +137,7 @@ fn failing_loads_are_predicted() {
     assert!(too_far.is_empty(), "{too_far:?}");
 }
 
-/// True when the limit that was predicted to end the hold is the one that did.
+/// True if the predicted limit is the one that ended the simulation.
 fn agree(limit: Option<&LimitCrossing>, by: VerdictKind) -> bool {
     matches!(
         (limit, by),

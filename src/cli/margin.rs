@@ -7,6 +7,7 @@ use super::{
     args::{Format, MarginArgs},
     exit::{CliError, Exit},
     output,
+    predicted::{Predicted, predicted},
 };
 use crate::{
     check::CheckedPlan,
@@ -17,7 +18,6 @@ use crate::{
     },
     scenario::{self, LoadedPlan},
     sim::{self, Conditions},
-    statics::{ContactModel, ContactModelError, StabilityWorkspace},
 };
 
 /// The load factors of a plan by simulation and by both predictions.
@@ -36,27 +36,17 @@ struct Margin {
     /// Why there is no such check.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
-    /// The predictions; `None` if they are not defined for the plan.
+    /// The predictions.
     predicted: Option<Predicted>,
+    /// Why there is no prediction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    no_prediction: Option<String>,
     /// Number of simulations.
     simulations: usize,
     /// The expected verdict.
     expected: VerdictKind,
     /// Whether the expectation is met.
     met: bool,
-}
-
-/// The predicted load factors.
-#[derive(Clone, Debug, Serialize)]
-struct Predicted {
-    /// The load factor, lambda*.
-    best_case: f64,
-    /// The constraints that are active at it.
-    binding: Vec<String>,
-    /// The compliant load factor.
-    compliant: f64,
-    /// The limit that ends it.
-    compliant_ended_by: Option<String>,
 }
 
 /// Finds and reports the margin of a plan.
@@ -77,7 +67,10 @@ pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
 
 fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, CliError> {
     // A plan without predictions may still be simulated.
-    let predicted = predicted(checked, scenario).ok().flatten();
+    let (predicted, no_prediction) = match predicted(checked, scenario) {
+        Ok(predicted) => (Some(predicted), None),
+        Err(reason) => (None, Some(reason)),
+    };
     let expected = scenario.expect.verdict;
     let empty = Margin {
         name: checked.plan.name.clone(),
@@ -87,6 +80,7 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, C
         check: None,
         reason: None,
         predicted,
+        no_prediction,
         simulations: 0,
         expected,
         met: expected == VerdictKind::Touches,
@@ -128,20 +122,6 @@ fn judge_at(checked: &CheckedPlan<'_>, scenario: &Scenario, factor: f64) -> Resu
     Ok(judge(&trace, &scenario.limits))
 }
 
-/// The predictions for a plan, with the scenario's nominal friction.
-fn predicted(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Option<Predicted>, ContactModelError> {
-    let hold = ContactModel::of_plan(checked, scenario.grip.friction)?;
-    let mut workspace = StabilityWorkspace::new();
-    let crate::statics::LoadFactorOutcome::Solved(best_case) = workspace.load_factor(&hold)? else { return Ok(None) };
-    let compliant = workspace.compliant_load_factor(&hold, &scenario.limits)?;
-    Ok(Some(Predicted {
-        best_case: best_case.load_factor,
-        binding: best_case.binding,
-        compliant: compliant.load_factor,
-        compliant_ended_by: compliant.first_limit.map(|limit| limit.to_string()),
-    }))
-}
-
 fn text(margin: &Margin) -> String {
     let why = match (&margin.check, &margin.reason) {
         (Some(check), _) => format!(" ({} {:.3} {}, at most {})", check.name, check.value, check.unit, check.limit),
@@ -158,11 +138,10 @@ fn text(margin: &Margin) -> String {
         margin.name, margin.load_factor, margin.expected
     );
     text.push_str(&format!("simulated            {:7.3}  {} simulations\n", margin.load_factor, margin.simulations));
-    if let Some(predicted) = &margin.predicted {
-        let ended_by = predicted.compliant_ended_by.as_deref().unwrap_or("nothing up to 100");
-        text.push_str(&format!("compliant prediction {:7.3}  {ended_by}\n", predicted.compliant));
-        let binding = predicted.binding.join(", ");
-        text.push_str(&format!("best case (lambda*)  {:7.3}  {binding}\n", predicted.best_case));
+    match (&margin.predicted, &margin.no_prediction) {
+        (Some(predicted), _) => text.push_str(&predicted.text()),
+        (None, Some(reason)) => text.push_str(&format!("prediction           none: {reason}\n")),
+        (None, None) => {}
     }
     text
 }

@@ -20,6 +20,7 @@ mod output;
 mod pipeline;
 mod plan;
 mod planners;
+mod predicted;
 mod progress;
 #[cfg(feature = "recording")]
 mod recording;

@@ -53,9 +53,9 @@ fn phase_events(trace: &Trace, samples: &[Sample]) -> Vec<Event> {
             what: String::new(),
             text: match sample.phase {
                 Phase::Settle => "settle: the board's weight alone".to_owned(),
-                Phase::Ramp => format!("ramp: the load grows; the tool point sagged {:.2} mm", sag_mm(trace, sample)),
-                Phase::Hold => format!("hold: the whole load, factor {:.2}", sample.load_factor),
-                Phase::Release => "release: the load is gone".to_owned(),
+                Phase::Ramp => format!("ramp: the load increases; the tool tip sagged {:.2} mm", sag_mm(trace, sample)),
+                Phase::Hold => format!("hold: the full load, factor {:.2}", sample.load_factor),
+                Phase::Release => "release: no load".to_owned(),
             },
         })
         .collect()
@@ -71,17 +71,17 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
     let crossing = finding.crossing.as_ref()?;
     let sample = &judged[crossing.sample];
     let happened = match finding.check.name {
-        CheckKind::Slip => "slides past",
-        CheckKind::SlipRotation => "turns past",
-        CheckKind::Deflection => "the tool point gives way past",
-        CheckKind::Creep => "keeps sliding faster than",
-        CheckKind::TorqueRatio => "is asked for more than its torque times",
+        CheckKind::Slip => "slides by more than",
+        CheckKind::SlipRotation => "turns by more than",
+        CheckKind::Deflection => "the tool tip deflects by more than",
+        CheckKind::Creep => "creeps faster than",
+        CheckKind::TorqueRatio => "needs more than its torque limit times",
         CheckKind::PadOpen => "has been open for more than",
-        CheckKind::ContactLost => "no pad touches the board: past",
-        CheckKind::Drop => "has lost the board: past",
-        CheckKind::PersonOverlap => "overlap: past",
+        CheckKind::ContactLost => "no pad has touched the board for more than",
+        CheckKind::Drop => "has dropped the board: it slid by more than",
+        CheckKind::PersonOverlap => "overlap by more than",
         CheckKind::Penetration | CheckKind::EnergyCreated | CheckKind::ForceResidual | CheckKind::CouplingDrift => {
-            "the simulation leaves the laws of mechanics: past"
+            "the simulation violates the laws of mechanics by more than"
         }
     };
     let unit = match finding.check.name {

@@ -12,6 +12,7 @@ use crate::model::{
 /// fields, the phase as a number (0 to 3), the person's distance if the plan has a person, and the tool point if it has
 /// moved. Names are not part of it, nor are the self-checks, which follow from the rest. Equal fingerprints mean
 /// simulations that agree bit for bit.
+#[must_use]
 pub fn fingerprint(trace: &Trace) -> String {
     let mut hasher = Sha256::new();
     visit_constants(trace, &mut |value| hasher.update(value.to_le_bytes()));

@@ -33,6 +33,7 @@ pub struct Judgement {
 
 impl Judgement {
     /// The contents of a verdict file. Name, expectation, seed and versions do not influence the judgement.
+    #[must_use]
     pub fn to_verdict(
         &self,
         name: &str,

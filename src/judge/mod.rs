@@ -36,6 +36,7 @@ use crate::model::{
 ///
 /// A trace that breaks down is judged up to its last valid sample. If a limit was crossed before, it determines the
 /// verdict. Otherwise there is no verdict, as the effect of the rest of the load is unknown.
+#[must_use]
 pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     if let Some(reason) = malformed(trace) {
         return no_verdict(trace, Measures::default(), Vec::new(), reason);

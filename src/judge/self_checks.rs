@@ -58,7 +58,7 @@ fn created_j(samples: &[Sample]) -> f64 {
 pub(super) fn failed_self_checks(self_checks: &[Check]) -> Option<String> {
     let mut reason = String::new();
     for check in self_checks.iter().filter(|check| !check.passed) {
-        let separator = if reason.is_empty() { "the simulation cannot be believed: " } else { ", " };
+        let separator = if reason.is_empty() { "the simulation is not valid: " } else { ", " };
         // Writing to a string never fails.
         _ = write!(reason, "{separator}{} {:.3} {}, at most {}", check.name, check.value, check.unit, check.limit);
     }

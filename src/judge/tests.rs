@@ -152,8 +152,8 @@ fn a_person_who_is_reached_is_touched() {
     assert_eq!(touched.first_failure.unwrap().time_s, at as f64 * STEP_S);
     let check = touched.checks.iter().find(|check| check.name == CheckKind::PersonOverlap).unwrap();
     assert_eq!((check.value, check.limit, check.margin), (2.0, 0.0, -2.0));
-    let told = "the board and the person's Head overlap: past 0 mm at load factor 0.61";
-    assert!(touched.events.iter().any(|event| event.text == told), "{:?}", touched.events);
+    let expected = "the board and the person's Head overlap by more than 0 mm at load factor 0.61";
+    assert!(touched.events.iter().any(|event| event.text == expected), "{:?}", touched.events);
 
     // Contact without penetration is no overlap. A plan without a person has no such check.
     let apart = judge(&beside_a_person(at, 0.0), &limits());
@@ -379,7 +379,7 @@ fn a_crossing_with_failed_self_checks_has_no_verdict() {
     trace.samples[SETTLE + 40].self_check.contact_energy_j = 0.6;
     let judgement = judge(&trace, &limits());
     assert_eq!(judgement.verdict, VerdictKind::NoVerdict);
-    assert!(judgement.reason.unwrap().starts_with("the simulation cannot be believed: energy_created"));
+    assert!(judgement.reason.unwrap().starts_with("the simulation is not valid: energy_created"));
 }
 
 #[test]
@@ -413,10 +413,10 @@ fn events_are_the_phases_and_the_first_crossings_in_order() {
         texts,
         [
             "settle: the board's weight alone",
-            "ramp: the load grows; the tool point sagged 0.00 mm",
-            "right hand slides past 1 mm at load factor 0.60",
-            "hold: the whole load, factor 1.00",
-            "release: the load is gone",
+            "ramp: the load increases; the tool tip sagged 0.00 mm",
+            "right hand slides by more than 1 mm at load factor 0.60",
+            "hold: the full load, factor 1.00",
+            "release: no load",
         ]
     );
 }
@@ -474,7 +474,7 @@ fn a_simulation_that_violates_mechanics_has_no_verdict() {
     for (kind, spoil) in spoils {
         let judgement = judge(&changed(SETTLE + 1, |sample| spoil(&mut sample.self_check)), &limits());
         assert_eq!(judgement.verdict, VerdictKind::NoVerdict, "{kind}");
-        assert!(judgement.reason.unwrap().starts_with(&format!("the simulation cannot be believed: {kind}")));
+        assert!(judgement.reason.unwrap().starts_with(&format!("the simulation is not valid: {kind}")));
         assert!(judgement.checks.is_empty() && judgement.self_checks.len() == 4);
     }
     let residual = judge(&changed(0, |sample| sample.self_check.force_residual_n = 1.5), &limits());

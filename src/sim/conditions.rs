@@ -23,11 +23,13 @@ pub struct Conditions {
 
 impl Conditions {
     /// A ramp of the operation's wrench, without deviations from the plan.
+    #[must_use]
     pub fn new(friction: f64, settings: SimulationSettings) -> Self {
         Self { friction, settings, load: Load::default(), load_scale: 1.0, uncertainty: Uncertainty::default() }
     }
 
     /// The conditions of a scenario.
+    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self {
             friction: scenario.grip.friction,

@@ -204,6 +204,7 @@ fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) 
 }
 
 /// A sample of the right shape, without observations.
+#[must_use]
 pub fn blank_sample(plan: &Plan) -> Sample {
     let pad = PadSample { normal_force_n: 0.0, wrench_w: Wrench::default(), p_wp_m: Vector3::zeros() };
     let arms = plan.arms.iter().map(|hold| ArmSample {

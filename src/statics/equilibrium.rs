@@ -117,6 +117,7 @@ impl CompliantResponse {
     }
 
     /// Length of the displacement of the tool tip, mm.
+    #[must_use]
     pub fn deflection_mm(&self) -> f64 {
         self.deflection_m.norm() * 1e3
     }

@@ -21,7 +21,7 @@ use crate::{
 
 impl ContactModel {
     /// The contact model of a plan. Board, pads and arms are at the plan's poses and angles. Pads lie flat on the two
-    /// faces; only the part of a pad that is on the face counts (see [`clip_to_rectangle`]).
+    /// faces; only the part of a pad that is on the face counts (see `patch.rs`).
     ///
     /// # Errors
     /// If a pad is off the board.

@@ -68,6 +68,7 @@ pub enum LoadFactorOutcome {
 
 impl LoadFactorOutcome {
     /// The load factor; `None` unless solved.
+    #[must_use]
     pub fn load_factor(&self) -> Option<f64> {
         match self {
             Self::Solved(solved) => Some(solved.load_factor),

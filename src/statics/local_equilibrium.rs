@@ -30,6 +30,7 @@ enum Base {
 
 impl LocalEquilibrium {
     /// `None` without an equilibrium under the weight alone or at the load factor, or if a pad has no friction.
+    #[must_use]
     pub fn new(model: &ContactModel, load_factor: f64) -> Option<Self> {
         let welded = WeldedStiffness::new(model);
         let energies = HandEnergy::of_hands(model);

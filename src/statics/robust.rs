@@ -15,8 +15,9 @@
 //!
 //! # More than the listed variations
 //! A grasp that resists several loads at one friction resists every convex combination of them: the same combination of
-//! the forces stays in the cones, and `a_i` is linear. A grasp that resists a load at one friction resists it at any
-//! higher one. So for a polytope of loads and an interval of frictions the vertices at the lowest friction are enough.
+//! the forces stays in the cones, and `a_i` is linear. A grasp that resists a load at one friction and grip force
+//! resists it at any higher ones. So for a polytope of loads and intervals of friction and grip force the vertices at
+//! the lowest friction and grip force are enough.
 
 use clarabel::{
     algebra::CscMatrix,
@@ -40,13 +41,15 @@ use crate::model::wrench::Wrench;
 /// A load factor this near to the cap counts as the cap: far above the solver's tolerance.
 const CAP_MARGIN: f64 = 1e-3;
 
-/// A load and friction in place of the contact model's own.
+/// A load, friction and grip force in place of the contact model's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation {
     /// The operation's wrench at load factor 1, about O's origin in O axes.
     pub load: Wrench,
     /// Friction of every pad, as a multiple of its own.
     pub friction_ratio: f64,
+    /// Grip force of every hand, as a multiple of its own; more than 0.
+    pub grip_force_ratio: f64,
 }
 
 /// How the arms' internal forces, which balance each other, vary.
@@ -103,7 +106,7 @@ impl StabilityWorkspace {
         model.check()?;
         check(variations)?;
         let models: Vec<_> = variations.iter().map(|variation| varied(model, variation)).collect();
-        if let Some(outcome) = weight_not_held(self, &models, variations)? {
+        if let Some(outcome) = weight_not_held(self, &models)? {
             return Ok(outcome);
         }
         let adapted = smallest(self, &models)?;
@@ -120,7 +123,7 @@ fn check(variations: &[Variation]) -> Result<(), ContactModelError> {
     if variations.is_empty() {
         return Err(ContactModelError::NoVariations);
     }
-    for (number, Variation { load, friction_ratio }) in variations.iter().enumerate() {
+    for (number, Variation { load, friction_ratio, grip_force_ratio }) in variations.iter().enumerate() {
         let place = format!("variation {number}");
         if !load.is_finite() {
             return Err(ContactModelError::NotFinite { place, what: "load" });
@@ -129,32 +132,40 @@ fn check(variations: &[Variation]) -> Result<(), ContactModelError> {
             let (what, found, expected) = ("friction ratio", *friction_ratio, "0 or more");
             return Err(ContactModelError::Value { place, what, found, expected });
         }
+        if !(grip_force_ratio.is_finite() && *grip_force_ratio > 0.0) {
+            let (what, found, expected) = ("grip force ratio", *grip_force_ratio, "more than 0");
+            return Err(ContactModelError::Value { place, what, found, expected });
+        }
     }
     Ok(())
 }
 
 fn varied(model: &ContactModel, variation: &Variation) -> ContactModel {
     let mut varied = ContactModel { load: variation.load, ..model.clone() };
-    varied.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= variation.friction_ratio);
+    for hand in &mut varied.hands {
+        hand.grip_force_n *= variation.grip_force_ratio;
+        hand.pads.iter_mut().for_each(|pad| pad.friction *= variation.friction_ratio);
+    }
     varied
 }
 
-/// The outcome if the hands cannot carry the board at the lowest friction. A load that lifts the board may then be held
+/// The outcome if the hands cannot carry the board in some variation. A load that lifts the board may then be held
 /// where less of it is not, and the feasible load factors are no interval from 0.
 fn weight_not_held(
     workspace: &mut StabilityWorkspace,
     models: &[ContactModel],
-    variations: &[Variation],
 ) -> Result<Option<RobustOutcome>, ContactModelError> {
-    let friction = |variation: &usize| variations[*variation].friction_ratio;
-    let lowest = (0..models.len()).min_by(|left, right| friction(left).total_cmp(&friction(right)));
-    let Some(variation) = lowest else { return Err(ContactModelError::NoVariations) };
-    let idle = ContactModel { load: Wrench::default(), ..models[variation].clone() };
-    Ok(match workspace.load_factor(&idle)? {
-        LoadFactorOutcome::Solved(_) => None,
-        LoadFactorOutcome::GravityInfeasible { .. } => Some(RobustOutcome::GravityInfeasible { variation }),
-        LoadFactorOutcome::Unknown { status } => Some(RobustOutcome::Unknown { status }),
-    })
+    for (variation, model) in models.iter().enumerate() {
+        let idle = ContactModel { load: Wrench::default(), ..model.clone() };
+        match workspace.load_factor(&idle)? {
+            LoadFactorOutcome::Solved(_) => {}
+            LoadFactorOutcome::GravityInfeasible { .. } => {
+                return Ok(Some(RobustOutcome::GravityInfeasible { variation }));
+            }
+            LoadFactorOutcome::Unknown { status } => return Ok(Some(RobustOutcome::Unknown { status })),
+        }
+    }
+    Ok(None)
 }
 
 /// The minimum over models that share only the load factor. The wrenches of each are those at its own load factor.

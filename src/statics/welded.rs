@@ -27,6 +27,7 @@ impl WeldedStiffness {
     /// `K_O = sum_i Ad_i' C_i^-1 Ad_i` about the tool tip; `Ad_i` maps the board's twist at the tool tip to that at the
     /// grasp point. `None` if an arm is rigid in some direction (fewer than six joints, or a singular posture): its
     /// stiffness there is not finite.
+    #[must_use]
     pub fn new(model: &ContactModel) -> Option<Self> {
         let mut stiffness_t = Matrix6::zeros();
         let mut hands = Vec::with_capacity(model.hands.len());

@@ -17,7 +17,7 @@ use nalgebra::{
 };
 use rand::{RngExt, SeedableRng};
 
-/// The foam board of METHOD section 2, m and kg.
+/// The foam board of docs/method.md#24-board, m and kg.
 const BOARD_M: [f64; 3] = [0.50, 0.40, 0.030];
 pub const BOARD_KG: f64 = 0.21;
 
@@ -25,14 +25,14 @@ pub fn robot() -> Robot {
     Robot::load("baxter", Path::new(".")).unwrap()
 }
 
-/// The twist in W axes that leads from one pose to another: displacement of the origin, then rotation.
+/// The twist in W axes from one pose to another: displacement of the origin, then rotation vector.
 fn twist_between(from: &Pose, to: &Pose) -> Vector6<f64> {
     let linear = to.translation.vector - from.translation.vector;
     let angular = (to.rotation * from.rotation.inverse()).scaled_axis();
     Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
 }
 
-/// Angles within the limits that bring the gripper to a pose: damped Newton steps from drawn starts.
+/// Angles within the limits that put the gripper at a pose: damped Newton steps from random starts.
 fn inverse_kinematics(chain: &Chain, x_wg: &Pose, seed: u64) -> Vec<f64> {
     let mut random = rand_pcg::Pcg64::seed_from_u64(seed);
     for _ in 0..500 {
@@ -53,7 +53,7 @@ fn inverse_kinematics(chain: &Chain, x_wg: &Pose, seed: u64) -> Vec<f64> {
     panic!("no configuration reaches {x_wg}");
 }
 
-/// The board before the robot, z_O = x_W, x_O = y_W.
+/// The board in front of the robot, z_O = x_W, x_O = y_W.
 fn x_wo() -> Pose {
     let axes = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
     Isometry3::from_parts(Translation3::new(0.55, 0.0, 0.3), UnitQuaternion::from_matrix(&axes))
@@ -97,14 +97,15 @@ fn compliance(chain: &Chain, stiffness_nm_rad: &[f64], q_rad: &[f64]) -> Matrix6
     product.fixed_view::<6, 6>(0, 0).into_owned()
 }
 
-/// `[1, -[p]x; 0, 1]`: the twist of a point that lies at `p` from the one whose twist is given.
+/// `[1, -[p]x; 0, 1]`: maps a twist at a point to the twist at the point `p` away from it.
 fn shift(p: &Vector3<f64>) -> Matrix6<f64> {
     let mut shift = Matrix6::identity();
     shift.fixed_view_mut::<3, 3>(0, 3).copy_from(&-p.cross_matrix());
     shift
 }
 
-/// The welded prediction of METHOD section 6: the displacement of the tool point under the operation, m, W axes.
+/// The displacement of the tool tip under the operation by the welded stiffness (docs/method.md#67-welded-stiffness),
+/// m, W axes.
 pub fn welded_displacement_m(robot: &Robot, plan: &Plan) -> Vector3<f64> {
     let tip_w = plan.object.x_wo * Point3::from(plan.operation.x_ot.translation.vector);
     let mut stiffness = Matrix6::zeros();

@@ -1,4 +1,4 @@
-//! A gripper fixed in the world that grips a block: the smallest robot there is, built by the same code as any other.
+//! A gripper fixed in the world that grips a block: a minimal robot, built by the same code as any other.
 
 use benchdog::{
     model::{
@@ -60,10 +60,9 @@ fn finger(name: &str, link: usize, opening_sign: f64) -> Finger {
     Finger { joint: link - 1, closed_m: 0.0, opening_sign, max_travel_m: 0.020833, pad }
 }
 
-/// A gripper of the measures of Baxter's, welded to the world with G at `x_wg`, or carried at `x_wg` by one hinge about
-/// the world's z.
+/// A gripper with Baxter's dimensions, welded to the world with G at `x_wg`, or on one hinge about the world's z.
 pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
-    // G lies 0.15 m before the finger joints; slot 1 of the palm.
+    // G is 0.15 m in front of the finger joints; slot 1 of the palm.
     let finger_at = |side: f64| Isometry3::translation(0.0, -0.011 * side, -0.1327);
     let carrier = if hinge.is_some() { JointKind::Revolute } else { JointKind::Fixed };
     let links = vec![
@@ -102,7 +101,7 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
     }
 }
 
-/// A servo in the hinge that carries the gripper.
+/// A servo in the gripper's hinge.
 #[derive(Clone, Copy)]
 pub struct Hinge {
     pub effort_nm: f64,
@@ -117,7 +116,7 @@ pub struct Grip {
     pub mass_kg: f64,
 }
 
-/// Fingers closing along the world's y, palm behind them along -x: gravity pulls along x_G, in the plane of the pads.
+/// Fingers that close along the world's y, palm behind them along -x: gravity acts along x_G, in the plane of the pads.
 pub fn fingers_level() -> Pose {
     // Columns: x_G = -z_W, y_G = y_W, z_G = x_W.
     let axes = Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0);
@@ -125,10 +124,10 @@ pub fn fingers_level() -> Pose {
     Isometry3::from_parts(Translation3::new(0.5, 0.1, 0.2), rotation)
 }
 
-/// A block held in the middle of its faces, with a wrench in the gripper's axes about the centre between the pads.
+/// A block held at the centre of its faces, with a wrench in the gripper's axes about the centre between the pads.
 pub fn plan(robot: &Robot, x_wg: Pose, grip: &Grip, wrench_g: Wrench) -> Plan {
     let arm = &robot.arms[0];
-    // O has its z along y_G: x_O = x_G, y_O = -z_G.
+    // z_O is y_G, x_O is x_G, y_O is -z_G.
     let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), -std::f64::consts::FRAC_PI_2);
     let x_go = Isometry3::from_parts(Translation3::from(arm.gripper.grasp_point_g()), turn);
     let rotation_og = turn.inverse();
@@ -158,14 +157,14 @@ pub fn plan(robot: &Robot, x_wg: Pose, grip: &Grip, wrench_g: Wrench) -> Plan {
     }
 }
 
-/// A scene and the last state observed.
+/// A scene and its last observed state.
 pub struct Bench {
     pub scene: SimScene,
     pub sample: Sample,
 }
 
 impl Bench {
-    /// A welded gripper that grips a block with its fingers level, and a wrench in its axes.
+    /// A welded gripper with level fingers that grips a block, and a wrench in its axes.
     pub fn welded(grip: &Grip, wrench_g: Wrench) -> Self {
         let robot = robot(fingers_level(), None);
         let plan = plan(&robot, fingers_level(), grip, wrench_g);
@@ -178,7 +177,7 @@ impl Bench {
         Self { scene, sample: blank_sample(plan) }
     }
 
-    /// Steps for `duration_s` while the load goes evenly from one multiple of the wrench to another.
+    /// Steps for `duration_s` while the load changes linearly from one multiple of the wrench to another.
     pub fn run(&mut self, duration_s: f64, from: f64, to: f64) -> &Sample {
         let steps = (duration_s / TIMESTEP_S).round() as usize;
         for step in 1..=steps {
@@ -188,7 +187,7 @@ impl Bench {
         &self.sample
     }
 
-    /// How far the hand moves on the block, m and rad, until a second after the load `factor` was brought on slowly.
+    /// Motion of the hand on the block, m and rad, until a second after the load `factor` was applied slowly.
     pub fn motion_under(&mut self, factor: f64) -> (f64, f64) {
         let before = self.run(0.2, 0.0, 0.0).arms[0].x_oc;
         self.run(0.5, 0.0, factor);

@@ -1,4 +1,4 @@
-//! Whole holds: the ten plans of `tests/data/holds`, and what no hold may ever do.
+//! Whole simulations: the ten plans of `tests/data/holds`, and properties of every simulation.
 
 use std::{fs, path::Path};
 
@@ -53,12 +53,12 @@ fn value(judgement: &Judgement, kind: CheckKind) -> f64 {
     judgement.checks.iter().find(|check| check.name == kind).unwrap().value
 }
 
-/// Below these a difference between two time steps is next to nothing: three thousandths of the verdict's limits of slip.
-/// Hands that stick move by 0.006 mm and 0.02 degrees in all, and those differ by 0.001 mm and 0.002 degrees.
+/// Differences between two time steps below these are negligible: three thousandths of the verdict's limits of slip.
+/// Hands that stick move by 0.006 mm and 0.02 degrees in all, with differences of 0.001 mm and 0.002 degrees.
 const SLIP_FLOOR_MM: f64 = 0.003;
 const SLIP_FLOOR_DEG: f64 = 0.006;
 
-/// What differs too much between time steps of 2 and 0.5 ms.
+/// The values that differ too much between time steps of 2 and 0.5 ms.
 fn differences(robot: &Robot, plan: &Plan) -> Vec<String> {
     let at = |timestep_s| {
         let settings = SimulationSettings { timestep_s, ..SETTINGS };
@@ -95,7 +95,7 @@ fn ten_times_the_certificates_load_always_fails() {
         let conditions = Conditions::new(FRICTION, SETTINGS).scaled(10.0 * certificate.load_factor);
         let judgement = judged(&robot, &plan, &conditions);
         println!("{}: {} {:?}", plan.name, judgement.verdict, judgement.first_failure);
-        // Arms that are torn about may end beyond what the engine stands, yet only after a limit that names the failure.
+        // Under such a load the engine may break down, but only after a limit that determines the verdict.
         assert!(judgement.first_failure.is_some(), "{}: {} {:?}", plan.name, judgement.verdict, judgement.reason);
         assert_ne!(judgement.verdict, VerdictKind::NoVerdict, "{}", plan.name);
     }
@@ -114,8 +114,8 @@ fn a_board_without_a_load_stays_for_a_minute() {
     }
 }
 
-/// A load of any kind and size that a scenario may ask for.
-fn drawn_load(draw: &mut impl FnMut(f64, f64) -> f64) -> Load {
+/// A random load of any kind and size that a scenario may have.
+fn random_load(draw: &mut impl FnMut(f64, f64) -> f64) -> Load {
     let profile = match draw(0.0, 4.0) as usize {
         0 => ForceProfile::Ramp,
         1 => ForceProfile::Drill {
@@ -139,12 +139,12 @@ fn drawn_load(draw: &mut impl FnMut(f64, f64) -> f64) -> Load {
 }
 
 #[test]
-fn two_hundred_drawn_scenarios_end_with_a_judgement() {
+fn two_hundred_random_scenarios_end_with_a_judgement() {
     let robot = baxter::robot();
     let mut random = rand_pcg::Pcg64::seed_from_u64(7);
     let mut draw = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     let still = baxter::plan(&robot, Operation::drill([0.0, 0.0], 15.0, THICKNESS_M), BOARD_KG, 30.0);
-    let (mut holds, mut distrusted) = (0, Vec::new());
+    let (mut holds, mut without_verdict) = (0, Vec::new());
     for case in 0..200 {
         let mut plan = still.clone();
         let size = 10.0_f64.powf(draw(-1.0, 3.0));
@@ -160,7 +160,7 @@ fn two_hundred_drawn_scenarios_end_with_a_judgement() {
         let settings =
             SimulationSettings { settle_s: 0.1, ramp_s: 0.1, hold_s: 0.2, release_s: 0.05, timestep_s: 0.002 };
         let conditions = Conditions {
-            load: drawn_load(&mut draw),
+            load: random_load(&mut draw),
             uncertainty: Uncertainty {
                 friction_scale: draw(0.0, 2.0),
                 grip_force_scale: draw(0.1, 2.0),
@@ -170,19 +170,19 @@ fn two_hundred_drawn_scenarios_end_with_a_judgement() {
             ..Conditions::new(FRICTION, settings)
         };
         let trace = simulate(&robot, &plan, &conditions).unwrap();
-        // As many samples as there are steps, or fewer when the board is lost or the engine is.
+        // As many samples as steps, or fewer if the board is lost or the engine breaks down.
         assert!(trace.samples.len() <= 226, "case {case}");
         let judgement = judge(&trace, &limits(OperationKind::Cut));
         if judgement.verdict == VerdictKind::NoVerdict {
-            distrusted.push(format!("{case}: {}", judgement.reason.unwrap()));
+            without_verdict.push(format!("{case}: {}", judgement.reason.unwrap()));
         } else {
             holds += usize::from(judgement.verdict == VerdictKind::Holds);
             assert!(judgement.checks.iter().all(|check| check.value.is_finite()), "case {case}");
         }
     }
-    println!("{holds} hold; without a verdict: {distrusted:#?}");
-    // The draw reaches from loads that every hold stands to loads that none does.
+    println!("{holds} hold; without a verdict: {without_verdict:#?}");
+    // The loads range from those that every grasp resists to those that none does.
     assert!((5..150).contains(&holds), "{holds}");
-    // Found are 21, nearly all of them arms that are torn about by far more than they hold.
-    assert!(distrusted.len() < 25, "{distrusted:#?}");
+    // There are 21, nearly all with loads far above what the arms resist.
+    assert!(without_verdict.len() < 25, "{without_verdict:#?}");
 }

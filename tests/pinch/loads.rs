@@ -1,4 +1,4 @@
-//! The tool's wrench over time, what departs from the plan, and the simulation's own books.
+//! The tool's wrench over time, uncertainty, and the balance of momentum and energy.
 
 use benchdog::{
     model::{
@@ -44,15 +44,15 @@ fn at(trace: &Trace, time_s: f64) -> &Sample {
 }
 
 #[test]
-fn a_drill_turns_shakes_and_breaks_through_within_20_ms() {
+fn a_drill_has_torque_and_vibration_and_breaks_through_within_20_ms() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(10.0), BOARD_KG, 30.0);
     let profile =
         ForceProfile::Drill { spindle_torque_nm: 0.4, vibration_n: 2.0, vibration_hz: 25.0, breakthrough_s: Some(0.1) };
     let trace = traced(&robot, &plan, profile);
-    // z_T = -z_O. A hundredth of a second after the load began the sine of 25 Hz is 1 and a tenth of the ramp acts.
+    // z_T = -z_O. 0.01 s after the start of the load the sine of 25 Hz is 1 and the ramp is at a tenth.
     let first = wrench_o(at(&trace, 0.11));
-    // The board turns by microradians between the step's start, when the wrench is laid on it, and its end.
+    // The board turns by microradians between the start of the step, when the wrench is applied, and its end.
     assert!((first.force_n - Vector3::new(0.0, 0.0, -1.2)).norm() < 1e-4, "{first:?}");
     assert!((first.moment_nm - Vector3::new(0.0, 0.0, -0.04)).norm() < 1e-5, "{first:?}");
     let whole = wrench_o(at(&trace, 0.25));
@@ -74,7 +74,7 @@ fn a_knife_travels_around_the_circle_with_its_force_along_the_tangent() {
         let sample = at(&trace, time_s);
         assert!((sample.p_ot_m - Vector3::new(radius_m * cos, radius_m * sin, 0.015)).norm() < 1e-12, "{time_s} s");
         let expected_n = Vector3::new(-10.0 * sin, 10.0 * cos, -2.0);
-        // The board turns by a tenth of a milliradian in a step, of whose end this is.
+        // The board turns by 0.1 mrad in a step; this is the state at its end.
         assert!((wrench_o(sample).force_n - expected_n).norm() < 5e-3, "{time_s} s: {:?}", wrench_o(sample));
     }
     // The other way around, clockwise.
@@ -116,12 +116,12 @@ fn a_load_fixed_in_the_world_does_not_turn_with_the_board() {
     assert!((world.tool_wrench_w.force_n - planned_n).norm() < 1e-12);
     let turned_rad = board.x_wo.rotation.angle_to(&plan.object.x_wo.rotation);
     let off_rad = board.tool_wrench_w.force_n.angle(&planned_n);
-    // Part of the board's turn may be about the force itself, which does not show.
+    // A rotation of the board about the force itself does not change its direction.
     assert!(turned_rad > 1e-3 && off_rad > 0.3 * turned_rad && off_rad <= turned_rad * 1.01, "{off_rad} {turned_rad}");
 }
 
 #[test]
-fn what_departs_from_the_plan_shows_where_it_should() {
+fn each_uncertainty_has_its_effect() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(1.5), 1.0, 15.0);
     let settings = SimulationSettings { settle_s: 1.0, ramp_s: 0.5, hold_s: 0.5, ..SHORT };
@@ -132,7 +132,7 @@ fn what_departs_from_the_plan_shows_where_it_should() {
     };
     let plain = with(Uncertainty::default());
     let soft = with(Uncertainty { joint_stiffness_scale: 0.5, ..Uncertainty::default() });
-    // Twice, but for the contacts' share, which stays; the board of 1 kg sags twice as far before the load too.
+    // Twice, except for the share of the contacts; the board of 1 kg sags twice as far before the load, too.
     assert!((soft.0 / plain.0 - 2.0).abs() < 0.1, "{} {}", soft.0, plain.0);
     let tight = with(Uncertainty { grip_force_scale: 1.6, ..Uncertainty::default() });
     let normal_n = |sample: &Sample| sample.arms[0].pads.iter().map(|pad| pad.normal_force_n).sum::<f64>();
@@ -140,7 +140,7 @@ fn what_departs_from_the_plan_shows_where_it_should() {
     assert_eq!(tight.2, 24.0);
     let yielding = with(Uncertainty { contact_stiffness_scale: 0.1, ..Uncertainty::default() });
     let ratio = yielding.1.self_check.penetration_m / plain.1.self_check.penetration_m;
-    // The deepest of all corners: how unevenly they press depends on how the hands came to rest, and friction keeps it.
+    // The largest of all corners: how unevenly they press depends on how the hands came to rest.
     assert!((ratio - 10.0).abs() < 2.0, "{ratio}");
 
     let grip = Grip { force_n: 30.0, friction: 0.6, mass_kg: LIGHT_KG };
@@ -166,9 +166,9 @@ fn hand_wrench_o(sample: &Sample, arm: usize) -> Wrench {
 }
 
 #[test]
-fn a_closed_chain_shares_load_and_squeeze_as_its_stiffness_says() {
+fn a_closed_chain_shares_load_and_internal_force_by_its_stiffness() {
     let robot = baxter::robot();
-    // A cut off the middle: what the hands push against each other is as large as what they carry together.
+    // A cut off the centre: the internal force is as large as the load.
     let cut = Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M);
     let plan = baxter::plan(&robot, cut, 1.0, 30.0);
     let settings = SimulationSettings { settle_s: 1.0, ramp_s: 0.5, hold_s: 0.5, ..SHORT };
@@ -184,13 +184,13 @@ fn a_closed_chain_shares_load_and_squeeze_as_its_stiffness_says() {
             change.force_n.as_slice(),
             predicted.force_n.as_slice()
         );
-        // Pads are not welds: they give way a little, each in its own way. 5 % of the load of 3 N.
+        // Pads are slightly compliant, unlike welds: 5 % of the load of 3 N.
         assert!(off_n < 0.15, "arm {arm}: found {change:?}, welded {predicted:?}");
     }
 }
 
 #[test]
-fn after_a_release_below_the_limit_nothing_slid() {
+fn a_release_below_the_slip_load_leaves_no_slip() {
     let grip = Grip { force_n: 30.0, friction: 0.6, mass_kg: LIGHT_KG };
     let slip_n = 2.0 * grip.friction * grip.force_n - grip.mass_kg * GRAVITY_M_S2;
     let mut bench = Bench::welded(&grip, force_along_x_g(slip_n));
@@ -200,13 +200,13 @@ fn after_a_release_below_the_limit_nothing_slid() {
     bench.run(0.5, 0.8, 0.0);
     let moved_m = (before.inverse() * bench.run(0.5, 0.0, 0.0).arms[0].x_oc).translation.vector.norm();
     println!("left after the release: {moved_m:e} m");
-    // A thousandth of the verdict's limit of slip.
+    // A thousandth of the verdict's slip limit.
     assert!(moved_m < 1e-6, "{moved_m} m");
 }
 
 #[test]
-fn the_books_balance_in_a_swing() {
-    // A gripper on an undamped hinge, pushed aside and let swing: no dissipation but the integrator's own.
+fn the_energy_balance_closes_in_a_swing() {
+    // A gripper on an undamped hinge swings under a moment: only the integrator dissipates.
     let hinge = Hinge { effort_nm: 50.0, stiffness_nm_rad: 50.0, damping_nm_s_rad: 0.0 };
     let x_wg = fingers_level();
     let robot = bench::robot(x_wg, Some(hinge));
@@ -215,7 +215,7 @@ fn the_books_balance_in_a_swing() {
     let mut bench = Bench::new(&robot, &plan, grip.friction);
     bench.run(0.2, 0.0, 0.0);
     let settled_j = bench.sample.self_check.contact_energy_j;
-    // The moment comes at once and does 0.02 J of work on the first swing.
+    // The moment acts at once and does 0.02 J of work in the first swing.
     let mut most_j = 0.0_f64;
     for _ in 0..200 {
         bench.run(0.002, 1.0, 1.0);
@@ -223,14 +223,14 @@ fn the_books_balance_in_a_swing() {
     }
     let swing_rad = bench.sample.arms[0].q_rad[0];
     println!("swing {swing_rad} rad, created {most_j:e} J, left {:e} J", bench.sample.self_check.contact_energy_j);
-    // The largest work is 2 tau^2 / K = 0.04 J; the books are kept with the trapezoid rule, good to a per cent of it.
+    // The largest work is 2 tau^2 / K = 0.04 J; the trapezoid rule of the balance is accurate to a per cent of it.
     assert!(most_j < 4e-4, "{most_j} J");
     assert!(bench.sample.self_check.coupling_m < 1e-6);
 }
 
 #[test]
 fn the_frame_of_a_slanted_world_load_is_the_planned_one() {
-    // Invariance: turning the whole scene about the vertical changes nothing that the board's frame can see.
+    // Invariance: rotating the whole scene about the vertical changes nothing in the board's frame.
     let robot = |turn: f64| {
         let level = fingers_level();
         let x_wg = nalgebra::Isometry3::from_parts(
@@ -247,6 +247,6 @@ fn the_frame_of_a_slanted_world_load_is_the_planned_one() {
         let trace = simulate(&robot, &plan, &Conditions { load, ..Conditions::new(0.6, SHORT) }).unwrap();
         last(&trace, Phase::Hold).arms[0].x_oc
     });
-    // Rounding, and contacts that are found in another order.
+    // Rounding, and contacts in another order.
     assert!((found[0].inverse() * found[1]).translation.vector.norm() < 1e-6, "{found:?}");
 }

@@ -1,4 +1,5 @@
-//! The simulation against closed forms: what a pinch grasp, a servo and two arms must do.
+//! The simulation against closed forms: a pinch grasp, a servo and two arms.
+//!
 //!
 //! All scenes are built by the code that `simulate` uses.
 
@@ -28,12 +29,12 @@ use benchdog::{
 };
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 
-/// A light block, so that its weight takes no part of the friction that counts.
+/// Mass of a light block, whose weight uses little of the friction.
 const LIGHT_KG: f64 = 0.05;
 
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// Mean distance of the points of a 40.4 x 36.0 mm pad from its centre, m (METHOD section 6).
+/// Mean distance of the points of a 40.4 x 36.0 mm pad from its centre, m (docs/method.md#62-pad-limits).
 const MEAN_RADIUS_M: f64 = 0.014630;
 
 /// The check of a plan with the usual tool for its operation.
@@ -58,10 +59,10 @@ fn moment_g(axis: Vector3<f64>, moment_nm: f64) -> Wrench {
 fn a_block_slips_when_two_pads_cannot_hold_it() {
     for (force_n, friction) in [(20.0, 0.3), (30.0, 0.4), (30.0, 0.6), (35.0, 0.5), (60.0, 0.8)] {
         let grip = Grip { force_n, friction, mass_kg: 0.2 };
-        // x_G points down: the weight takes its share.
+        // x_G points down, so the weight uses part of the friction.
         let slip_n = 2.0 * friction * force_n - grip.mass_kg * GRAVITY_M_S2;
         let moved_m = |factor| Bench::welded(&grip, force_along_x_g(slip_n)).motion_under(factor).0;
-        // Bisection puts the limit within 0.1 % of the theory; 0.5 % is asked for.
+        // Bisection finds the limit within 0.1 % of the theory; 0.5 % is required.
         assert!(moved_m(0.995) < 1e-3, "N {force_n}, mu {friction}: slipped {} m", moved_m(0.995));
         assert!(moved_m(1.005) > 1e-3, "N {force_n}, mu {friction}: held {} m", moved_m(1.005));
     }
@@ -73,8 +74,8 @@ fn a_block_turns_when_the_pads_cannot_hold_the_moment() {
         let grip = Grip { force_n, friction: 0.6, mass_kg };
         let limit_nm = 2.0 * grip.friction * force_n * MEAN_RADIUS_M;
         let turned_rad = |factor| Bench::welded(&grip, moment_g(Vector3::y(), limit_nm)).motion_under(factor).1;
-        // Bisection finds 0.9996 of the uniform patch with the lightest block, and the weight's share of the friction
-        // costs the heaviest 0.05 %; 3 % is asked for.
+        // Bisection finds 0.9996 of the uniform patch with the lightest block; the weight of the heaviest reduces it by
+        // 0.05 %. 3 % is required.
         assert!(turned_rad(0.97) < 0.02, "N {force_n}: turned {}", turned_rad(0.97));
         assert!(turned_rad(1.03) > 0.1, "N {force_n}: held, {}", turned_rad(1.03));
     }
@@ -87,7 +88,7 @@ fn a_block_tilts_when_it_pries_the_pads_apart() {
         let limit_nm = grip.force_n * (2.0 * half_side_m + grip.friction * THICKNESS_M);
         let tilted_rad = |factor| Bench::welded(&grip, moment_g(axis, limit_nm)).motion_under(factor).1;
         // A tilted block gains lever, t theta / (2 b + mu t) or 0.7 % at 12 mrad, so the limit is read at that angle.
-        // Bisection finds 1.011 and 1.006; 2 % is asked for.
+        // Bisection finds 1.011 and 1.006; 2 % is required.
         assert!(tilted_rad(0.98) < 0.012, "{axis}: tilted {}", tilted_rad(0.98));
         assert!(tilted_rad(1.02) > 0.012, "{axis}: held, {}", tilted_rad(1.02));
     }
@@ -102,13 +103,13 @@ fn a_block_does_not_creep_below_its_slip_load() {
         bench.motion_under(factor);
         let before = bench.sample.arms[0].x_oc;
         let moved = before.inverse() * bench.run(1.0, factor, factor).arms[0].x_oc;
-        // 2e-10 mm in a second was measured; the verdict's limit is 0.1 mm/s.
+        // Measured: 2e-10 mm in a second. The verdict's limit is 0.1 mm/s.
         assert!(moved.translation.vector.norm() < 1e-9, "crept {} m", moved.translation.vector.norm());
     }
 }
 
 #[test]
-fn the_pads_carry_the_block_and_press_as_told() {
+fn the_pads_carry_the_block_and_press_with_the_grip_force() {
     let grip = Grip { force_n: 30.0, friction: 0.6, mass_kg: 0.4 };
     let mut bench = Bench::welded(&grip, Wrench::default());
     let pads = &bench.run(1.0, 0.0, 0.0).arms[0].pads;
@@ -116,12 +117,12 @@ fn the_pads_carry_the_block_and_press_as_told() {
     // At rest the solver's impulses balance to rounding; 1e-6 N leaves room for the last of the settling.
     assert!((carried_n - Vector3::z() * grip.mass_kg * GRAVITY_M_S2).norm() < 1e-6, "{carried_n}");
     for pad in pads {
-        // The spring that pushes a finger gives way by 1 N/m over the micrometres that the pad sinks in.
+        // The spring that pushes a finger loses 1 N/m over the micrometres of penetration.
         assert!((pad.normal_force_n - grip.force_n).abs() < 1e-4, "{}", pad.normal_force_n);
     }
 }
 
-/// A gripper on a hinge whose servo gives at most 1 N m, after two seconds under a moment about the hinge.
+/// A gripper on a hinge whose servo has a torque limit of 1 N m, after two seconds under a moment about the hinge.
 fn hinge_under(moment_nm: f64) -> Sample {
     let hinge = Hinge { effort_nm: 1.0, stiffness_nm_rad: 843.0, damping_nm_s_rad: 30.0 };
     let robot = bench::robot(fingers_level(), Some(hinge));
@@ -130,7 +131,7 @@ fn hinge_under(moment_nm: f64) -> Sample {
     let plan = bench::plan(&robot, fingers_level(), &grip, moment_g(-Vector3::x(), moment_nm));
     let mut bench = Bench::new(&robot, &plan, grip.friction);
     bench.motion_under(1.0);
-    // The end of the ramp overshoots the limit, which leaves little to stop the swing.
+    // The end of the ramp overshoots the limit; the swing takes time to decay.
     bench.run(1.0, 1.0, 1.0);
     bench.sample
 }
@@ -138,20 +139,20 @@ fn hinge_under(moment_nm: f64) -> Sample {
 #[test]
 fn a_servo_holds_up_to_its_limit_and_yields_beyond() {
     let below = hinge_under(0.999).arms.remove(0);
-    // tau / K, and rounding with what is left of the settling: 1e-12 rad and 1e-9 N m were measured.
+    // tau / K; rounding and the rest of the settling are 1e-12 rad and 1e-9 N m.
     assert!((below.q_rad[0] - 0.999 / 843.0).abs() < 1e-10, "{}", below.q_rad[0]);
     assert!((below.torque_demanded_nm[0] + 0.999).abs() < 1e-7);
     assert!((below.torque_applied_nm[0] + 0.999).abs() < 1e-7);
 
     let beyond = hinge_under(1.001).arms.remove(0);
-    // Free of the servo, a thousandth of a newton metre turns gripper and block by tens of milliradians in a second.
+    // Beyond the servo's limit, 1e-3 N m turn gripper and block by tens of milliradians in a second.
     assert!(beyond.q_rad[0] > 0.01, "{}", beyond.q_rad[0]);
     assert!(beyond.torque_demanded_nm[0] < -1.5, "the demand must show the overload");
     // Within a step the torque drifts by D a dt, 0.3 % here.
     assert!((beyond.torque_applied_nm[0] + 1.0).abs() < 1e-2, "{}", beyond.torque_applied_nm[0]);
 }
 
-/// Long enough to settle, and short otherwise.
+/// Long enough to settle, otherwise short.
 const QUICK: SimulationSettings =
     SimulationSettings { settle_s: 1.0, ramp_s: 0.5, hold_s: 0.5, release_s: 0.8, timestep_s: 0.002 };
 
@@ -191,7 +192,7 @@ fn free_arm_displacement_m(robot: &Robot, q_rad: &[f64], force_w: &Vector3<f64>)
 }
 
 #[test]
-fn a_free_arm_gives_way_as_its_compliance_says() {
+fn a_free_arm_deflects_by_its_compliance() {
     let robot = baxter::robot();
     // A board of ten grams in one hand, pushed where the hand holds it.
     let mut plan = baxter::plan(&robot, drill(0.0), 0.01, 30.0);
@@ -206,29 +207,30 @@ fn a_free_arm_gives_way_as_its_compliance_says() {
             sample.x_wo * sample.arms[0].x_oc * Point3::from(p_cg)
         };
         let settled = last(&trace, Phase::Settle);
-        // Ten grams bend the arm by a tenth of a milliradian; a kilogram too much in the arm's weight by ten.
+        // Ten grams deflect the arm by 0.1 mrad; a kilogram of error in the arm's weight by 10 mrad.
         let sagged = settled.arms[0].q_rad.iter().zip(&plan.arms[0].q_rad).map(|(q, planned)| (q - planned).abs());
         assert!(sagged.fold(0.0, f64::max) < 5e-4);
         let moved_m = p_wg(last(&trace, Phase::Hold)) - p_wg(settled);
         let force_w = plan.object.x_wo.rotation * force_o;
         let predicted_m = free_arm_displacement_m(&robot, &settled.arms[0].q_rad, &force_w);
         let error = (moved_m - predicted_m).norm() / predicted_m.norm();
-        // The lever arms change by 1e-3 over such a displacement; 0.5 % is asked for.
+        // The levers change by 1e-3 over such a displacement; 0.5 % is required.
         assert!(error < 5e-3, "moved {moved_m}, predicted {predicted_m}: off by {error}");
     }
 }
 
 #[test]
-fn two_arms_give_way_as_if_welded_under_a_small_load() {
+fn two_arms_deflect_as_if_welded_under_a_small_load() {
     let robot = baxter::robot();
     let operations = [
         drill(1.5),
         Operation::drill([0.1, 0.1], 1.5, THICKNESS_M),
         Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M),
     ];
-    // The engine's contacts are as stiff as the lightest body is heavy, so a lighter board sits softer in its hands.
-    // 3 % were measured with 0.5 kg, 7 % (0.008 mm) with the foam board. (A board of 1 kg asks more of the pads by its
-    // weight than they hold without turning: by the compliant prediction the cut bends it 2.3 times as far as welds would.)
+    // The engine scales contact stiffness with the mass of the lighter body, so a lighter board has softer contacts.
+    // Measured: 3 % with 0.5 kg, 7 % (0.008 mm) with the foam board. (The weight of a board of 1 kg exceeds what the
+    // pads hold without turning: in the compliant prediction the cut deflects it 2.3 times as far as with welded
+    // hands.)
     for (mass_kg, tolerance) in [(0.5, 0.04), (BOARD_KG, 0.08)] {
         for operation in operations {
             let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
@@ -255,13 +257,13 @@ fn forces_and_moments_on_the_board_balance_in_the_hold() {
     let total = pads.fold(weight + sample.tool_wrench_w.about(&(tip_w - centre_w)), |sum, pad| {
         sum + pad.wrench_w.about(&(pad.p_wp_m - centre_w))
     });
-    // What is left accelerates the board: 0.21 kg that swing out at less than 10 mm/s^2.
+    // The rest accelerates the board: 0.21 kg at less than 10 mm/s^2.
     assert!(total.force_n.norm() < 2e-3, "{total:?}");
     assert!(total.moment_nm.norm() < 1e-3, "{total:?}");
 }
 
 #[test]
-fn no_board_rings_between_the_hands() {
+fn no_board_oscillates_between_the_hands() {
     let robot = baxter::robot();
     let cut = Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M);
     for (operation, mass_kg) in [drill(15.0), cut].iter().flat_map(|operation| MASSES_KG.map(|kg| (*operation, kg))) {
@@ -271,16 +273,16 @@ fn no_board_rings_between_the_hands() {
             let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
             let jump_n = largest_jump_n(&trace);
             println!("{mass_kg} kg, {timestep_s} s: {jump_n:.4} N from step to step");
-            // 0.04 N a step is the end of a swing; boards that ring do so by 1 N and more.
+            // 0.04 N a step is the end of a swing; boards that oscillate do so by 1 N and more.
             assert!(jump_n < 0.1, "{mass_kg} kg, {timestep_s} s: a pad's force jumps by {jump_n} N from step to step");
         }
     }
 }
 
-/// From foam that weighs next to nothing to wood.
+/// Masses from light foam to wood, kg.
 const MASSES_KG: [f64; 9] = [0.03, 0.05, 0.07, 0.1, 0.21, 0.35, 0.5, 1.0, 2.0];
 
-/// By how much the force of any pad changes from a step to the next, at most, in the last fifty, N.
+/// The largest change of a pad's force from one step to the next in the last fifty steps, N.
 fn largest_jump_n(trace: &Trace) -> f64 {
     let force_n = |step: usize, arm: usize, pad: usize| trace.samples[step].arms[arm].pads[pad].wrench_w.force_n;
     let steps = trace.samples.len() - 50..trace.samples.len();
@@ -308,12 +310,12 @@ fn after_the_release_the_board_returns() {
     let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
     let bent_m = displacement_m(&trace, last(&trace, Phase::Hold)).norm();
     let left_m = displacement_m(&trace, last(&trace, Phase::Release)).norm();
-    // The swing has died out by then; a sudden release lets the hands slide by micrometres, 5 % of the bend.
+    // The swing has decayed by then; at a sudden release the hands slide by micrometres, 5 % of the deflection.
     assert!(left_m < 0.1 * bent_m, "bent {bent_m} m, left {left_m} m");
 }
 
 #[test]
-fn a_board_that_is_torn_out_is_gone_and_the_arms_stay() {
+fn a_board_that_is_torn_out_is_lost_and_the_arms_stay() {
     let robot = baxter::robot();
     let operation = Operation::cut([0.0, 0.1], -Vector3::y(), 200.0, THICKNESS_M);
     let trace =
@@ -322,22 +324,22 @@ fn a_board_that_is_torn_out_is_gone_and_the_arms_stay() {
     assert_eq!(trace.broke_down, None);
     let (before, after) = (last(&trace, Phase::Settle), trace.samples.last().unwrap());
     assert!((after.x_wo.translation.vector - before.x_wo.translation.vector).norm() > 1.0);
-    // The trace ends a tenth of a second after the last touch, long before the load would.
+    // The trace ends a tenth of a second after the last contact, long before the load ends.
     let touched = |sample: &&Sample| sample.arms.iter().flat_map(|arm| &arm.pads).any(|pad| pad.normal_force_n > 0.0);
     let last_touch_s = trace.samples.iter().rev().find(touched).unwrap().time_s;
     // One step on either side: the count of untouched steps is rounded.
     assert!((after.time_s - last_touch_s - 0.1).abs() < 2.1 * QUICK.timestep_s, "{} {last_touch_s}", after.time_s);
     assert!(after.phase.is_loaded());
     for (arm, settled) in after.arms.iter().zip(&before.arms) {
-        // Without a board the fingers close until they stop; their limits are solved to micrometres.
+        // Without a board the fingers close to their limits, which are solved to micrometres.
         assert!(arm.finger_m.iter().all(|travel_m| travel_m.abs() < 1e-4), "{:?}", arm.finger_m);
-        // The arms are on their way back to the plan; they no longer carry the board.
+        // The arms move back to the planned angles, as they no longer carry the board.
         let off_rad = arm.q_rad.iter().zip(&settled.q_rad).map(|(q, q_settled)| (q - q_settled).abs());
         assert!(off_rad.fold(0.0, f64::max) < 0.1, "{:?}", arm.q_rad);
     }
 }
 
-/// Every bit of a trace: the shortest decimals that read back as the same numbers.
+/// All numbers of a trace, in the shortest decimals that read back exactly.
 fn bits(trace: &Trace) -> String {
     format!("{trace:?}")
 }
@@ -354,7 +356,7 @@ fn equal_inputs_give_equal_traces() {
 }
 
 #[test]
-fn the_trace_says_what_was_simulated() {
+fn the_trace_describes_the_simulation() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(3.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 0.1, ramp_s: 0.1, hold_s: 0.1, release_s: 0.1, timestep_s: 0.002 };
@@ -369,10 +371,10 @@ fn the_trace_says_what_was_simulated() {
     assert_eq!((first.time_s, first.load_factor, first.phase), (0.0, 0.0, Phase::Settle));
     for (arm, hold) in first.arms.iter().zip(&plan.arms) {
         assert_eq!(arm.q_rad, hold.q_rad);
-        // Both pads are on the board: twice the travel is its thickness, and G's pads meet at -1.85 mm.
+        // Both pads are on the board: twice the travel is its thickness; the pads meet at a travel of -1.85 mm.
         assert!((arm.finger_m.iter().sum::<f64>() - (THICKNESS_M + 2.0 * 0.00185)).abs() < 1e-12);
     }
-    // The tool pushes into the worked face, which looks along +x_W: what it does and what the board does agree.
+    // The tool pushes into the worked face, whose normal is +x_W, and the board moves with it.
     let hold = last(&trace, Phase::Hold);
     assert_eq!(hold.load_factor, 1.0);
     assert!((hold.tool_wrench_w.force_n - Vector3::new(-3.0, 0.0, 0.0)).norm() < 1e-2);
@@ -409,7 +411,7 @@ fn invalid_conditions_are_refused() {
 }
 
 #[test]
-fn a_simulation_that_breaks_down_says_so() {
+fn a_simulation_that_breaks_down_reports_it() {
     let robot = baxter::robot();
     let plan = baxter::plan(&robot, drill(1e300), BOARD_KG, 30.0);
     let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();

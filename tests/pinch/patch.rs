@@ -1,5 +1,5 @@
 //! A pair of pads against the limit surface of uniform patches: force in any direction, force and torsion together, and
-//! gravity at a slant.
+//! inclined gravity.
 
 use benchdog::{
     model::{frames::Pose, wrench::Wrench},
@@ -12,7 +12,7 @@ use crate::{
     bench::{self, Bench, Grip, PAD_HALF_M, fingers_level},
 };
 
-/// Points along each side by which the uniform patch is integrated: 0.1 % of the limit.
+/// Integration points along each side of the uniform patch: accurate to 0.1 % of the limit.
 const GRID: usize = 24;
 
 /// The points of a uniform patch, along x_G and z_G, m.
@@ -43,7 +43,7 @@ fn uniform_limit(force: Vector2<f64>, moment_m: f64) -> f64 {
     least
 }
 
-/// The multiple of a load at which a block begins to move by more than `limit_m` (at the pad's mean radius for turns).
+/// The multiple of a load at which a block moves by more than `limit_m` (rotations at the pad's mean radius).
 fn found_limit(grip: &Grip, wrench_g: Wrench, limit_m: f64) -> f64 {
     let radius_m = mean_distance_from_centre_m(PAD_HALF_M);
     let (mut low, mut high) = (0.75, 1.25);
@@ -61,12 +61,12 @@ fn slip_is_the_same_in_every_direction() {
     let (slip_n, weight_n) = (2.0 * grip.friction * grip.force_n, grip.mass_kg * GRAVITY_M_S2);
     for degrees in [0.0_f64, 22.5, 45.0, 67.5, 90.0] {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        // The weight pulls along x_G: |f (cos, sin) + (weight, 0)| = slip.
+        // The weight acts along x_G: |f (cos, sin) + (weight, 0)| = slip.
         let force_n = (slip_n * slip_n - (weight_n * sin).powi(2)).sqrt() - weight_n * cos;
         let wrench_g = Wrench::from_force(Vector3::new(cos, 0.0, sin) * force_n);
         let found = found_limit(&grip, wrench_g, 1e-3);
         println!("slip at {degrees} degrees: {found:.4} of the Coulomb cone");
-        // The engine clamps the tangential impulse by its length; 1 % is asked for, and bisection is good to 0.2 %.
+        // The engine limits the length of the tangential impulse; 1 % is required, and bisection is accurate to 0.2 %.
         assert!((found - 1.0).abs() < 0.01, "{degrees} degrees: {found}");
     }
 }
@@ -88,14 +88,14 @@ fn force_and_torsion_together_slip_on_the_limit_surface() {
             );
             let found = found_limit(&grip, wrench_g, 1e-3);
             println!("force at {way_deg} degrees, share of torsion {mix_deg} degrees: {found:.3} of the uniform patch");
-            // A pad is five points in the engine. By their theory up to 4 % are missing when the centre about which it
-            // turns comes to lie at a corner, and up to 4 % are gained when it lies elsewhere; 5 % is asked for.
+            // A pad has five contacts in the engine. In theory it resists up to 4 % less if the centre of rotation is
+            // at a corner, and up to 4 % more elsewhere; 5 % is required.
             assert!((found - 1.0).abs() < 0.05, "{way_deg}, {mix_deg} degrees: {found}");
         }
     }
 }
 
-/// Fingers that close along an axis `slant_rad` from level, gravity in their plane otherwise.
+/// Fingers that close along an axis `slant_rad` from level, with gravity otherwise in their plane.
 fn fingers_slanted(slant_rad: f64) -> Pose {
     let level = fingers_level();
     // About z_G, which is x_W: y_G rises from level.
@@ -103,7 +103,7 @@ fn fingers_slanted(slant_rad: f64) -> Pose {
 }
 
 #[test]
-fn a_slanted_board_hangs_on_both_pads_as_statics_have_it() {
+fn both_pads_carry_an_inclined_board_by_statics() {
     let grip = |mass_kg| Grip { force_n: 30.0, friction: 0.6, mass_kg };
     for slant_deg in [30.0_f64, 60.0] {
         let (sin, cos) = slant_deg.to_radians().sin_cos();
@@ -116,19 +116,19 @@ fn a_slanted_board_hangs_on_both_pads_as_statics_have_it() {
             (moved_m, bench.sample)
         };
         // Coupled fingers share the drive's force but not the load across them: the sum of the pads' forces stays 2 N,
-        // so the board slides when m g cos(slant) reaches 2 mu N, and the pads differ by m g sin(slant).
+        // so the board slides if m g cos(slant) reaches 2 mu N, and the pads' forces differ by m g sin(slant).
         let slip_kg = 2.0 * 0.6 * 30.0 / (GRAVITY_M_S2 * cos);
         let light_kg = 0.2 * slip_kg;
         let (_, sample) = hung(&grip(light_kg));
         let [first, second] = [0, 1].map(|pad| sample.arms[0].pads[pad].normal_force_n);
         let weight_n = light_kg * GRAVITY_M_S2;
-        // 0.1 N: the fingers' coupling is solved to micrometres, their springs of 1 N/m are the least of it.
+        // 0.1 N: the coupling of the fingers is solved to micrometres; their springs of 1 N/m matter less.
         assert!((first + second - 60.0).abs() < 0.1, "{slant_deg} degrees: {first} N and {second} N");
         assert!(((first - second).abs() - weight_n * sin).abs() < 0.1, "{slant_deg} degrees: {first} N and {second} N");
         let pads_n: Vector3<f64> = sample.arms[0].pads.iter().map(|pad| pad.wrench_w.force_n).sum();
         assert!((pads_n - Vector3::z() * weight_n).norm() < 1e-3, "{pads_n}");
         if slant_deg < 45.0 {
-            // Steeper boards lift off the upper pad before they slide.
+            // Steeper boards leave the upper pad before they slide.
             let (below_m, above_m) = (hung(&grip(0.98 * slip_kg)).0, hung(&grip(1.02 * slip_kg)).0);
             assert!(below_m < 1e-3 && above_m > 1e-3, "{slant_deg} degrees: {below_m} m, {above_m} m");
         }

@@ -1,4 +1,4 @@
-//! Holds from plans for the built-in Baxter.
+//! Contact models from plans for the built-in Baxter.
 
 use benchdog::{
     model::{GRAVITY_W, plan::ArmHold, scenario::StabilityKind},
@@ -24,7 +24,7 @@ fn a_plan_becomes_its_geometry() {
             let names: Vec<_> = hand.pads.iter().map(|pad| pad.name.as_str()).collect();
             assert!(names == ["upper", "lower"] || names == ["lower", "upper"], "{names:?}");
             for pad in &hand.pads {
-                // On its face, pressing into the board, below the grasp point: at 35 mm the whole pad is on the board.
+                // On its face, pressing into the board, at the grasp point: at 35 mm the whole pad is on the board.
                 let side = if pad.name == "upper" { 1.0 } else { -1.0 };
                 let p = pad.x_op.translation.vector;
                 assert!((p.z - side * 0.015).abs() < 1e-12);
@@ -112,8 +112,8 @@ fn a_pad_that_overhangs_the_edge_counts_with_what_is_on_the_board() {
 
 #[test]
 fn drills_and_cuts_are_held_as_an_independent_simulation_saw_them() {
-    // METHOD section 6: load factors of a few for drilling at 15 N and 1.7 to 2.6 for cutting at 30 N, of which the arms
-    // really hold less, cuts being limited by a hand that turns. These are random places and postures: wider margins.
+    // An independent simulation had best cases of a few for drilling at 15 N and 1.7 to 2.6 for cutting at 30 N;
+    // compliant arms hold less, cuts being limited by a hand that turns. Random places and postures need wider margins.
     let (robot, plans) = baxter_holds(20, 7);
     let mut workspace = StabilityWorkspace::new();
     for (number, (arms, object, operation)) in plans.iter().enumerate() {

@@ -1,7 +1,7 @@
-//! Load factors that can be worked out by hand.
+//! Load factors with closed forms.
 //!
-//! The solver's tolerance is 1e-7 in units of 10 N, 2 N m and 1 of load factor: comparisons at 1e-5 leave a factor of a
-//! hundred for the conversion.
+//! The solver's tolerance is 1e-7 in units of 10 N, 2 N m and 1 of the load factor; comparisons at 1e-5 leave a factor
+//! of a hundred for the conversion.
 
 use benchdog::{
     model::wrench::Wrench,
@@ -55,7 +55,7 @@ fn a_pinch_slides_along_its_faces() {
 }
 
 #[test]
-fn a_pinch_lets_go_along_its_normals_at_twice_the_grip() {
+fn a_pinch_opens_along_its_normals_at_twice_the_grip() {
     // The fingers are coupled: one pad takes 2 F, the other opens.
     let found = solved(&one_hand(Wrench::from_force(Vector3::new(0.0, 1.0, 0.0))));
     approx::assert_abs_diff_eq!(found.load_factor, 60.0, epsilon = 60.0 * TOLERANCE);
@@ -67,7 +67,7 @@ fn a_pad_pair_holds_the_torsion_of_two_uniform_patches() {
     let found = solved(&one_hand(Wrench::new(Vector3::zeros(), Vector3::new(0.0, 1.0, 0.0))));
     let by_formula = 2.0 * 0.6 * 30.0 * mean_distance_from_centre_m(HALF_SIDES_M);
     approx::assert_abs_diff_eq!(found.load_factor, by_formula, epsilon = TOLERANCE);
-    // The checked example's figure has four digits, the last one cut off.
+    // A figure of four digits, truncated.
     approx::assert_abs_diff_eq!(found.load_factor, 0.5266, epsilon = 1e-4);
     let mut binding = names(&found.binding);
     binding.sort_unstable();
@@ -102,7 +102,8 @@ fn a_lever_on_one_gripper_is_held_by_torsion_and_friction_together() {
     approx::assert_abs_diff_eq!(solved(&one_hand(load)).load_factor, expected, epsilon = TOLERANCE * expected);
 }
 
-/// A planar arm of two links in the x-y plane, its hand pinching along z, the second link along x and the first along y.
+/// A planar arm of two links in the x-y plane, its hand pinching along z, the second link along x and the first along
+/// y.
 fn planar_arm(lengths_m: [f64; 2], effort_nm: [f64; 2], gravity_nm: [f64; 2]) -> HandModel {
     let mut hand = strong_hand("left", Vector3::zeros(), Vector3::z(), Vector3::x(), 1e3, 1.0, 0.03);
     let [first, second] = lengths_m;
@@ -120,14 +121,14 @@ fn planar_arm(lengths_m: [f64; 2], effort_nm: [f64; 2], gravity_nm: [f64; 2]) ->
 }
 
 #[test]
-fn a_planar_arm_is_limited_by_the_joint_that_the_load_bends() {
+fn a_planar_arm_is_limited_by_the_joint_that_the_load_acts_on() {
     let lengths_m = [0.4, 0.3];
     let cases = [
-        // Along -x the load bends the shoulder alone, at its lever of 0.4 m. The hand answers with +x: torque -0.4.
+        // Along -x the load acts on the shoulder alone, at its lever of 0.4 m. The hand exerts +x: torque -0.4.
         (Vector3::new(-1.0, 0.0, 0.0), [10.0, 8.0], [0.0, 0.0], 10.0 / 0.4, "left_shoulder: torque"),
         // Along -y both, at 0.3 m: the elbow is weaker.
         (Vector3::new(0.0, -1.0, 0.0), [10.0, 8.0], [0.0, 0.0], 8.0 / 0.3, "left_elbow: torque"),
-        // Gravity takes 3 N m of the elbow the same way, and gives them the other way.
+        // Gravity takes 3 N m of the elbow in one direction and adds them in the other.
         (Vector3::new(0.0, -1.0, 0.0), [10.0, 8.0], [0.0, 3.0], 5.0 / 0.3, "left_elbow: torque"),
         (Vector3::new(0.0, 1.0, 0.0), [20.0, 8.0], [0.0, 3.0], 11.0 / 0.3, "left_elbow: torque"),
     ];
@@ -147,7 +148,7 @@ fn a_planar_arm_is_limited_by_the_joint_that_the_load_bends() {
 
 #[test]
 fn internal_forces_do_not_load_the_balance() {
-    // Two hands, no load on joints: each may push against the other, and the load factor is friction's alone.
+    // Two hands with strong joints: they may push against each other, and friction alone limits the load factor.
     let weight = Wrench::from_force(Vector3::new(0.0, 0.0, -1.0));
     let hold = two_strong_hands(weight, Wrench::from_force(Vector3::new(1.0, 0.0, 0.0)));
     // Along x all four pads slide at mu F = 18 N, in a plane that the weight, along the normal, is not in.
@@ -155,7 +156,7 @@ fn internal_forces_do_not_load_the_balance() {
 }
 
 #[test]
-fn the_cap_is_reached_without_a_load_and_nothing_binds() {
+fn without_a_load_the_cap_is_reached_and_nothing_binds() {
     let found = solved(&one_hand(Wrench::default()));
     approx::assert_abs_diff_eq!(found.load_factor, 100.0, epsilon = 1e-4);
     assert!(found.binding.is_empty(), "{:?}", found.binding);
@@ -165,23 +166,23 @@ fn the_cap_is_reached_without_a_load_and_nothing_binds() {
 }
 
 #[test]
-fn a_board_too_heavy_is_infeasible_with_a_proof() {
+fn a_board_that_is_too_heavy_is_infeasible_with_a_certificate() {
     let load = Wrench::from_force(Vector3::new(0.0, 0.0, -1.0));
     let mut hold = one_hand(load);
     hold.weight = Wrench::from_force(Vector3::new(0.0, 0.0, -37.0));
     let outcome = StabilityWorkspace::new().load_factor(&hold).unwrap();
     let LoadFactorOutcome::GravityInfeasible { certificate } = outcome else { panic!("found {outcome:?}") };
     assert!(certificate.proves_infeasible(&hold).unwrap());
-    // The proof is of this hold: a board that can be held is not refuted by it.
+    // The certificate is of this model and does not refute a board that can be held.
     hold.weight = Wrench::from_force(Vector3::new(0.0, 0.0, -35.0));
     assert!(!certificate.proves_infeasible(&hold).unwrap());
     approx::assert_abs_diff_eq!(solved(&hold).load_factor, 1.0, epsilon = TOLERANCE);
 }
 
 #[test]
-fn an_arm_that_cannot_carry_itself_is_infeasible_with_a_proof() {
-    // The elbow needs 9 N m of its 8 for gravity, and its pads can give it no more than their limits let them: with
-    // 1000 N of grip the board could carry the arm, were the board held by anything else.
+fn an_arm_that_cannot_carry_itself_is_infeasible_with_a_certificate() {
+    // The elbow needs 9 N m for gravity and has 8. With 1000 N of grip the board could carry the arm, but nothing else
+    // holds the board.
     let hand = planar_arm([0.4, 0.3], [10.0, 8.0], [0.0, 9.0]);
     let load = Wrench::from_force(Vector3::new(-1.0, 0.0, 0.0));
     let hold = ContactModel { hands: vec![hand], weight: Wrench::default(), load, p_ot: Vector3::zeros() };
@@ -191,7 +192,7 @@ fn an_arm_that_cannot_carry_itself_is_infeasible_with_a_proof() {
 }
 
 #[test]
-fn broken_holds_are_errors_that_name_the_place() {
+fn errors_of_invalid_models_name_the_place() {
     let mut workspace = StabilityWorkspace::new();
     let good = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::x()));
     let message = |change: &dyn Fn(&mut ContactModel)| {

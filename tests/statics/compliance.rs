@@ -1,4 +1,4 @@
-//! The compliant equilibrium against the welded hold, closed forms, the energy theorem and a scan.
+//! The compliant equilibrium against the welded stiffness, closed forms, the energy theorem and a scan.
 
 use benchdog::{
     model::{scenario::Limits, wrench::Wrench},
@@ -18,14 +18,14 @@ fn response(hold: &ContactModel, load_factor: f64) -> CompliantResponse {
     }
 }
 
-/// A random hold whose pads are far from their limits.
+/// A random contact model with pads far from their limits.
 fn elastic_hold(seed: u64) -> ContactModel {
     let mut hold = random_hold(seed, 2);
     hold.hands.iter_mut().for_each(|hand| hand.grip_force_n = 1e3);
     hold
 }
 
-/// No limit but those of pads.
+/// No limits except those of the pads.
 fn no_limits() -> Limits {
     Limits { slip_mm: 1e9, slip_deg: 1e9, deflection_mm: 1e9, creep_mm_s: 1e9, torque_ratio: 1e9, load_factor: 1.0 }
 }
@@ -43,7 +43,7 @@ fn without_slip_the_board_moves_as_if_welded() {
         let found = response(&hold, 1.0);
         approx::assert_relative_eq!(found.deflection_m, expected.linear, epsilon = PAD_SHARE * expected.linear.norm());
         for (hand, slip) in found.slip.iter().enumerate() {
-            // A pad gives way by its own compliance, 1e-10 m/N times some 30 N; for moments of 3 N m, 1e-6 rad.
+            // A pad's own compliance: 1e-10 m/N times about 30 N; for moments of 3 N m, 1e-6 rad.
             assert!(slip.linear.norm() < 1e-7 && slip.angular.norm() < 5e-6, "hand {hand}: {slip:?}");
         }
         let unloaded = response(&hold, 0.0);
@@ -95,7 +95,7 @@ fn welded_hands_are_springs_in_parallel() {
     let turned = welded.twist_at_tip(&Wrench::new(Vector3::zeros(), Vector3::z()));
     approx::assert_relative_eq!(1.0 / along_x.linear.x, 2000.0, epsilon = 1e-9);
     approx::assert_relative_eq!(1.0 / turned.angular.z, about_z, epsilon = 1e-9);
-    // Twice 1000 N/m: half a millimetre a newton.
+    // Twice 1000 N/m: half a millimetre per newton.
     approx::assert_relative_eq!(response(&hold, 1.0).deflection_m.x, 5e-4, max_relative = 1e-5);
     // Under a moment about z, each hand is pushed along y as well.
     hold.load = Wrench::new(Vector3::zeros(), Vector3::new(0.0, 0.0, 1.0));
@@ -104,7 +104,7 @@ fn welded_hands_are_springs_in_parallel() {
 }
 
 #[test]
-fn a_hand_that_slides_leaves_the_rest_to_the_other() {
+fn a_sliding_hand_leaves_the_rest_of_the_load_to_the_other() {
     // Along x, in line with both hands: each takes half until the weak one slides at 2 mu F = 12 N.
     let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::new(30.0, 0.0, 0.0)));
     hold.p_ot = Vector3::zeros();
@@ -113,7 +113,7 @@ fn a_hand_that_slides_leaves_the_rest_to_the_other() {
     let elastic = response(&hold, 0.5);
     approx::assert_relative_eq!(elastic.deflection_m.x, 7.5 * compliance, max_relative = 1e-4);
     let sliding = response(&hold, 1.0);
-    // The strong hand takes 30 - 12 N; the weak one moved by 12 N's worth, the board by 18 N's.
+    // The strong hand takes 30 - 12 N; the weak one is displaced as by 12 N, the board as by 18 N.
     approx::assert_relative_eq!(sliding.deflection_m.x, 18.0 * compliance, max_relative = 1e-4);
     approx::assert_relative_eq!(sliding.slip[1].linear.x, 6.0 * compliance, max_relative = 1e-4);
     assert!(sliding.slip[0].linear.norm() < 1e-6);
@@ -128,8 +128,8 @@ fn a_hand_that_slides_leaves_the_rest_to_the_other() {
 
 #[test]
 fn a_hand_that_turns_becomes_a_hinge() {
-    // One hand on springs that turn easily, one stiff; a moment about the pads' normal through the board. The weak
-    // pads turn at 2 mu e F, and the other hand takes the rest.
+    // A moment about the pads' normal on two hands, one with a weak grip. Its pads turn at 2 mu e F, and the other hand
+    // takes the rest.
     let hand = |name: &str, grip_n: f64| {
         let mut hand = strong_hand(name, Vector3::zeros(), Vector3::z(), Vector3::x(), grip_n, 0.6, 0.03);
         hand.stiffness_nm_rad = DVector::from_element(6, 100.0);
@@ -180,7 +180,7 @@ fn the_work_of_the_load_is_the_slope_of_the_energy() {
 
 #[test]
 fn one_hand_alone_is_limited_by_its_pads() {
-    // Statically determinate: the equilibrium ends where friction does, whatever the springs.
+    // Statically determinate: the equilibrium ends at the friction limit for any joint stiffness.
     let hand = strong_hand("left", Vector3::zeros(), Vector3::y(), Vector3::x(), 30.0, 0.6, 0.03);
     let load = Wrench::from_force(Vector3::new(0.0, 0.0, -10.0));
     let hold = ContactModel { hands: vec![hand], weight: Wrench::default(), load, p_ot: Vector3::zeros() };
@@ -189,7 +189,7 @@ fn one_hand_alone_is_limited_by_its_pads() {
     approx::assert_abs_diff_eq!(found.load_factor, 3.6, epsilon = 3.6e-3);
     let Some(LimitCrossing::NoEquilibrium { binding }) = &found.first_limit else { panic!("{:?}", found.first_limit) };
     assert!(binding.contains(&"left upper pad: friction".into()), "{binding:?}");
-    // Beyond, there is none; and too heavy a board has none at all.
+    // Beyond there is no equilibrium; a board that is too heavy has none at all.
     assert!(matches!(workspace.response(&hold, 3.7).unwrap(), ResponseOutcome::NoEquilibrium { load_factor: 3.7 }));
     let mut heavy = hold.clone();
     heavy.weight = Wrench::from_force(Vector3::new(0.0, 0.0, -40.0));
@@ -210,7 +210,7 @@ fn elastic_limits_are_found_where_the_springs_put_them() {
     let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
     approx::assert_abs_diff_eq!(found.load_factor, 3.0, epsilon = 3.1e-3);
     assert_eq!(found.first_limit, Some(LimitCrossing::Deflection));
-    // Both probes sit at the welded prediction.
+    // Both probes are at the welded prediction.
     assert_eq!(found.equilibria, 3);
     // The first joint of each hand moves along x and takes 5 N m a load factor on top of 4.
     for hand in &mut hold.hands {
@@ -220,12 +220,12 @@ fn elastic_limits_are_found_where_the_springs_put_them() {
     let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
     approx::assert_abs_diff_eq!(found.load_factor, 2.0, epsilon = 2.1e-3);
     assert_eq!(found.first_limit.unwrap().to_string(), "left_0: torque");
-    // Beyond its torque already under gravity.
+    // A joint beyond its torque limit under gravity alone.
     hold.hands[1].gravity_torque_nm[0] = -15.0;
     let found = workspace.compliant_load_factor(&hold, &limits()).unwrap();
     assert_eq!(found.load_factor, 0.0);
     assert_eq!(found.first_limit.unwrap().to_string(), "right_0: torque");
-    // Nothing to hold: the cap.
+    // Without a load: the cap.
     let idle = two_strong_hands(Wrench::default(), Wrench::default());
     let found = workspace.compliant_load_factor(&idle, &limits()).unwrap();
     assert_eq!((found.load_factor, found.first_limit), (100.0, None));
@@ -274,7 +274,7 @@ fn the_compliant_load_factor_is_never_above_the_best_case() {
 }
 
 #[test]
-fn springs_that_cannot_give_way_have_no_welded_stiffness() {
+fn arms_that_are_rigid_in_some_direction_have_no_welded_stiffness() {
     // Two joints leave four directions rigid.
     let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::x()));
     for hand in &mut hold.hands {
@@ -286,13 +286,13 @@ fn springs_that_cannot_give_way_have_no_welded_stiffness() {
         hand.gravity_stiffness_nm_rad = DMatrix::zeros(2, 2);
     }
     assert!(WeldedStiffness::new(&hold).is_none());
-    // The equilibrium does without: both first joints are springs of 1000 N/m along x.
+    // The equilibrium does not need it: both first joints are springs of 1000 N/m along x.
     approx::assert_relative_eq!(response(&hold, 1.0).deflection_m.x, 5e-4, max_relative = 1e-3);
 }
 
 #[test]
 fn a_closed_form_below_every_limit_agrees_with_the_cone_program() {
-    // Without a limit that binds both ways minimise the same energy; the pads' own compliance, which the closed form leaves
+    // If no limit binds both methods minimise the same energy; the pads' own compliance, which the closed form leaves
     // out, moves the board by less than a ten-thousandth.
     let mut workspace = StabilityWorkspace::new();
     for seed in 0..40 {

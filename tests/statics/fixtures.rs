@@ -1,4 +1,4 @@
-//! Holds for the tests.
+//! Contact models for the tests.
 
 use std::path::Path;
 
@@ -20,10 +20,10 @@ use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Half sides of the pad of the checked examples, m.
+/// Half sides of Baxter's pad, m.
 pub const HALF_SIDES_M: [f64; 2] = [0.0202, 0.0180];
 
-/// A pose with this z axis and an x axis as near to `x` as that allows.
+/// A pose with this z axis and the x axis closest to `x`.
 pub fn facing(p: Vector3<f64>, z: Vector3<f64>, x: Vector3<f64>) -> Pose {
     let z = z.normalize();
     let x = (x - z * z.dot(&x)).normalize();
@@ -31,9 +31,9 @@ pub fn facing(p: Vector3<f64>, z: Vector3<f64>, x: Vector3<f64>) -> Pose {
     Isometry3::from_parts(p.into(), UnitQuaternion::from_rotation_matrix(&rotation))
 }
 
-/// A hand at `p` whose pads press along `-axis` and `+axis`, `thickness_m` apart, x_P along `x`; its arm has six joints
-/// that move the grasp point along and about the axes of O, 1000 N/m and 1000 N m/rad stiff, with a torque limit that no
-/// test reaches.
+/// A hand at `p` whose pads press along `-axis` and `+axis`, `thickness_m` apart, x_P along `x`. Its arm has six joints
+/// that move the grasp point along and about the axes of O, with stiffness 1000 N/m and 1000 N m/rad and torque limits
+/// that no test reaches.
 pub fn strong_hand(
     name: &str,
     p: Vector3<f64>,
@@ -63,7 +63,7 @@ pub fn strong_hand(
     }
 }
 
-/// A board of 0.5 x 0.4 x 0.03 m held on two opposite edges, pads on its faces, by strong hands.
+/// A board of 0.5 x 0.4 x 0.03 m held on two opposite edges by strong hands, pads on its faces.
 pub fn two_strong_hands(weight: Wrench, load: Wrench) -> ContactModel {
     let hand =
         |name: &str, x: f64| strong_hand(name, Vector3::new(x, 0.0, 0.0), Vector3::z(), Vector3::y(), 30.0, 0.6, 0.03);
@@ -75,8 +75,8 @@ pub fn two_strong_hands(weight: Wrench, load: Wrench) -> ContactModel {
     }
 }
 
-/// A hold by `hands` seven-joint arms at random places of a board's rim, with random screws for joints, under a random
-/// load and 0.21 kg. Torque limits and gravity torques are of the size that they matter.
+/// A board of 0.21 kg under a random load, held by `hands` arms with seven random joints at random places of its rim.
+/// Torque limits and gravity torques are large enough to matter.
 pub fn random_hold(seed: u64, hands: usize) -> ContactModel {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut vector = |size: f64| Vector3::from_fn(|_, _| rng.random_range(-size..size));
@@ -91,7 +91,7 @@ pub fn random_hold(seed: u64, hands: usize) -> ContactModel {
             hand.gravity_stiffness_nm_rad = DMatrix::zeros(7, 7);
             for joint in 0..7 {
                 let axis = vector(1.0).normalize();
-                // Joints at arm's length, the last ones near the hand.
+                // The first joints at arm's length, the last ones near the hand.
                 let lever = vector(0.8 / (1.0 + joint as f64));
                 let mut column = hand.jacobian_o.column_mut(joint);
                 column.fixed_rows_mut::<3>(0).copy_from(&axis.cross(&lever));
@@ -108,7 +108,7 @@ pub fn random_hold(seed: u64, hands: usize) -> ContactModel {
     ContactModel { hands: arms, weight: Wrench::from_force(vector(1.0).normalize() * 2.06), load, p_ot }
 }
 
-/// The load factor of a hold that has one.
+/// The load factor of a contact model that has one.
 pub fn solved(hold: &ContactModel) -> LoadFactor {
     match StabilityWorkspace::new().load_factor(hold).unwrap() {
         LoadFactorOutcome::Solved(solved) => solved,
@@ -116,12 +116,12 @@ pub fn solved(hold: &ContactModel) -> LoadFactor {
     }
 }
 
-/// METHOD section 8.
+/// docs/method.md#810-default-limits.
 pub fn limits() -> Limits {
     Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 15.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 }
 }
 
-/// A hold with a pose change of everything: frame O' instead of O, `p_o' = x * p_o`.
+/// The same contact model in another frame O', `p_o' = x * p_o`.
 pub fn moved(hold: &ContactModel, x: &Pose) -> ContactModel {
     let mut moved = hold.clone();
     for hand in &mut moved.hands {
@@ -140,7 +140,7 @@ pub fn moved(hold: &ContactModel, x: &Pose) -> ContactModel {
     moved
 }
 
-/// The same hold with every force, moment, torque and stiffness times `factor`.
+/// The same contact model with every force, moment, torque and stiffness times `factor`.
 pub fn stronger(hold: &ContactModel, factor: f64) -> ContactModel {
     let mut stronger = hold.clone();
     for hand in &mut stronger.hands {
@@ -155,7 +155,7 @@ pub fn stronger(hold: &ContactModel, factor: f64) -> ContactModel {
     stronger
 }
 
-/// Holds of a board by Baxter at poses that both arms reach: plan arms, board, operation.
+/// Grasps of a board by Baxter at poses that both arms reach: arms, board, operation.
 pub fn baxter_holds(count: usize, seed: u64) -> (Robot, Vec<(Vec<ArmHold>, PlacedObject, Operation)>) {
     let robot = Robot::load("baxter", Path::new(".")).unwrap();
     let mut rng = Pcg64::seed_from_u64(seed);

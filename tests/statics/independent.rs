@@ -1,5 +1,6 @@
-//! The load factor by another method: a linear program in SI units, its friction cones cut by tangent planes until none
-//! is violated (Kelley), solved by the simplex method. It shares nothing with the program under test but the hold.
+//! The load factor by another method: a linear program in SI units with tangent planes of the friction cones, added
+//! until no cone is violated (Kelley), solved by the simplex method. It shares only the contact model with the program
+//! under test.
 
 use benchdog::statics::{ContactModel, PadModel};
 use microlp::{ComparisonOp, OptimizationDirection, Problem, Variable};
@@ -21,12 +22,12 @@ fn pad_wrench(pad: &PadModel, about: &Vector3<f64>) -> Matrix6<f64> {
     map
 }
 
-/// Rounding where a coefficient is zero by geometry: the simplex method wants it gone.
+/// Removes rounding of coefficients that are zero by geometry, which disturbs the simplex method.
 fn without_rounding(terms: impl IntoIterator<Item = (Variable, f64)>) -> Vec<(Variable, f64)> {
     terms.into_iter().filter(|(_, coefficient)| coefficient.abs() > 1e-9).collect()
 }
 
-/// The largest load factor within the planes found so far, and the point where it is reached.
+/// The largest load factor within the planes so far, and its solution.
 fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
     let mut problem = Problem::new(OptimizationDirection::Maximize);
     let lambda = problem.add_var(1.0, (0.0, 100.0));
@@ -35,7 +36,7 @@ fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
         .map(|pad| {
             let most = 2.0 * hold.hands[pad / 2].grip_force_n;
             [most, most, most, 1.0, 1.0, 1.0].map(|bound| {
-                // Bounds that the cones imply, so that the first, uncut program is bounded.
+                // Bounds that the cones imply, so that the first program, without planes, is bounded.
                 let least = if bound == most { -most } else { -bound * most };
                 problem.add_var(0.0, (least, -least))
             })
@@ -86,7 +87,7 @@ fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
     (solution.var_value(lambda), values)
 }
 
-/// An upper bound of the load factor, tight to the violation that is left: 1e-4 of a newton or less.
+/// An upper bound of the load factor, tight up to the remaining violation of at most 1e-4 N.
 fn by_cutting_planes(hold: &ContactModel) -> f64 {
     let pads: Vec<&PadModel> = hold.hands.iter().flat_map(|hand| &hand.pads).collect();
     let mut cuts = Vec::new();
@@ -106,8 +107,8 @@ fn by_cutting_planes(hold: &ContactModel) -> f64 {
     panic!("cutting planes did not close");
 }
 
-/// Both methods stop at a violation of the cones: 1e-4 N of the 18 N that a pad's friction holds, a share of 1e-5, on
-/// every pad; 1e-3 leaves a margin, and is far from what another model would give.
+/// Both methods stop at a violation of the cones of 1e-4 N, of the 18 N of a pad's friction: 1e-5 for each pad. 1e-3
+/// leaves a margin and is far below the effect of a different model.
 const AGREEMENT: f64 = 1e-3;
 
 #[test]
@@ -130,7 +131,7 @@ fn random_holds_agree_with_cutting_planes() {
 
 #[test]
 fn a_skew_load_on_one_hand_agrees_with_cutting_planes() {
-    // Sliding, torsion and tilt at once, pads of one hand turned against each other.
+    // Friction, torsion and tilt at once, with pads of different size.
     let mut hand = strong_hand("left", Vector3::new(0.05, 0.0, 0.02), Vector3::z(), Vector3::x(), 30.0, 0.6, 0.03);
     hand.pads[1].half_sides_m = [HALF_SIDES_M[0] / 2.0, HALF_SIDES_M[1]];
     let load = benchdog::model::wrench::Wrench::from([3.0, -2.0, 5.0, 0.1, 0.2, -0.1]);

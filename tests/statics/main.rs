@@ -1,4 +1,4 @@
-//! How much load a hold stands, against closed forms, an independent solver, invariances and proofs.
+//! The statics against closed forms, an independent solver, invariances and certificates.
 
 mod baxter;
 mod closed_forms;

@@ -1,5 +1,5 @@
-//! What must hold for every hold: monotonicity, invariance, duality, determinism. Random holds have one to four arms
-//! with seven random joints.
+//! Properties of every contact model: monotonicity, invariance, duality, determinism. Random models have one to four
+//! arms with seven random joints.
 
 use benchdog::{
     model::frames::Pose,
@@ -39,7 +39,7 @@ proptest! {
         prop_assert!(at_least(rougher, reference), "friction: {rougher} after {reference}");
         let with_torque = changed(&|hold| hold.hands.iter_mut().for_each(|hand| hand.effort_nm *= factor));
         prop_assert!(at_least(with_torque, reference), "torque: {with_torque} after {reference}");
-        // More grip never hurts either: fn_1 + fn_2 grows, and the surplus squeezes without loading the arm.
+        // Nor does more grip: the surplus of fn_1 + fn_2 squeezes the board without load on the arm.
         let tighter = changed(&|hold| hold.hands.iter_mut().for_each(|hand| hand.grip_force_n *= factor));
         prop_assert!(at_least(tighter, reference), "grip: {tighter} after {reference}");
     }
@@ -56,7 +56,7 @@ proptest! {
     fn the_unit_of_force_does_not_matter(seed in 0u64..1_000_000, hands in 1usize..=4, exponent in -1.5..1.5) {
         let hold = random_hold(seed, hands);
         let (here, there) = (load_factor(&hold), load_factor(&stronger(&hold, 10f64.powf(exponent))));
-        // The program's units are fixed: forces thirty times larger cost that much of its accuracy.
+        // The program's units are fixed, so forces thirty times larger reduce its accuracy by that factor.
         prop_assert!((here - there).abs() <= 30.0 * TOLERANCE * here.abs().max(1.0), "{here} and {there}");
     }
 
@@ -71,12 +71,12 @@ proptest! {
     }
 
     #[test]
-    fn every_answer_carries_its_proof(seed in 0u64..1_000_000, hands in 1usize..=4, heavier in 1.0..60.0) {
+    fn every_outcome_has_a_valid_certificate(seed in 0u64..1_000_000, hands in 1usize..=4, heavier in 1.0..60.0) {
         let mut hold = random_hold(seed, hands);
         hold.weight = hold.weight.scaled(heavier);
         match StabilityWorkspace::new().load_factor(&hold).unwrap() {
             LoadFactorOutcome::Solved(solved) => {
-                // Weak duality: above, but for the solver's tolerance; strong duality: tight.
+                // Weak duality: above, up to the solver's tolerance; strong duality: tight.
                 let bound = solved.dual.upper_bound(&hold).unwrap();
                 prop_assert!(at_least(bound, solved.load_factor), "{bound} below {}", solved.load_factor);
                 prop_assert!(bound <= solved.load_factor + 10.0 * TOLERANCE * solved.load_factor.max(1.0), "{bound} far above {}", solved.load_factor);
@@ -92,7 +92,7 @@ proptest! {
 
     #[test]
     fn any_dual_vector_bounds_the_load_factor(seed in 0u64..1_000_000, hands in 1usize..=3, other in 0u64..1_000_000) {
-        // The vector that solves one hold bounds another as well, if less tightly.
+        // The dual solution of one model bounds another one too, less tightly.
         let (hold, other) = (random_hold(seed, hands), random_hold(other, hands));
         if let LoadFactorOutcome::Solved(solved) = StabilityWorkspace::new().load_factor(&other).unwrap() {
             let bound = solved.dual.upper_bound(&hold).unwrap();
@@ -102,9 +102,9 @@ proptest! {
     }
 
     #[test]
-    fn what_the_quick_test_rejects_cannot_be_held(seed in 0u64..1_000_000, hands in 1usize..=4, asked in 0.0..10.0) {
+    fn the_necessary_test_rejects_only_infeasible_load_factors(seed in 0u64..1_000_000, hands in 1usize..=4, asked in 0.0..10.0) {
         let hold = random_hold(seed, hands);
-        // A load that lifts a board too heavy to be held is held where less of it is not.
+        // A load that lifts a board which is too heavy may be held where less of it is not.
         let idle = ContactModel { load: Default::default(), ..hold.clone() };
         if let (Some(reason), true) = (hold.infeasibility(asked), load_factor(&idle) >= 0.0) {
             let value = load_factor(&hold);
@@ -113,7 +113,7 @@ proptest! {
     }
 
     #[test]
-    fn the_order_of_questions_does_not_matter(seeds in prop::collection::vec((0u64..1_000_000, 1usize..=2), 1..6)) {
+    fn the_order_of_calls_does_not_matter(seeds in prop::collection::vec((0u64..1_000_000, 1usize..=2), 1..6)) {
         let mut shared = StabilityWorkspace::new();
         for (seed, hands) in seeds {
             let hold = random_hold(seed, hands);
@@ -126,8 +126,8 @@ proptest! {
     }
 }
 
-/// The forces found are within every limit and balance the object. Scaled residuals of 1e-7 are 1e-6 N and less than
-/// 1e-6 N m a row; with the sums over a few dozen terms 1e-4 N and N m is far from what a wrong sign would do.
+/// The forces are within every limit and balance the object. Scaled residuals of 1e-7 are 1e-6 N and less than 1e-6 N m
+/// a row; summed over a few dozen terms they stay below 1e-4 N and N m, far below the effect of a wrong sign.
 fn check_primal(hold: &ContactModel, solved: &benchdog::statics::LoadFactor) -> Result<(), TestCaseError> {
     const FORCE_TOLERANCE: f64 = 1e-4;
     let mut sum = hold.weight + hold.load.scaled(solved.load_factor);

@@ -1,4 +1,4 @@
-//! The load factor that stands several loads and frictions, against the enumeration of them and closed forms.
+//! The robust load factor against enumeration and closed forms.
 
 use benchdog::{
     model::wrench::Wrench,
@@ -23,7 +23,7 @@ fn robust(hold: &ContactModel, variations: &[Variation], internal_forces: Intern
     }
 }
 
-/// The load turned and moved a little, at frictions from 0.7 to 1.1 of the nominal.
+/// The load slightly changed, at frictions from 0.7 to 1.1 of the nominal one.
 fn variations(hold: &ContactModel, seed: u64) -> Vec<Variation> {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut around = |size: f64| Vector3::from_fn(|_, _| rng.random_range(-size..size));
@@ -32,6 +32,7 @@ fn variations(hold: &ContactModel, seed: u64) -> Vec<Variation> {
         .map(|_| Variation {
             load: hold.load + Wrench::new(around(0.3 * size_n), around(0.02 * size_n)),
             friction_ratio: 0.9 + around(0.2).x,
+            grip_force_ratio: 1.0,
         })
         .collect()
 }
@@ -42,7 +43,7 @@ fn varied(hold: &ContactModel, variation: &Variation) -> ContactModel {
     varied
 }
 
-/// Random holds that carry their weight at the lowest friction.
+/// Random contact models that carry their weight in every variation.
 fn cases() -> Vec<(ContactModel, Vec<Variation>)> {
     let mut workspace = StabilityWorkspace::new();
     let all = (0..30).map(|seed| {
@@ -65,7 +66,7 @@ fn cases() -> Vec<(ContactModel, Vec<Variation>)> {
 }
 
 #[test]
-fn forces_that_adapt_stand_the_worst_variation() {
+fn adapting_forces_give_the_minimum_over_the_variations() {
     let mut workspace = StabilityWorkspace::new();
     for (hold, variations) in cases() {
         let each: Vec<f64> = variations
@@ -80,7 +81,7 @@ fn forces_that_adapt_stand_the_worst_variation() {
 }
 
 #[test]
-fn what_stands_the_vertices_stands_every_mixture() {
+fn the_vertices_bound_every_convex_combination() {
     let mut workspace = StabilityWorkspace::new();
     let mut rng = Pcg64::seed_from_u64(3);
     for (hold, variations) in cases() {
@@ -93,14 +94,14 @@ fn what_stands_the_vertices_stands_every_mixture() {
         let sum: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|weight| *weight /= sum);
         let mixed = variations.iter().zip(&weights).fold(Wrench::default(), |w, (v, share)| w + v.load.scaled(*share));
-        let mixture = Variation { load: mixed, friction_ratio: lowest + 0.05 };
+        let mixture = Variation { load: mixed, friction_ratio: lowest + 0.05, grip_force_ratio: 1.0 };
         let of_mixture = workspace.load_factor(&varied(&hold, &mixture)).unwrap().load_factor().unwrap();
         assert!(of_mixture >= at_lowest - TOLERANCE * at_lowest.max(1.0), "{of_mixture} below {at_lowest}");
     }
 }
 
 #[test]
-fn fixed_internal_forces_serve_every_variation() {
+fn fixed_internal_forces_are_feasible_in_every_variation() {
     let mut smaller = 0;
     for (hold, variations) in cases() {
         let adapting = robust(&hold, &variations, InternalForces::Adapt).load_factor;
@@ -118,23 +119,23 @@ fn fixed_internal_forces_serve_every_variation() {
     assert!(smaller >= 5, "only {smaller} holds where it matters");
 }
 
-/// In every variation the wrenches balance, differ as the stiffness has it, and each hand can exert its own.
+/// In every variation the wrenches balance, differ as the stiffness requires, and each hand can exert its own.
 fn check_vertices(hold: &ContactModel, variations: &[Variation], found: &RobustLoadFactor) {
     // N and N m: residuals of 1e-7 in units of 10 N, times some ten terms and a margin.
     const MARGIN: f64 = 1e-3;
     let welded = WeldedStiffness::new(hold).unwrap();
-    let first_answer = welded.hand_wrenches(&variations[0].load);
+    let first_share = welded.hand_wrenches(&variations[0].load);
     for (variation, wrenches) in variations.iter().zip(&found.hand_wrenches) {
         let varied = varied(hold, variation);
-        let answers = welded.hand_wrenches(&variation.load);
+        let shares = welded.hand_wrenches(&variation.load);
         let mut rest = varied.weight + varied.load.scaled(found.load_factor);
         for (number, hand) in varied.hands.iter().enumerate() {
             let wrench = wrenches[number];
             rest = rest + wrench.about(&hand.grasp_point_o);
             let expected = found.hand_wrenches[0][number].to_vector()
-                + (answers[number].to_vector() - first_answer[number].to_vector()) * found.load_factor;
+                + (shares[number].to_vector() - first_share[number].to_vector()) * found.load_factor;
             assert!((wrench.to_vector() - expected).norm() < MARGIN, "{wrench:?}, expected {expected}");
-            // The hand alone, asked for its wrench: does it have the pads and the torques?
+            // The hand alone under its wrench: are its pads and torques sufficient?
             let alone = ContactModel {
                 hands: vec![hand.clone()],
                 weight: Wrench::default(),
@@ -142,7 +143,7 @@ fn check_vertices(hold: &ContactModel, variations: &[Variation], found: &RobustL
                 p_ot: Vector3::zeros(),
             };
             let LoadFactorOutcome::Solved(held) = StabilityWorkspace::new().load_factor(&alone).unwrap() else {
-                // A hand whose arm needs the board's support against gravity is no hand alone.
+                // This arm needs the board's support against gravity.
                 continue;
             };
             assert!(held.load_factor > 1.0 - 1e-4, "{} of its wrench", held.load_factor);
@@ -152,48 +153,58 @@ fn check_vertices(hold: &ContactModel, variations: &[Variation], found: &RobustL
 }
 
 #[test]
-fn the_stiffer_of_two_hands_takes_its_share_of_a_load_to_and_fro() {
-    // In line with both hands, +-1 N; each hand slides at 2 mu F = 36 N. The one that is three times as stiff takes
-    // 3/4 of either, and pressing against each other helps one way as much as it hurts the other.
-    let to_and_fro = [1.0, -1.0]
-        .map(|side| Variation { load: Wrench::from_force(Vector3::new(side, 0.0, 0.0)), friction_ratio: 1.0 });
-    let mut hold = two_strong_hands(Wrench::default(), to_and_fro[0].load);
+fn hands_share_an_alternating_load_by_their_stiffness() {
+    // In line with both hands, +-1 N; each hand slides at 2 mu F = 36 N. The one that is three times as stiff takes 3/4
+    // of the load. An internal force helps in one direction as much as it hurts in the other.
+    let alternating = [1.0, -1.0].map(|side| Variation {
+        load: Wrench::from_force(Vector3::new(side, 0.0, 0.0)),
+        friction_ratio: 1.0,
+        grip_force_ratio: 1.0,
+    });
+    let mut hold = two_strong_hands(Wrench::default(), alternating[0].load);
     hold.p_ot = Vector3::zeros();
     hold.hands[0].stiffness_nm_rad *= 3.0;
-    let adapting = robust(&hold, &to_and_fro, InternalForces::Adapt);
+    let adapting = robust(&hold, &alternating, InternalForces::Adapt);
     approx::assert_relative_eq!(adapting.load_factor, 72.0, max_relative = TOLERANCE);
-    let fixed = robust(&hold, &to_and_fro, InternalForces::Fixed);
+    let fixed = robust(&hold, &alternating, InternalForces::Fixed);
     approx::assert_relative_eq!(fixed.load_factor, 36.0 / 0.75, max_relative = TOLERANCE);
     assert_eq!(fixed.limiting, [0, 1]);
-    // One way alone, they press as it suits that way.
-    let one_way = robust(&hold, &to_and_fro[..1], InternalForces::Fixed);
+    // In one direction alone, the internal force adapts to it.
+    let one_way = robust(&hold, &alternating[..1], InternalForces::Fixed);
     approx::assert_relative_eq!(one_way.load_factor, 72.0, max_relative = TOLERANCE);
-    // Half the friction, half the load factor; and a variation that is easier does not limit.
-    let slippery = [to_and_fro[0], Variation { friction_ratio: 0.5, ..to_and_fro[1] }];
+    // Half the friction, half the load factor; the easier variation does not limit.
+    let slippery = [alternating[0], Variation { friction_ratio: 0.5, ..alternating[1] }];
     let found = robust(&hold, &slippery, InternalForces::Adapt);
+    approx::assert_relative_eq!(found.load_factor, 36.0, max_relative = TOLERANCE);
+    assert_eq!(found.limiting, [1]);
+    // Likewise half the grip force.
+    let loose = [alternating[0], Variation { grip_force_ratio: 0.5, ..alternating[1] }];
+    let found = robust(&hold, &loose, InternalForces::Adapt);
     approx::assert_relative_eq!(found.load_factor, 36.0, max_relative = TOLERANCE);
     assert_eq!(found.limiting, [1]);
 }
 
 #[test]
-fn a_variation_that_drops_the_board_is_named() {
+fn a_variation_in_which_the_weight_is_not_held_is_named() {
     let hold = two_strong_hands(Wrench::from_force(Vector3::new(0.0, -20.0, 0.0)), Wrench::from_force(Vector3::x()));
-    let friction = |friction_ratio| Variation { load: hold.load, friction_ratio };
+    let friction = |friction_ratio| Variation { load: hold.load, friction_ratio, grip_force_ratio: 1.0 };
     let mut workspace = StabilityWorkspace::new();
     for internal_forces in [InternalForces::Adapt, InternalForces::Fixed] {
         // 72 N of friction at most for 20 N of weight.
         let found = workspace.robust_load_factor(&hold, &[friction(1.0), friction(0.2)], internal_forces).unwrap();
         assert_eq!(found, RobustOutcome::GravityInfeasible { variation: 1 });
     }
-    // A load that lifts a board that is too heavy by itself.
+    // A load that lifts a board which is too heavy for the hands.
     let heavy = two_strong_hands(Wrench::from_force(Vector3::new(0.0, -80.0, 0.0)), Wrench::from_force(Vector3::y()));
-    let lifting = [Variation { load: heavy.load, friction_ratio: 1.0 }];
+    let lifting = [Variation { load: heavy.load, friction_ratio: 1.0, grip_force_ratio: 1.0 }];
     assert!(workspace.load_factor(&heavy).unwrap().load_factor().is_some_and(|found| found > 99.0));
     let found = workspace.robust_load_factor(&heavy, &lifting, InternalForces::Adapt).unwrap();
     assert_eq!(found, RobustOutcome::GravityInfeasible { variation: 0 });
+    let loose = Variation { grip_force_ratio: 0.0, ..friction(1.0) };
     let message = |variations: &[Variation]| {
         StabilityWorkspace::new().robust_load_factor(&hold, variations, InternalForces::Adapt).unwrap_err().to_string()
     };
     assert_eq!(message(&[]), "found no variations, expected at least one");
     assert_eq!(message(&[friction(-1.0)]), "variation 0: found friction ratio -1, expected 0 or more");
+    assert_eq!(message(&[loose]), "variation 0: found grip force ratio 0, expected more than 0");
 }

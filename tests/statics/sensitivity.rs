@@ -8,14 +8,14 @@ use nalgebra::{DVector, Vector3};
 
 use crate::fixtures::{baxter_holds, contact_model, random_hold, solved, strong_hand};
 
-/// Relative change of a limit: the solver's 1e-7 then blurs a relative derivative by 1e-4 of the load factor, and
-/// curvature by about a thousandth of itself.
+/// Relative change of a limit: the solver's tolerance of 1e-7 then changes a relative derivative by 1e-4 of the load
+/// factor, and curvature by about a thousandth of itself.
 const STEP: f64 = 1e-3;
 
 /// Multiplies one limit of a hold.
 type Change = Box<dyn Fn(&mut ContactModel, f64)>;
 
-/// A derivative by name, and the limit that it is by.
+/// A derivative with its name and limit.
 struct Derivative {
     name: String,
     found: f64,
@@ -53,8 +53,8 @@ fn derivatives(hold: &ContactModel) -> Vec<Derivative> {
     all
 }
 
-/// Compares every derivative with the differences on both sides: at a kink it lies between them. Returns how many were
-/// worth comparing.
+/// Compares every derivative with the differences on both sides; at a kink it is between them. Returns the number of
+/// significant ones.
 fn agrees_with_differences(hold: &ContactModel) -> usize {
     let load_factor = |by: f64, scale: &dyn Fn(&mut ContactModel, f64)| {
         let mut hold = hold.clone();
@@ -90,7 +90,7 @@ fn derivatives_agree_with_finite_differences() {
 }
 
 #[test]
-fn derivatives_of_holds_by_baxter_agree_with_finite_differences() {
+fn derivatives_of_baxters_grasps_agree_with_finite_differences() {
     let (robot, plans) = baxter_holds(6, 11);
     let holds = plans.iter().map(|(arms, object, operation)| contact_model(&robot, arms, object, operation, 0.6));
     let compared: usize = holds.map(|hold| agrees_with_differences(&hold.unwrap())).sum();
@@ -108,17 +108,17 @@ fn derivatives_of_a_carried_board_are_those_of_the_formula() {
         load: Wrench::from_force(Vector3::new(0.0, 0.0, -30.0)),
         p_ot: Vector3::zeros(),
     };
-    // The solver's tolerance of 1e-7, over the units of 10 N and of a friction of 0.05.
+    // The solver's tolerance of 1e-7, divided by the unit of 10 N and the friction of 0.05.
     for hand in solved(&hold).sensitivity.hands {
         approx::assert_abs_diff_eq!(hand.per_grip_force_n, 2.0 * 0.05 / 30.0, epsilon = 1e-6);
-        // Which of a hand's pads presses harder is free, so only their sum is one figure.
+        // How the pads of a hand share the normal force is free, so only their sum is determined.
         approx::assert_abs_diff_eq!(hand.per_friction[0] + hand.per_friction[1], 2.0 * 35.0 / 30.0, epsilon = 1e-4);
         approx::assert_abs_diff_eq!(hand.per_effort_nm, DVector::zeros(6), epsilon = 1e-6);
     }
 }
 
 #[test]
-fn at_the_cap_nothing_helps() {
+fn at_the_cap_all_derivatives_are_zero() {
     let hand = strong_hand("left", Vector3::zeros(), Vector3::y(), Vector3::x(), 30.0, 0.6, 0.03);
     let load = Wrench::from_force(Vector3::new(0.01, 0.0, 0.0));
     let hold = ContactModel { hands: vec![hand], weight: Wrench::default(), load, p_ot: Vector3::zeros() };
