@@ -4,8 +4,14 @@
 use std::{hint::black_box, path::Path};
 
 use benchdog::{
+    check::CheckedPlan,
+    human::default_tool,
     judge::judge,
-    model::scenario::{Limits, SimulationSettings},
+    model::{
+        plan::Plan,
+        scenario::{Limits, SimulationSettings},
+    },
+    robot::Robot,
     scenario::read_plan,
     sim::{Conditions, SimScene, blank_sample, simulate},
 };
@@ -17,6 +23,10 @@ const FRICTION: f64 = 0.6;
 const LIMITS: Limits =
     Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 15.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 };
 
+fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
+    CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).expect("the repository's plans are valid")
+}
+
 fn sim(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
     let (two_arms, robot) = read_plan(&path, None).expect("the repository's plans can be read");
@@ -24,7 +34,8 @@ fn sim(criterion: &mut Criterion) {
     one_arm.arms.truncate(1);
     let conditions = Conditions::new(FRICTION, SimulationSettings::default());
     for (name, plan) in [("two arms", &two_arms), ("one arm", &one_arm)] {
-        let mut scene = SimScene::new(&robot, plan, &conditions).expect("the repository's plans are holds");
+        let checked = checked(&robot, plan);
+        let mut scene = SimScene::new(&checked, &conditions).expect("the repository's plans are holds");
         let mut sample = blank_sample(plan);
         criterion.bench_function(&format!("100 steps/{name}"), |bencher| {
             bencher.iter(|| {
@@ -36,8 +47,9 @@ fn sim(criterion: &mut Criterion) {
             });
         });
     }
+    let checked = checked(&robot, &two_arms);
     criterion.benchmark_group("run").sample_size(10).bench_function("simulate and judge 3 s", |bencher| {
-        bencher.iter(|| judge(&simulate(&robot, &two_arms, &conditions).expect("a hold"), &LIMITS));
+        bencher.iter(|| judge(&simulate(&checked, &conditions).expect("a hold"), &LIMITS));
     });
 }
 

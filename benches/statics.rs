@@ -3,6 +3,8 @@
 use std::{hint::black_box, path::Path};
 
 use benchdog::{
+    check::CheckedPlan,
+    human::default_tool,
     model::scenario::Limits,
     scenario::read_plan,
     statics::{ContactModel, EquilibriumSolver, StabilityWorkspace},
@@ -20,7 +22,9 @@ fn holds() -> Vec<(&'static str, ContactModel)> {
         .map(|name| {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/plans/{name}.json"));
             let (plan, robot) = read_plan(&path, None).expect("the repository's plans can be read");
-            let hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION);
+            let checked = CheckedPlan::new(&robot, &plan, &default_tool(plan.operation.kind));
+            let checked = checked.expect("the repository's plans are valid");
+            let hold = ContactModel::of_plan(&checked, FRICTION);
             (name, hold.expect("the repository's plans are holds"))
         })
         .collect()

@@ -29,6 +29,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`model`] | types that the other modules exchange |
+//! | [`check`] | a plan against its robot, tool and person |
 //! | [`scenario`] | scenario and plan files: reading, checks, defaults |
 //! | [`robot`] | the robot from a URDF and a description file: kinematics, dynamics, inverse kinematics |
 //! | [`human`] | the person: body, arm, strength, muscular and peripersonal comfort |
@@ -58,12 +59,13 @@
 //! ```
 //! use std::path::Path;
 //!
-//! use benchdog::{judge, model::verdict::VerdictKind, scenario, sim};
+//! use benchdog::{check, judge, model::verdict::VerdictKind, scenario, sim};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (plan, robot) = scenario::read_plan(Path::new("scenarios/plans/cut-rim-weak-grip.json"), None)?;
 //! let scenario = scenario::default_for_plan(&plan, &robot);
-//! let trace = sim::simulate(&robot, &plan, &sim::Conditions::of(&scenario))?;
+//! let checked = check::CheckedPlan::new(&robot, &plan, &scenario.tool)?;
+//! let trace = sim::simulate(&checked, &sim::Conditions::of(&scenario))?;
 //! let judgement = judge::judge(&trace, &scenario.limits);
 //! assert_eq!(judgement.verdict, VerdictKind::Slips);
 //! for check in judgement.checks.iter().filter(|check| !check.passed) {
@@ -103,6 +105,7 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod check;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod collision;

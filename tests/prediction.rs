@@ -4,6 +4,8 @@
 use std::{convert::Infallible, fs, path::Path, thread};
 
 use benchdog::{
+    check::CheckedPlan,
+    human::default_tool,
     judge::{Judgement, failing_load, judge},
     model::{
         operation::OperationKind,
@@ -33,6 +35,11 @@ struct Case {
     limits: Limits,
 }
 
+/// The check of a plan with the usual tool for its operation.
+fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
+    CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).unwrap()
+}
+
 /// The plans of `tests/data/holds` in the order of their names: object, arms and operation as `benchdog plan` wrote them.
 fn cases() -> (Robot, Vec<Case>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/holds");
@@ -42,7 +49,7 @@ fn cases() -> (Robot, Vec<Case>) {
     let (_, robot) = read_plan(&paths[0], None).unwrap();
     let cases = paths.iter().map(|path| {
         let (plan, _) = read_plan(path, Some(&robot)).unwrap();
-        let hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap();
+        let hold = ContactModel::of_plan(&checked(&robot, &plan), FRICTION).unwrap();
         let limits = limits(plan.operation.kind);
         Case { plan, hold, limits }
     });
@@ -58,7 +65,8 @@ fn limits(kind: OperationKind) -> Limits {
 
 /// What the simulation makes of a multiple of the operation.
 fn simulated(robot: &Robot, case: &Case, load_factor: f64) -> Judgement {
-    let trace = simulate(robot, &case.plan, &Conditions::new(FRICTION, SETTINGS).scaled(load_factor)).unwrap();
+    let trace =
+        simulate(&checked(robot, &case.plan), &Conditions::new(FRICTION, SETTINGS).scaled(load_factor)).unwrap();
     judge(&trace, &case.limits)
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{
     args::CurveArgs,
     exit::{CliError, Exit},
-    output,
+    inputs, output,
 };
 use crate::{
     collision::CollisionModel,
@@ -22,9 +22,12 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
         Some(path) => scenario::load(path)?,
         None => paper::operations()[0].load()?,
     };
+    let files = ["muscular_curve.csv", "muscular_curve.svg"].map(|name| args.out.join(name));
+    inputs::protect(&loaded.inputs, files.clone())?;
     let curve = curve_of(&loaded)?;
-    report::file::write_whole(&args.out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
-    report::file::write_whole(&args.out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
+    let [csv, svg] = files;
+    report::file::write_whole(&csv, report::curve::csv(&curve).as_bytes())?;
+    report::file::write_whole(&svg, report::curve::svg(&curve).as_bytes())?;
     output::print(&summary(&curve, &args.out))?;
     Ok(Exit::Met)
 }

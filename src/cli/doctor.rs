@@ -6,6 +6,7 @@ use super::{
     versions::LONG,
 };
 use crate::{
+    check::CheckedPlan,
     human::{BODY_POINTS, Human, default_tool},
     judge::fingerprint,
     model::{
@@ -92,13 +93,17 @@ fn loaded(plan: &Plan) -> Result<Robot, String> {
     Robot::load(&plan.robot, std::path::Path::new("")).map_err(|error| error.to_string())
 }
 
+fn checked<'a>(plan: &'a Plan, robot: &'a Robot) -> Result<CheckedPlan<'a>, String> {
+    CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).map_err(|flaws| flaws.to_string())
+}
+
 /// Compares the load factor with a closed form: two hands with four pads of grip force `F` and friction `mu` resist `4 mu F`
 /// in the board's plane through the point between the hands, without the board's weight.
 fn solver() -> CheckResult {
     let plan = plan()?;
     let robot = loaded(&plan)?;
-    let mut hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION)
-        .map_err(|error| error.to_string())?;
+    let checked = checked(&plan, &robot)?;
+    let mut hold = ContactModel::of_plan(&checked, FRICTION).map_err(|error| error.to_string())?;
     let middle = hold.hands.iter().map(|hand| hand.grasp_point_o).sum::<nalgebra::Vector3<f64>>() / 2.0;
     hold.weight = Wrench::default();
     hold.load = Wrench::from_force(nalgebra::Vector3::y()).about(&middle);
@@ -115,8 +120,9 @@ fn physics() -> CheckResult {
     let plan = plan()?;
     let robot = loaded(&plan)?;
     let settings = SimulationSettings { settle_s: 0.3, ramp_s: 0.3, hold_s: 0.3, release_s: 0.1, ..Default::default() };
+    let checked = checked(&plan, &robot)?;
     let simulate =
-        || sim::simulate(&robot, &plan, &sim::Conditions::new(FRICTION, settings)).map_err(|error| error.to_string());
+        || sim::simulate(&checked, &sim::Conditions::new(FRICTION, settings)).map_err(|error| error.to_string());
     let (trace, again) = (simulate()?, simulate()?);
     if let Some(reason) = trace.broke_down {
         return Err(reason);

@@ -1,6 +1,6 @@
 //! Exit codes and errors of commands.
 
-use std::process::ExitCode;
+use std::{path::PathBuf, process::ExitCode};
 
 use crate::{model::verdict::Verdict, scenario::InputError};
 
@@ -65,9 +65,21 @@ pub enum CliError {
     /// The person or the tool is invalid.
     #[error(transparent)]
     Human(#[from] crate::human::HumanError),
+    /// A plan does not fit its robot or person.
+    #[error("failed to check the plan: {0}")]
+    Flaws(#[from] crate::check::Flaws),
     /// A scenario cannot be planned.
     #[error(transparent)]
     Plan(#[from] crate::planner::PlanError),
+    /// A command would overwrite one of its input files.
+    #[error("failed to write {}: it is an input file of this command", .0.display())]
+    OverwritesInput(PathBuf),
+    /// A command would overwrite the plan of an earlier run with another one.
+    #[error(
+        "failed to write {}: it is another plan of this name; change the name of the simulated plan, or choose another --out",
+        .0.display()
+    )]
+    OverwritesPlan(PathBuf),
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] crate::report::file::WriteError),
@@ -109,6 +121,9 @@ impl CliError {
             | Self::Simulation(_)
             | Self::Human(_)
             | Self::Plan(_)
+            | Self::Flaws(_)
+            | Self::OverwritesInput(_)
+            | Self::OverwritesPlan(_)
             | Self::Write(_)
             | Self::Machine(_)
             | Self::Usage(_)

@@ -3,16 +3,20 @@
 use super::{
     args::ExportArgs,
     exit::{CliError, Exit},
+    inputs,
 };
 use crate::{
+    check::CheckedPlan,
     report, scenario,
     sim::{self, Conditions},
 };
 
 /// Writes the scene as MJCF.
 pub fn export(args: &ExportArgs) -> Result<Exit, CliError> {
-    let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
-    let text = sim::mjcf(&robot, &plan, &Conditions::of(&scenario)).map_err(CliError::Simulation)?;
+    let loaded = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
+    inputs::protect(&loaded.inputs, [args.mjcf.clone()])?;
+    let checked = CheckedPlan::new(&loaded.robot, &loaded.plan, &loaded.scenario.tool)?;
+    let text = sim::mjcf(&checked, &Conditions::of(&loaded.scenario)).map_err(CliError::Simulation)?;
     report::file::write_whole(&args.mjcf, text.as_bytes())?;
     Ok(Exit::Met)
 }

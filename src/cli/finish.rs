@@ -1,16 +1,17 @@
 //! Writes the files of finished runs and reports on them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::{
     args::{Format, RecordChoice, ReportArgs},
     exit::{CliError, Exit},
+    inputs::{self, is_same_file},
     output,
     pipeline::Run,
     recording,
 };
 use crate::{
-    model::scenario::Scenario,
+    model::{plan::Plan, scenario::Scenario},
     report::{self, Outcome, SkipReason},
     robot::Robot,
 };
@@ -57,6 +58,68 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
 /// The files of the report.
 const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
 
+/// The files of a run.
+struct RunFiles {
+    plan: PathBuf,
+    recording: PathBuf,
+    verdict: PathBuf,
+}
+
+impl RunFiles {
+    /// The files of the run of a scenario or plan of this name.
+    fn new(out: &Path, name: &str) -> Self {
+        let folder = out.join(name);
+        Self {
+            plan: folder.join("plan.json"),
+            recording: folder.join("recording.rrd"),
+            verdict: folder.join("verdict.json"),
+        }
+    }
+}
+
+/// Refuses to overwrite input files with those of a run. The plan that is simulated may be in the place of its own copy:
+/// `plan_file` is where it was read from.
+///
+/// # Errors
+/// If a file of the run is one of the inputs.
+pub fn protect(args: &ReportArgs, name: &str, plan_file: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
+    let RunFiles { plan, recording, verdict } = RunFiles::new(&args.out, name);
+    let is_own = plan_file.is_some_and(|file| is_same_file(file, &plan));
+    let outputs = [recording, verdict].into_iter().chain((!is_own).then_some(plan)).chain(args.junit.clone());
+    inputs::protect(inputs, outputs)
+}
+
+/// Refuses to overwrite input files with the reports on all runs.
+///
+/// # Errors
+/// If a report is one of the inputs.
+pub fn protect_from_reports(args: &ReportArgs, inputs: &[PathBuf]) -> Result<(), CliError> {
+    inputs::protect(inputs, REPORTS.map(|name| args.out.join(name)))
+}
+
+/// Refuses to replace a plan that Benchdog made by another plan of the same name: the file may be the only copy. The copy of
+/// a plan that was given is replaced, so that an edited plan can be simulated again.
+///
+/// # Errors
+/// If there is another plan.
+pub fn keep_other_plan(args: &ReportArgs, plan: &Plan) -> Result<(), CliError> {
+    let path = RunFiles::new(&args.out, &plan.name).plan;
+    let Ok(bytes) = std::fs::read(&path) else { return Ok(()) };
+    match serde_json::from_slice::<Plan>(&bytes) {
+        Ok(other) if other.planner.is_none() || without_durations(&other) == without_durations(plan) => Ok(()),
+        _ => Err(CliError::OverwritesPlan(path)),
+    }
+}
+
+/// A plan without the values in which equal runs differ.
+fn without_durations(plan: &Plan) -> Plan {
+    let mut plan = plan.clone();
+    if let Some(planner) = &mut plan.planner {
+        (planner.wall_ms, planner.map_ms) = (None, None);
+    }
+    plan
+}
+
 /// Checks that results can be written, and removes reports and verdicts of an earlier run, so that they cannot be mistaken
 /// for results of this one if it is killed.
 ///
@@ -71,17 +134,24 @@ pub fn prepare<'a>(args: &ReportArgs, names: impl Iterator<Item = &'a str>) -> R
         report::file::remove(path)?;
     }
     for name in names {
-        report::file::remove(&args.out.join(name).join("verdict.json"))?;
+        report::file::remove(&RunFiles::new(&args.out, name).verdict)?;
     }
     Ok(())
 }
 
-/// Writes plan, recording and, last, verdict of a run into the folder named after it.
+/// Writes plan, recording and, last, verdict of a run into the folder named after it. A plan that was read from its place
+/// there, `plan_file`, is left as it is.
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write_run(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs) -> Result<FinishedRun, CliError> {
-    let folder = args.out.join(&run.verdict.name);
+pub fn write_run(
+    run: Run,
+    scenario: &Scenario,
+    robot: &Robot,
+    plan_file: Option<&Path>,
+    args: &ReportArgs,
+) -> Result<FinishedRun, CliError> {
+    let files = RunFiles::new(&args.out, &run.verdict.name);
     let wanted = match args.record {
         RecordChoice::Never => false,
         RecordChoice::Failed => !run.verdict.met,
@@ -90,10 +160,12 @@ pub fn write_run(run: Run, scenario: &Scenario, robot: &Robot, args: &ReportArgs
     let recording = if wanted { recording::encode(&run, scenario, robot)? } else { None };
     let plan = run.plan.as_ref().map(|plan| report::json::plan(plan).into_bytes());
     let recorded = recording.is_some();
-    write_or_remove(&folder.join("plan.json"), plan)?;
-    write_or_remove(&folder.join("recording.rrd"), recording)?;
-    write_or_remove(&folder.join("verdict.json"), Some(report::json::verdict(&run.verdict).into_bytes()))?;
-    let recording = recorded.then(|| folder.join("recording.rrd"));
+    if !plan_file.is_some_and(|file| is_same_file(file, &files.plan)) {
+        write_or_remove(&files.plan, plan)?;
+    }
+    write_or_remove(&files.recording, recording)?;
+    write_or_remove(&files.verdict, Some(report::json::verdict(&run.verdict).into_bytes()))?;
+    let recording = recorded.then_some(files.recording);
     Ok(FinishedRun {
         exit: Exit::of(&run.verdict),
         wall_s: None,

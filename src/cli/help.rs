@@ -57,7 +57,10 @@ motion.csv is the sequence's path of the arms' joints and the board from point t
 pub const SIMULATE: &str = "\
 Examples:
   benchdog simulate plan.json
-  benchdog simulate plan.json --scenario scenarios/cut-rim.toml --format json";
+  benchdog simulate plan.json --scenario scenarios/cut-rim.toml --format json
+
+Writes plan.json, recording.rrd and verdict.json into a folder named after the plan in --out. If there
+is another plan in this folder, nothing is simulated or written.";
 
 /// `benchdog margin --help`.
 pub const MARGIN: &str = "\

@@ -9,15 +9,13 @@ use super::{
     output,
 };
 use crate::{
+    check::CheckedPlan,
     judge::{FailingLoad, Judgement, failing_load, judge},
     model::{
-        plan::Plan,
         scenario::Scenario,
         verdict::{Check, VerdictKind},
     },
-    planner,
-    robot::Robot,
-    scenario,
+    scenario::{self, LoadedPlan},
     sim::{self, Conditions},
     statics::{ContactModel, ContactModelError, StabilityWorkspace},
 };
@@ -63,8 +61,9 @@ struct Predicted {
 
 /// Finds and reports the margin of a plan.
 pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
-    let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
-    let margin = margin_of(&plan, &robot, &scenario)?;
+    let LoadedPlan { plan, robot, scenario, .. } = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
+    let checked = CheckedPlan::new(&robot, &plan, &scenario.tool)?;
+    let margin = margin_of(&checked, &scenario)?;
     match args.format {
         Format::Human => output::print(&text(&margin))?,
         Format::Json => {
@@ -76,12 +75,12 @@ pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
     Ok(if margin.met { Exit::Met } else { Exit::NotMet })
 }
 
-fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, CliError> {
+fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, CliError> {
     // A plan without predictions may still be simulated.
-    let predicted = predicted(plan, robot, scenario).ok().flatten();
+    let predicted = predicted(checked, scenario).ok().flatten();
     let expected = scenario.expect.verdict;
     let empty = Margin {
-        name: plan.name.clone(),
+        name: checked.plan.name.clone(),
         load_factor: 0.0,
         fails_at: Some(0.0),
         ended_by: VerdictKind::Touches,
@@ -92,16 +91,16 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
         expected,
         met: expected == VerdictKind::Touches,
     };
-    if let Some(touch) = planner::first_touch(plan, &scenario.tool, robot)? {
-        return Ok(Margin { reason: Some(touch), ..empty });
+    if let Some(contact) = checked.first_contact() {
+        return Ok(Margin { reason: Some(contact), ..empty });
     }
     let guess = empty.predicted.as_ref().map_or(1.0, |predicted| predicted.compliant);
-    let FailingLoad { holds_at, fails_at, judgement, simulations } = simulated(plan, robot, scenario, guess)?;
+    let FailingLoad { holds_at, fails_at, judgement, simulations } = simulated(checked, scenario, guess)?;
     let failed = judgement.first_failure.as_ref().map(|failure| failure.check);
     let met = match expected {
         VerdictKind::Holds => holds_at >= scenario.limits.load_factor,
         // The verdict on the load itself, not on the failing load, must be the expected one.
-        other => judge_at(plan, robot, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
+        other => judge_at(checked, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
     };
     Ok(Margin {
         load_factor: holds_at,
@@ -119,19 +118,19 @@ fn margin_of(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Margin, 
 ///
 /// # Errors
 /// If the simulation cannot be set up from the plan.
-pub fn simulated(plan: &Plan, robot: &Robot, scenario: &Scenario, guess: f64) -> Result<FailingLoad, CliError> {
-    failing_load(guess, |factor| judge_at(plan, robot, scenario, factor))
+pub fn simulated(checked: &CheckedPlan<'_>, scenario: &Scenario, guess: f64) -> Result<FailingLoad, CliError> {
+    failing_load(guess, |factor| judge_at(checked, scenario, factor))
 }
 
 /// The judgement on a plan under a multiple of its load.
-fn judge_at(plan: &Plan, robot: &Robot, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
-    let trace = sim::simulate(robot, plan, &Conditions::of(scenario).scaled(factor)).map_err(CliError::Simulation)?;
+fn judge_at(checked: &CheckedPlan<'_>, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
+    let trace = sim::simulate(checked, &Conditions::of(scenario).scaled(factor)).map_err(CliError::Simulation)?;
     Ok(judge(&trace, &scenario.limits))
 }
 
 /// The predictions for a plan, with the scenario's nominal friction.
-fn predicted(plan: &Plan, robot: &Robot, scenario: &Scenario) -> Result<Option<Predicted>, ContactModelError> {
-    let hold = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)?;
+fn predicted(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Option<Predicted>, ContactModelError> {
+    let hold = ContactModel::of_plan(checked, scenario.grip.friction)?;
     let mut workspace = StabilityWorkspace::new();
     let crate::statics::LoadFactorOutcome::Solved(best_case) = workspace.load_factor(&hold)? else { return Ok(None) };
     let compliant = workspace.compliant_load_factor(&hold, &scenario.limits)?;

@@ -11,6 +11,7 @@ mod export;
 mod finish;
 mod front;
 mod help;
+mod inputs;
 #[cfg(feature = "recording")]
 mod inspect;
 mod interrupt;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{exit::CliError, planners::Planners, versions::versions};
 use crate::{
+    check::CheckedPlan,
     judge::{Judgement, judge},
     model::{
         FORMAT,
@@ -12,7 +13,7 @@ use crate::{
         trace::Trace,
         verdict::{Verdict, VerdictKind},
     },
-    planner::{self, Outcome},
+    planner::Outcome,
     robot::Robot,
     scenario::LoadedScenario,
     sim::{self, Conditions},
@@ -54,11 +55,12 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
 /// # Errors
 /// If the simulation cannot be set up from the plan.
 pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
-    if let Some(touch) = planner::first_touch(&plan, &scenario.tool, robot)? {
-        let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, touch);
+    let checked = CheckedPlan::new(robot, &plan, &scenario.tool)?;
+    if let Some(contact) = checked.first_contact() {
+        let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, contact);
         return Ok(Run { verdict, plan: Some(plan), simulated: None });
     }
-    let trace = sim::simulate(robot, &plan, &Conditions::of(scenario)).map_err(CliError::Simulation)?;
+    let trace = sim::simulate(&checked, &Conditions::of(scenario)).map_err(CliError::Simulation)?;
     let judgement = judge(&trace, &scenario.limits);
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());

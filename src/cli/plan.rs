@@ -1,11 +1,14 @@
 //! `benchdog plan`: writes a scenario's plan or, with `--top`, the best plans that differ.
 
-use std::{ops::ControlFlow, path::Path};
+use std::{
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
 
 use super::{
     args::PlanArgs,
     exit::{CliError, Exit},
-    interrupt, output,
+    inputs, interrupt, output,
     planners::Planners,
 };
 use crate::{
@@ -19,6 +22,11 @@ use crate::{
 pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     let mut loaded = load_for_planning(&args.scenario)?;
     args.planner.apply(&mut loaded.scenario.planner);
+    let outputs: Vec<_> = match (&args.output, args.top) {
+        (Some(folder), Some(wanted)) => (1..=wanted.get()).map(|number| numbered(folder, number)).collect(),
+        (output, _) => output.iter().cloned().collect(),
+    };
+    inputs::protect(&loaded.inputs, outputs)?;
     interrupt::listen("the best plan so far is checked and written")?;
     match (args.top, &args.output) {
         (Some(wanted), Some(folder)) => top(&loaded, wanted.get(), folder),
@@ -66,14 +74,18 @@ fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, Cl
     match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).top(wanted)? {
         Outcome::Found(plans) => {
             for (index, plan) in plans.iter().enumerate() {
-                let path = folder.join(format!("plan-{}.json", index + 1));
-                report::file::write_whole(&path, report::json::plan(plan).as_bytes())?;
+                report::file::write_whole(&numbered(folder, index + 1), report::json::plan(plan).as_bytes())?;
             }
             output::print(&report::plans::table(&plans))?;
             Ok(found(loaded))
         }
         Outcome::Infeasible(why) => Ok(infeasible(loaded, &why)),
     }
+}
+
+/// The file of one of the best plans, from 1.
+fn numbered(folder: &Path, number: usize) -> PathBuf {
+    folder.join(format!("plan-{number}.json"))
 }
 
 fn found(loaded: &LoadedScenario) -> Exit {

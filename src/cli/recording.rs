@@ -4,7 +4,8 @@ use nalgebra::Point3;
 
 use super::{exit::CliError, pipeline::Run};
 use crate::{
-    human::{BodyPart, Human},
+    check::CheckedPlan,
+    human::BodyPart,
     model::scenario::Scenario,
     record::{self, Capsule, PersonShape, RecordingInput},
     robot::Robot,
@@ -16,13 +17,13 @@ use crate::{
 /// If the recording cannot be made.
 pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, CliError> {
     let (Some(plan), Some((trace, judgement))) = (&run.plan, &run.simulated) else { return Ok(None) };
-    let person = match &plan.human {
-        Some(posture) => {
-            let human = Human::new(&posture.person(), &scenario.tool)?;
+    let checked = CheckedPlan::new(robot, plan, &scenario.tool)?;
+    let person = match (&plan.human, &checked.human) {
+        (Some(posture), Some(human)) => {
             let points_w = human.body_points_w(&posture.x_wb, &posture.q_rad).to_vec();
             Some(person_shape(&human.capsules_w(&posture.x_wb, &posture.q_rad), points_w))
         }
-        None => None,
+        _ => None,
     };
     let input = RecordingInput {
         robot,

@@ -24,6 +24,11 @@ use crate::{report::SkipReason, scenario::LoadedScenario};
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let scenarios = select::scenarios(&args.scenarios, &args.filter, &args.planner)?;
     let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
+    let inputs: Vec<_> = scenarios.iter().flat_map(|selected| selected.loaded.inputs.clone()).collect();
+    finish::protect_from_reports(&args.report, &inputs)?;
+    for Selected { loaded, .. } in &wanted {
+        finish::protect(&args.report, &loaded.scenario.name, loaded.plan_path().as_deref(), &inputs)?;
+    }
     finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
     interrupt::listen("the scenarios in progress are finished and reported")?;
     let runner = Runner {
@@ -86,7 +91,7 @@ impl Runner<'_> {
 
     fn run(&self, loaded: &LoadedScenario) -> Result<FinishedRun, CliError> {
         let run = pipeline::run_scenario(loaded, &self.planners)?;
-        finish::write_run(run, &loaded.scenario, &loaded.robot, &self.args.report)
+        finish::write_run(run, &loaded.scenario, &loaded.robot, loaded.plan_path().as_deref(), &self.args.report)
     }
 
     fn reason_to_skip(&self, selected: &Selected) -> Option<SkipReason> {

@@ -10,17 +10,19 @@ use super::{
 };
 use crate::{
     report::{self, Outcome},
-    scenario,
+    scenario::{self, LoadedPlan},
 };
 
 /// Simulates and judges a plan under the given scenario, the one in the plan, or the defaults for its operation.
 pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
-    let (plan, robot, scenario) = scenario::load_plan_and_scenario(&args.plan, args.scenario.as_deref())?;
+    let LoadedPlan { path, plan, robot, scenario, inputs } = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
+    finish::protect(&args.report, &plan.name, Some(&path), &inputs)?;
+    finish::keep_other_plan(&args.report, &plan)?;
     report::file::check_folder(&args.report.out)?;
     let start = Instant::now();
     let mut finished = FinishedRun::catch(&plan.name.clone(), || {
         let run = pipeline::run_plan(&scenario, &robot, plan)?;
-        finish::write_run(run, &scenario, &robot, &args.report)
+        finish::write_run(run, &scenario, &robot, Some(&path), &args.report)
     })?;
     finished.wall_s = Some(start.elapsed().as_secs_f64());
     if let Outcome::Crashed { name, message } = &finished.outcome {

@@ -2,7 +2,8 @@
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
-/// The engines, with the versions that `Cargo.lock` holds; a test compares the two.
+/// The engines and their versions. `Cargo.toml` requires exactly these, so that no build can have others; a test compares
+/// them with `Cargo.toml` and `Cargo.lock`.
 const ENGINES: [(&str, &str); 3] = [("clarabel", "0.11.1"), ("parry3d-f64", "0.31.1"), ("rapier3d-f64", "0.36.1")];
 
 /// The version of rerun whose file format and viewer are used.
@@ -27,12 +28,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn engine_versions_are_those_of_the_lock_file() {
+    fn every_build_has_these_versions() {
+        let manifest: toml::Table = toml::from_str(include_str!("../../Cargo.toml")).unwrap();
         let lock: toml::Table = toml::from_str(include_str!("../../Cargo.lock")).unwrap();
         let packages = lock["package"].as_array().unwrap();
         for (name, version) in ENGINES.into_iter().chain([("rerun", RERUN)]) {
-            let found = packages.iter().find(|package| package["name"].as_str() == Some(name)).unwrap();
-            assert_eq!(found["version"].as_str(), Some(version), "{name}");
+            let dependency = &manifest["dependencies"][name];
+            let required = dependency.get("version").unwrap_or(dependency).as_str();
+            assert_eq!(required, Some(format!("={version}").as_str()), "{name} in Cargo.toml");
+            let locked: Vec<_> = packages.iter().filter(|package| package["name"].as_str() == Some(name)).collect();
+            let [locked] = locked[..] else { panic!("{} versions of {name} in Cargo.lock", locked.len()) };
+            assert_eq!(locked["version"].as_str(), Some(version), "{name} in Cargo.lock");
         }
     }
 }

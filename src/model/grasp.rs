@@ -22,6 +22,7 @@ impl Edge {
     pub const ALL: [Self; 4] = [Self::PlusX, Self::PlusY, Self::MinusX, Self::MinusY];
 
     /// The edge after `quarters` quarter turns about z_O, counter-clockwise seen from +z_O.
+    #[must_use]
     pub fn turned(self, quarters: usize) -> Self {
         let place = match self {
             Self::PlusX => 0,
@@ -33,6 +34,7 @@ impl Edge {
     }
 
     /// The edge's outward unit normal, in O.
+    #[must_use]
     pub fn outward_o(self) -> Vector3<f64> {
         match self {
             Self::PlusX => Vector3::x(),
@@ -45,6 +47,7 @@ impl Edge {
     /// The edge that a gripper at `x_og` grasps: of the edges whose outward normal is within about 68 degrees of -z_G, the
     /// one that G is least deep inside. The angle of a planned grasp is at most 45 degrees, so its edge always
     /// qualifies. `None` if no edge does.
+    #[must_use]
     pub fn of(x_og: &Pose, size_m: [f64; 3]) -> Option<Self> {
         let backward_o = x_og.rotation * -Vector3::z();
         let depth_m =
@@ -54,6 +57,7 @@ impl Edge {
     }
 
     /// Distance from the board's centre to the edge and half the edge's length, m.
+    #[must_use]
     pub fn reach_and_half_length_m(self, size_m: [f64; 3]) -> (f64, f64) {
         match self {
             Self::PlusX | Self::MinusX => (size_m[0] / 2.0, size_m[1] / 2.0),
@@ -91,6 +95,7 @@ pub struct EdgeGrasp {
 
 impl EdgeGrasp {
     /// The gripper's pose `x_og` on a board of `size_m`.
+    #[must_use]
     pub fn x_og(&self, size_m: [f64; 3]) -> Pose {
         let outward = self.edge.outward_o();
         let along = Vector3::z().cross(&outward);

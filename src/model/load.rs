@@ -76,6 +76,7 @@ impl ForceProfile {
     /// `±(speed / radius) travelled_s`, positive if the force drives it counter-clockwise.
     ///
     /// `p_ot_m` is the start and `force_o_n` the force there, both in O.
+    #[must_use]
     pub fn travel_angle_rad(
         speed_m_s: f64,
         centre_m: [f64; 2],

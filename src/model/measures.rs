@@ -53,6 +53,7 @@ pub struct Event {
 
 /// The kind of an [`Event`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum EventKind {
     /// A phase of the simulation begins.
     Phase,
@@ -65,6 +66,7 @@ pub enum EventKind {
 /// The upper end of a plot's axis that starts at 0 and shows a series and its limit: 1.1 times the larger of peak and
 /// limit, where the peak counts at most four times the limit, so that the limit's line stays visible when a board is
 /// dropped. Without a limit, or if it is 0, 1.1 times the peak.
+#[must_use]
 pub fn axis_top(peak: f64, limit: Option<f64>) -> f64 {
     let top = match limit.filter(|limit| *limit > 0.0) {
         Some(limit) => peak.clamp(limit, 4.0 * limit),

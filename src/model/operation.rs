@@ -58,6 +58,7 @@ pub struct Operation {
 impl Operation {
     /// Drilling at a point of the worked face: `force_n` along `z_T = -z_O`; `x_T = x_O` until a roll is chosen
     /// (`docs/method.md#22-drilling`).
+    #[must_use]
     pub fn drill(point_m: [f64; 2], force_n: f64, thickness_m: f64) -> Self {
         let x_ot = tool_on_face(point_m, Vector3::x(), thickness_m);
         Self { kind: OperationKind::Drill, wrench_o: Wrench::from_force(Vector3::new(0.0, 0.0, -force_n)), x_ot }
@@ -65,6 +66,7 @@ impl Operation {
 
     /// Cutting at a point of the worked face: `force_n` along `direction_o`, which is `x_T`; `z_T = -z_O`.
     /// `direction_o` must be a unit vector in the plane of the face.
+    #[must_use]
     pub fn cut(point_m: [f64; 2], direction_o: Vector3<f64>, force_n: f64, thickness_m: f64) -> Self {
         let x_ot = tool_on_face(point_m, direction_o, thickness_m);
         Self { kind: OperationKind::Cut, wrench_o: Wrench::from_force(direction_o * force_n), x_ot }
@@ -72,6 +74,7 @@ impl Operation {
 
     /// Cutting a circle about the board's centre, counter-clockwise seen from +z_O: `force_n` along the tangent at the point
     /// `angle_rad` from x_O towards y_O (`docs/method.md#23-cutting`).
+    #[must_use]
     pub fn cut_on_circle(radius_m: f64, angle_rad: f64, force_n: f64, thickness_m: f64) -> Self {
         let (sin, cos) = libm::sincos(angle_rad);
         Self::cut([radius_m * cos, radius_m * sin], Vector3::new(-sin, cos, 0.0), force_n, thickness_m)
@@ -79,6 +82,7 @@ impl Operation {
 
     /// The radius of the circle about the board's centre that this operation cuts, m. `None` if it is not a cut or is at the
     /// centre.
+    #[must_use]
     pub fn circle_radius_m(&self) -> Option<f64> {
         let p_ot = self.x_ot.translation.vector;
         let radius_m = libm::hypot(p_ot.x, p_ot.y);
@@ -86,17 +90,20 @@ impl Operation {
     }
 
     /// The operation with the tool rotated by `roll_rad` about z_T.
+    #[must_use]
     pub fn rolled(&self, roll_rad: f64) -> Self {
         let roll = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), roll_rad);
         Self { x_ot: self.x_ot * roll, ..*self }
     }
 
     /// The wrench about the tool tip in W axes, for a board at `x_wo`.
+    #[must_use]
     pub fn wrench_w(&self, x_wo: &Pose) -> Wrench {
         Wrench::new(x_wo.rotation * self.wrench_o.force_n, x_wo.rotation * self.wrench_o.moment_nm)
     }
 
     /// The wrench about the board's centre in O axes: `(f, m + p_OT x f)`.
+    #[must_use]
     pub fn wrench_about_object(&self) -> Wrench {
         self.wrench_o.about(&self.x_ot.translation.vector)
     }

@@ -114,6 +114,7 @@ impl HumanPosture {
     }
 
     /// The person's body dimensions.
+    #[must_use]
     pub fn person(&self) -> Person {
         let Self { height_m, mass_kg, sex, hand, percentile, lean_deg, .. } = *self;
         Person { height_m, mass_kg, sex, hand, percentile, lean_deg }

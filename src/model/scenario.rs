@@ -160,6 +160,7 @@ pub struct Board {
 
 impl Board {
     /// Mass of the board, kg.
+    #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.size_m.iter().product::<f64>() * self.density_kg_m3
     }
@@ -247,6 +248,7 @@ impl Optima {
 impl ComfortSettings {
     /// The weights of regularised muscular comfort and of peripersonal comfort (1/m) in the objective, which is their weighted
     /// sum also if it is normalised.
+    #[must_use]
     pub fn weights(&self) -> [f64; 2] {
         let Some(share) = self.peripersonal_share else { return [self.weight_muscular, self.weight_peripersonal] };
         let Optima { muscular_regularised, peripersonal_m } = self.optima.unwrap_or(Optima::FALLBACK);
@@ -293,6 +295,7 @@ impl PlannerKind {
 
     /// The objective of this planner: `settings` as a weighted sum, with a weight of 0 for the comfort that the planner
     /// ignores.
+    #[must_use]
     pub fn objective(self, settings: ComfortSettings) -> ComfortSettings {
         let [weight_muscular, weight_peripersonal] = match self {
             Self::Comfort | Self::Random => settings.weights(),

@@ -115,6 +115,7 @@ pub struct StepCheck {
 
 impl Sample {
     /// True if at least one pad presses on the board.
+    #[must_use]
     pub fn has_contact(&self) -> bool {
         self.arms.iter().flat_map(|arm| &arm.pads).any(|pad| pad.normal_force_n > 0.0)
     }

@@ -95,6 +95,7 @@ pub struct Verdict {
 
 impl Verdict {
     /// The check of this kind; `None` if it was not made.
+    #[must_use]
     pub fn check(&self, kind: CheckKind) -> Option<&Check> {
         self.checks.iter().find(|check| check.name == kind)
     }

@@ -29,27 +29,32 @@ impl Wrench {
 
     /// The same wrench about another point Q: `m_q = m_p + p_qp x f`, where `p_qp` is the position of the old point P
     /// relative to Q, in the wrench's axes.
+    #[must_use]
     pub fn about(&self, p_qp: &Vector3<f64>) -> Self {
         Self::new(self.force_n, self.moment_nm + p_qp.cross(&self.force_n))
     }
 
     /// The same wrench about the origin of A in A axes, for a wrench about the origin of B in B axes.
+    #[must_use]
     pub fn moved(&self, x_ab: &Pose) -> Self {
         Self::new(x_ab.rotation * self.force_n, x_ab.rotation * self.moment_nm).about(&x_ab.translation.vector)
     }
 
     /// This wrench times a factor.
+    #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self::new(self.force_n * factor, self.moment_nm * factor)
     }
 
     /// `(force; moment)` as one column.
+    #[must_use]
     pub fn to_vector(&self) -> Vector6<f64> {
         let (f, m) = (self.force_n, self.moment_nm);
         Vector6::new(f.x, f.y, f.z, m.x, m.y, m.z)
     }
 
     /// True if all six components are finite.
+    #[must_use]
     pub fn is_finite(&self) -> bool {
         self.to_vector().iter().all(|v| v.is_finite())
     }

@@ -3,7 +3,7 @@
 use super::{
     candidate::{Candidate, Placement},
     evaluate::{self, Evaluator, Feasible},
-    outcome::{PlanError, Rejection},
+    outcome::Rejection,
     verify::verify,
 };
 use crate::{
@@ -54,27 +54,21 @@ pub fn assemble_placed(
 
 /// The plan of a candidate if the check of the finished plan finds no flaw. The check takes nothing from the search but the
 /// plan. Rejections are counted.
-///
-/// # Errors
-/// When the scenario's person or tool is invalid.
-pub fn verified(evaluator: &mut Evaluator<'_>, found: &Feasible) -> Result<Option<Plan>, PlanError> {
+pub fn verified(evaluator: &mut Evaluator<'_>, found: &Feasible) -> Option<Plan> {
     let evaluations = evaluator.stats.candidates();
     let Some(plan) = assemble(evaluator, found, evaluations) else {
         evaluator.stats.reject(Rejection::Stability);
-        return Ok(None);
+        return None;
     };
-    if is_sound(evaluator, &plan)? {
-        return Ok(Some(plan));
+    if is_sound(evaluator, &plan) {
+        return Some(plan);
     }
     evaluator.stats.reject(Rejection::Verification);
-    Ok(None)
+    None
 }
 
-/// True if the check of a plan finds no flaw.
-///
-/// # Errors
-/// When the scenario's person or tool is invalid.
-pub fn is_sound(evaluator: &Evaluator<'_>, plan: &Plan) -> Result<bool, PlanError> {
+/// True if the verification of a plan finds no flaw.
+pub fn is_sound(evaluator: &Evaluator<'_>, plan: &Plan) -> bool {
     let problem = &evaluator.problem;
-    Ok(verify(plan, problem.scenario, &problem.robot.robot)?.is_empty())
+    verify(plan, problem.scenario, &problem.robot.robot).is_empty()
 }

@@ -12,13 +12,29 @@ use crate::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
     },
-    robot::Gripper,
+    robot::{Chain, Gripper},
 };
 
 /// Depth of the gripper's origin inside the edge, m (docs/method.md#25-edge-grasps).
 pub const DEPTH_M: [f64; 2] = [0.020, 0.060];
 /// Angle of the gripper in the board's plane, rad (docs/method.md#25-edge-grasps).
 pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
+
+/// Distance of the board's centre in front of the shoulders, as a share of the arms' reach: nearer, the forearms do not fit
+/// between board and torso; farther, few orientations of the board are reached.
+const AHEAD: [f64; 2] = [0.20, 0.55];
+/// Distance of the board's centre to the side of the shoulders' middle, as a share of the arms' reach: both arms reach there.
+const ASIDE: f64 = 0.18;
+/// Height of the board's centre above or below the shoulders, as a share of the arms' reach.
+const ABOVE: f64 = 0.55;
+/// Height of the board's centre above the floor that the person stands on, m: from the hip of a short person (0.4 x 1.55 m) to
+/// the eyes of a person of 1.62 m.
+const WORK_HEIGHT_M: [f64; 2] = [0.62, 1.52];
+/// The domain's bounds are multiples of 1 / `PER_M` m, so that they are independent of rounding.
+const PER_M: f64 = 20.0;
+/// The worked face may turn this far from the person's side, +x_W: beyond a right angle, so that a person beside the robot can
+/// work on it, rad.
+const FACING_RAD: f64 = 100.0 * std::f64::consts::PI / 180.0;
 
 /// The poses of the board that the search considers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,13 +50,22 @@ pub struct SearchDomain {
 }
 
 impl SearchDomain {
-    /// The domain of Baxter (docs/method.md#36-search-domain).
-    pub const BAXTER: Self = Self {
-        x_m: [0.35, 0.85],
-        y_m: [-0.25, 0.25],
-        z_m: [-0.3, 0.6],
-        facing_rad: 100.0 * std::f64::consts::PI / 180.0,
-    };
+    /// The domain of a robot with these arms: a box in front of the shoulders and at the person's working height. The arms'
+    /// reach is the shortest one's, from its first joint to the gripper.
+    pub fn of<'c>(arms: impl Iterator<Item = &'c Chain> + Clone, floor_z_m: f64) -> Self {
+        let count = arms.clone().count().max(1) as f64;
+        let shoulders_m = arms.clone().map(Chain::shoulder_w).sum::<Vector3<f64>>() / count;
+        let reach_m = arms.map(Chain::reach_m).fold(f64::INFINITY, f64::min);
+        let reach_m = if reach_m.is_finite() { reach_m } else { 0.0 };
+        let rounded = |bounds: [f64; 2]| bounds.map(|v: f64| (v * PER_M).round() / PER_M);
+        let [low_m, high_m] = WORK_HEIGHT_M.map(|height_m| floor_z_m + height_m);
+        Self {
+            x_m: rounded(AHEAD.map(|share| shoulders_m.x + share * reach_m)),
+            y_m: rounded([-ASIDE, ASIDE].map(|share| shoulders_m.y + share * reach_m)),
+            z_m: rounded([low_m.max(shoulders_m.z - ABOVE * reach_m), high_m.min(shoulders_m.z + ABOVE * reach_m)]),
+            facing_rad: FACING_RAD,
+        }
+    }
 
     /// True if the board's centre and worked face are in the domain.
     pub fn contains(&self, x_wo: &Pose) -> bool {
@@ -120,4 +145,42 @@ pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> 
         let corner_m = [half_x_m - p_o.x, half_x_m + p_o.x, half_y_m - p_o.y, half_y_m + p_o.y];
         std::array::from_fn(|side| margins_m[side].min(corner_m[side]))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{robot::Robot, scenario::paper};
+
+    fn domain(robot: &Robot) -> SearchDomain {
+        let chains: Vec<_> = (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0)).collect();
+        SearchDomain::of(chains.iter(), robot.floor_z_m)
+    }
+
+    /// The box that was chosen for Baxter by hand, from where boards can be held: x 0.35 to 0.85, y -0.25 to 0.25, z -0.3 to
+    /// 0.6 m. The shares of the reach reproduce it to 1 cm before rounding, and exactly after it.
+    #[test]
+    fn the_domain_of_baxter_is_the_one_chosen_by_hand() {
+        let baxter = domain(&paper::operations()[0].load().unwrap().robot);
+        assert_eq!((baxter.x_m, baxter.y_m, baxter.z_m), ([0.35, 0.85], [-0.25, 0.25], [-0.3, 0.6]));
+    }
+
+    #[test]
+    fn the_working_height_follows_the_floor() {
+        let robot = paper::operations()[0].load().unwrap().robot;
+        let mut moved = robot.clone();
+        moved.floor_z_m -= 0.1;
+        let [here, there] = [&robot, &moved].map(domain);
+        assert_eq!((here.x_m, here.y_m), (there.x_m, there.y_m));
+        assert_eq!(there.z_m, [-0.4, 0.5]);
+    }
+
+    #[test]
+    fn drawn_boards_are_in_the_domain() {
+        let domain = domain(&paper::operations()[0].load().unwrap().robot);
+        let mut random = Pcg64::new(1, 0);
+        for _ in 0..500 {
+            assert!(domain.contains(&domain.draw_board(&mut random)));
+        }
+    }
 }

@@ -4,7 +4,7 @@ use nalgebra::Point3;
 
 use super::{
     candidate::{Candidate, Placement},
-    library::{posture_muscular, within_strength},
+    library::{GraspingArm, posture_muscular, within_strength},
     outcome::Rejection,
     problem::Problem,
     stats::SearchStats,
@@ -143,7 +143,11 @@ impl<'a> Evaluator<'a> {
     /// The predicted stability of a plan's grasp; `None` if there is no equilibrium.
     pub fn predict(&mut self, arms: &[ArmHold], object: &PlacedObject, operation: &Operation) -> Option<Stability> {
         let Problem { scenario, robot, .. } = &self.problem;
-        let model = ContactModel::from_plan(&robot.robot, arms, object, operation, scenario.grip.friction).ok()?;
+        let hand = |(own, arm): (&ArmHold, &GraspingArm)| {
+            HandModel::new(&robot.robot.arms[arm.index], &arm.chain, own, object, scenario.grip.friction)
+        };
+        let hands: Result<Vec<_>, _> = arms.iter().zip(&robot.arms).map(hand).collect();
+        let model = ContactModel::from_hands(hands.ok()?, object, operation);
         self.stability.predict(&model, &scenario.limits).ok()?
     }
 }
@@ -233,7 +237,7 @@ pub fn contact_model(
     let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
         .iter()
         .zip(&problem.robot.arms)
-        .map(|(own, arm)| HandModel::from_plan(&problem.robot.robot, &arm.chain, own, &object, grip.friction))
+        .map(|(own, arm)| HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, own, &object, grip.friction))
         .collect();
     Ok(ContactModel::from_hands(hands?, &object, &operation.rolled(candidate.work.roll_rad)))
 }

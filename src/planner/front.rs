@@ -197,7 +197,7 @@ impl Sweep<'_> {
         let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot)?, SearchStats::unlimited());
         while let Some(index) = self.index_of_best(scenario) {
             if let Some(plan) = assemble(&mut evaluator, &self.pool[index], 0)
-                && is_sound(&evaluator, &plan)?
+                && is_sound(&evaluator, &plan)
             {
                 return Ok(Some(plan));
             }

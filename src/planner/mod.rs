@@ -21,6 +21,7 @@ pub mod path;
 #[allow(clippy::module_inception)]
 mod planner;
 mod problem;
+pub mod qp;
 mod random;
 mod refine;
 mod screen;
@@ -36,4 +37,4 @@ pub use outcome::{Infeasible, Outcome, PlanError};
 pub use planner::{Planner, Search};
 pub use select::differ;
 pub use stats::{Observer, Progress};
-pub use verify::{Flaw, first_touch, verify};
+pub use verify::verify;

@@ -151,7 +151,7 @@ fn best_plan<'a>(
     let mut evaluator = evaluator(scenario, maps, observer)?;
     let budget = SearchBudget::of(scenario.planner.budget);
     for found in search(&mut evaluator, &maps.library, warm, &budget) {
-        if let Some(plan) = verified(&mut evaluator, &found)? {
+        if let Some(plan) = verified(&mut evaluator, &found) {
             return Ok(Outcome::Found(plan));
         }
     }
@@ -213,7 +213,7 @@ impl<'a> Search<'a> {
             Outcome::Found(scenario) => {
                 let warm = planner.warm_starts(&maps, &scenario)?;
                 let evaluator = evaluator(&scenario, &maps, reborrow(&mut observer))?;
-                select::top(evaluator, &maps.library, &warm, wanted)
+                Ok(select::top(evaluator, &maps.library, &warm, wanted))
             }
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }

@@ -4,7 +4,7 @@ use super::{
     assemble::{assemble, is_sound},
     evaluate::Evaluator,
     library::GraspLibrary,
-    outcome::{Outcome, PlanError},
+    outcome::Outcome,
     params::{SearchBudget, select::STARTS_PER_PLAN},
     search::search,
     warm_starts::WarmStarts,
@@ -36,15 +36,12 @@ pub fn differ(one: &Plan, other: &Plan) -> bool {
 
 /// The best `wanted` plans that [`differ`] from one another, at least one, perhaps fewer than wanted. The search is that of one
 /// plan with more starts. Every plan is checked.
-///
-/// # Errors
-/// When the scenario's person or tool is invalid.
 pub fn top(
     mut evaluator: Evaluator<'_>,
     library: &GraspLibrary,
     warm: &WarmStarts,
     wanted: usize,
-) -> Result<Outcome<Vec<Plan>>, PlanError> {
+) -> Outcome<Vec<Plan>> {
     let budget = SearchBudget::of(evaluator.problem.scenario.planner.budget);
     let starts = budget.starts.max(STARTS_PER_PLAN.saturating_mul(wanted));
     let mut budget = SearchBudget { starts, warm_rounds: None, ..budget };
@@ -59,9 +56,9 @@ pub fn top(
         let evaluations = evaluator.stats.candidates();
         let Some(plan) = assemble(&mut evaluator, &found, evaluations) else { continue };
         // The comparison is cheap beside the check.
-        if plans.iter().all(|other| differ(other, &plan)) && is_sound(&evaluator, &plan)? {
+        if plans.iter().all(|other| differ(other, &plan)) && is_sound(&evaluator, &plan) {
             plans.push(plan);
         }
     }
-    Ok(if plans.is_empty() { Outcome::Infeasible(evaluator.stats.into_infeasible()) } else { Outcome::Found(plans) })
+    if plans.is_empty() { Outcome::Infeasible(evaluator.stats.into_infeasible()) } else { Outcome::Found(plans) }
 }

@@ -1,209 +1,135 @@
-//! The check of a plan from scratch: nothing is taken from the search but the plan itself.
+//! The verification of a plan from scratch: nothing is taken from the search but the plan itself.
 //!
-//! Every pose is computed again from joint angles, in the world; comfort, load factors and deflection are compared with
-//! what comes out; reach, joint limits, strength, standing and collisions are tested. It serves plans of other planners
-//! as well. Metrics, collision model and stability program are those of the search; its way of choosing and placing is not.
+//! Every pose is recomputed from joint angles; comfort, load factors and deflection are compared with what the plan states;
+//! reach, joint limits, strength, standing and collisions are tested. It serves plans of other planners as well. Metrics,
+//! collision model and stability program are those of the search; its way of choosing and placing is not.
 
-use nalgebra::Vector3;
-
-use super::outcome::PlanError;
 use crate::{
-    collision::{CollisionModel, PersonPart, Scene},
+    check::{CheckedPlan, FIGURE_TOLERANCE, Flaw},
+    collision::CollisionModel,
     comfort,
-    human::{Human, HumanError},
+    human::Human,
     model::{
         plan::{Comfort, HumanPosture, MeanComfort, Plan},
-        scenario::{ResponseKind, Scenario, StabilityKind, Tool},
+        scenario::{ResponseKind, Scenario, StabilityKind},
     },
-    robot::{Chain, Robot},
+    robot::Robot,
     statics::{ContactModel, StabilityWorkspace},
 };
 
-/// How exact inverse kinematics must be, m and rad (docs/method.md#34-constraints).
-const POSE_TOLERANCE: f64 = 1e-6;
-/// How far a figure of the plan may be from the one computed again: rounding, relative.
-const FIGURE_TOLERANCE: f64 = 1e-6;
+/// The compliant load factor is found to a thousandth, from below.
+const COMPLIANT_TOLERANCE: f64 = 1e-3;
+/// Two solves of the same conic program agree to its tolerance, which is coarser than rounding.
+const SOLVER_TOLERANCE: f64 = 1e-4;
 
-/// Something that is not as the plan has it, or not allowed, in words.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Flaw(pub String);
-
-impl std::fmt::Display for Flaw {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-/// Everything that is wrong with a plan under a scenario; empty when it keeps every constraint.
-///
-/// # Errors
-/// When the scenario's person or tool is none.
-pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Vec<Flaw>, PlanError> {
-    let mut flaws = Vec::new();
-    arms(plan, robot, &mut flaws);
-    stability(plan, scenario, robot, &mut flaws);
-    match (&plan.human, &plan.comfort) {
-        (Some(posture), Some(comfort)) => {
-            let human = Human::new(&posture.person(), &scenario.tool)?;
-            person(plan, posture, robot, &human, &mut flaws);
-            figures(plan, posture, comfort, scenario, robot, &human, &mut flaws);
-            flaws.extend(first_touch(plan, &scenario.tool, robot)?.map(Flaw));
+/// All flaws of a plan under a scenario; empty if it satisfies every constraint and states its figures correctly.
+#[must_use]
+pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Vec<Flaw> {
+    let checked = match CheckedPlan::new(robot, plan, &scenario.tool) {
+        Ok(checked) => checked,
+        Err(flaws) => return flaws.iter().cloned().collect(),
+    };
+    let mut flaws = checked.inexact();
+    verify_stability(&checked, scenario, &mut flaws);
+    match (&plan.human, &checked.human, &plan.comfort) {
+        (Some(posture), Some(human), Some(stated)) => {
+            verify_comfort(&checked, posture, human, stated, scenario, &mut flaws);
+            flaws.extend(checked.first_contact().map(Flaw::Contact));
         }
-        _ => flaws.push(Flaw("the plan has no person and comfort to check".into())),
+        (None, ..) | (_, None, _) => flaws.push(Flaw::Missing { key: "human" }),
+        (.., None) => flaws.push(Flaw::Missing { key: "comfort" }),
     }
-    Ok(flaws)
+    flaws
 }
 
-fn expect(holds: bool, flaws: &mut Vec<Flaw>, flaw: impl FnOnce() -> String) {
-    if !holds {
-        flaws.push(Flaw(flaw()));
-    }
-}
-
-fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= FIGURE_TOLERANCE * a.abs().max(b.abs()).max(1.0)
-}
-
-fn arms(plan: &Plan, robot: &Robot, flaws: &mut Vec<Flaw>) {
-    for hold in &plan.arms {
-        let Some(index) = robot.arm_index(&hold.name) else {
-            flaws.push(Flaw(format!("{}: no such arm", hold.name)));
-            continue;
-        };
-        let chain = Chain::new(robot, index, 0.0);
-        let reached = chain.gripper_pose(&hold.q_rad);
-        let meant = plan.object.x_wo * hold.x_og;
-        let apart_m = (reached.translation.vector - meant.translation.vector).norm();
-        let apart_rad = reached.rotation.angle_to(&meant.rotation);
-        expect(apart_m.max(apart_rad) <= POSE_TOLERANCE, flaws, || {
-            format!("{}: the hand is {apart_m:e} m and {apart_rad:e} rad off its grasp", hold.name)
-        });
-        expect(chain.within_limits(&hold.q_rad, 0.0), flaws, || format!("{}: beyond a joint limit", hold.name));
-    }
-}
-
-fn person(plan: &Plan, posture: &HumanPosture, robot: &Robot, human: &Human, flaws: &mut Vec<Flaw>) {
-    let tool = posture.x_wb * human.tool_pose_b(&posture.q_rad);
-    let meant = plan.object.x_wo * plan.operation.x_ot;
-    let apart_m = (tool.translation.vector - meant.translation.vector).norm();
-    let apart_rad = tool.rotation.angle_to(&meant.rotation);
-    expect(apart_m.max(apart_rad) <= POSE_TOLERANCE, flaws, || {
-        format!("the tool is {apart_m:e} m and {apart_rad:e} rad off the operation")
-    });
-    expect(human.arm().within_limits(&posture.q_rad), flaws, || "the person's arm is beyond a joint limit".into());
-    let off_floor_m = (posture.x_wb.translation.z - robot.floor_z_m).abs();
-    expect(off_floor_m <= POSE_TOLERANCE, flaws, || format!("the person stands {off_floor_m:e} m off the floor"));
-    let tilt_rad = (posture.x_wb.rotation * Vector3::z()).angle(&Vector3::z());
-    expect(tilt_rad <= POSE_TOLERANCE, flaws, || format!("the person leans by {tilt_rad:e} rad"));
-}
-
-fn figures(
-    plan: &Plan,
+fn verify_comfort(
+    checked: &CheckedPlan<'_>,
     posture: &HumanPosture,
-    written: &Comfort,
-    scenario: &Scenario,
-    robot: &Robot,
     human: &Human,
+    stated: &Comfort,
+    scenario: &Scenario,
     flaws: &mut Vec<Flaw>,
 ) {
+    let plan = checked.plan;
     let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
-    let surface = comfort::robot_points_w(robot, &robot.planned_link_poses(&plan.arms, plan.object.size_m[2]));
-    let mut found = comfort::of_posture(human, &scenario.comfort, &surface, &posture.x_wb, &posture.q_rad, &wrench_w);
+    let points_w = comfort::robot_points_w(checked.robot, &checked.link_poses);
+    let mut found = comfort::of_posture(human, &scenario.comfort, &points_w, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
-    expect(strongest <= 1.0, flaws, || format!("an activation is {strongest}, more than the person has"));
+    if strongest > 1.0 {
+        flaws.push(Flaw::Strength { found: strongest });
+    }
     if scenario.comfort.person == ResponseKind::Mean {
-        match average(plan, scenario, robot, human) {
-            Some(average) => comfort::rate_by_average(&mut found, average, &scenario.comfort),
-            None => flaws.push(Flaw("the person has no answer on the grid of the average".into())),
+        match mean_response(checked, scenario, human, &points_w) {
+            Some(mean) => comfort::rate_by_average(&mut found, mean, &scenario.comfort),
+            None => flaws.push(Flaw::NoResponse),
         }
     }
-    let mut compared = vec![
-        ("muscular", written.muscular, found.muscular),
-        ("muscular_regularised", written.muscular_regularised, found.muscular_regularised),
-        ("peripersonal_m", written.peripersonal_m, found.peripersonal_m),
-        ("objective", written.objective, found.objective),
+    let mut figures = vec![
+        ("comfort.muscular", stated.muscular, found.muscular),
+        ("comfort.muscular_regularised", stated.muscular_regularised, found.muscular_regularised),
+        ("comfort.peripersonal_m", stated.peripersonal_m, found.peripersonal_m),
+        ("comfort.objective", stated.objective, found.objective),
     ];
-    if let (Some(written), Some(found)) = (written.average, found.average) {
+    if let (Some(stated), Some(found)) = (stated.average, found.average) {
         let MeanComfort { muscular_regularised, peripersonal_m, .. } = found;
-        compared.push(("average.muscular_regularised", written.muscular_regularised, muscular_regularised));
-        compared.push(("average.peripersonal_m", written.peripersonal_m, peripersonal_m));
+        figures.push(("comfort.average.muscular_regularised", stated.muscular_regularised, muscular_regularised));
+        figures.push(("comfort.average.peripersonal_m", stated.peripersonal_m, peripersonal_m));
     }
-    for (name, written, found) in compared {
-        expect(same(written, found), flaws, || format!("comfort.{name} is {written} in the plan and {found} in fact"));
+    for (key, stated, computed) in figures {
+        let scale = stated.abs().max(computed.abs()).max(1.0);
+        if (stated - computed).abs() > FIGURE_TOLERANCE * scale {
+            flaws.push(Flaw::Figure { key, stated, computed });
+        }
     }
 }
 
-/// The mean comfort of the person's answers to the plan's hold.
-fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<MeanComfort> {
-    let poses = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
-    let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
+/// The mean comfort over the person's responses to the plan's grasp.
+fn mean_response(
+    checked: &CheckedPlan<'_>,
+    scenario: &Scenario,
+    human: &Human,
+    robot_points_w: &[nalgebra::Point3<f64>],
+) -> Option<MeanComfort> {
     comfort::average(&comfort::Hold {
         human,
-        collision: &CollisionModel::new(robot),
+        collision: &CollisionModel::new(checked.robot),
         settings: scenario.comfort,
-        operation: plan.operation,
-        floor_z_m: robot.floor_z_m,
-        robot_points_w: &comfort::robot_points_w(robot, &poses),
-        scene: Scene {
-            link_poses: &poses,
-            holding: &holding,
-            board_size_m: plan.object.size_m,
-            x_wo: plan.object.x_wo,
-            person: &[],
-        },
+        operation: checked.plan.operation,
+        floor_z_m: checked.robot.floor_z_m,
+        robot_points_w,
+        scene: checked.scene(),
     })
 }
 
-/// The first two bodies of a plan that touch, or come closer to the person than docs/method.md#35-clearances allows; the person is
-/// left out where the plan has none.
-///
-/// # Errors
-/// When the plan's person or the tool is none.
-pub fn first_touch(plan: &Plan, tool: &Tool, robot: &Robot) -> Result<Option<String>, HumanError> {
-    let person = match &plan.human {
-        Some(posture) => {
-            let human = Human::new(&posture.person(), tool)?;
-            human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from).to_vec()
-        }
-        None => Vec::new(),
-    };
-    let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
-    let scene = Scene {
-        link_poses: &robot.planned_link_poses(&plan.arms, plan.object.size_m[2]),
-        holding: &holding,
-        board_size_m: plan.object.size_m,
-        x_wo: plan.object.x_wo,
-        person: &person,
-    };
-    Ok(CollisionModel::new(robot).first_violation(&scene).map(|violation| violation.describe(robot)))
-}
-
-fn stability(plan: &Plan, scenario: &Scenario, robot: &Robot, flaws: &mut Vec<Flaw>) {
-    let found = ContactModel::from_plan(robot, &plan.arms, &plan.object, &plan.operation, scenario.grip.friction)
-        .and_then(|hold| StabilityWorkspace::new().predict(&hold, &scenario.limits));
-    let (found, written) = match (found, &plan.stability) {
-        (Ok(Some(found)), Some(written)) => (found, written),
-        (Ok(None), _) => return flaws.push(Flaw("the hold does not stand the load".into())),
-        (Err(error), _) => return flaws.push(Flaw(error.to_string())),
-        (_, None) => return flaws.push(Flaw("the plan states no stability".into())),
+fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut Vec<Flaw>) {
+    let Some(stated) = &checked.plan.stability else { return flaws.push(Flaw::Missing { key: "stability" }) };
+    let found = ContactModel::of_plan(checked, scenario.grip.friction)
+        .and_then(|model| StabilityWorkspace::new().predict(&model, &scenario.limits));
+    let found = match found {
+        Ok(Some(found)) => found,
+        Ok(None) => return flaws.push(Flaw::NoEquilibrium),
+        Err(error) => return flaws.push(Flaw::ContactModel(error.to_string())),
     };
     let least = scenario.limits.load_factor;
-    expect(found.load_factor >= least, flaws, || format!("the load factor is {}", found.load_factor));
+    let mut limit = |is_kept: bool, key, found, limit| {
+        if !is_kept {
+            flaws.push(Flaw::Limit { key, found, limit });
+        }
+    };
+    limit(found.load_factor >= least, "stability.load_factor", found.load_factor, least);
     if scenario.planner.stability == StabilityKind::Compliant {
         let (factor, deflection_mm) = (found.compliant_load_factor, found.predicted_deflection_mm);
-        // The compliant load factor is found to a thousandth, from below.
-        expect(factor >= least - 1e-3, flaws, || format!("the compliant load factor is {factor}"));
-        let limit_mm = scenario.limits.deflection_mm;
-        expect(deflection_mm <= limit_mm, flaws, || format!("the predicted deflection is {deflection_mm} mm"));
+        let most_mm = scenario.limits.deflection_mm;
+        limit(factor >= least - COMPLIANT_TOLERANCE, "stability.compliant_load_factor", factor, least);
+        limit(deflection_mm <= most_mm, "stability.predicted_deflection_mm", deflection_mm, most_mm);
     }
-    let compared = [
-        ("load_factor", written.load_factor, found.load_factor),
-        ("predicted_deflection_mm", written.predicted_deflection_mm, found.predicted_deflection_mm),
-    ];
-    for (name, written, found) in compared {
-        // Two solves of the same conic program agree to its tolerance, which is coarser than rounding.
-        expect((written - found).abs() <= 1e-4 * found.max(1.0), flaws, || {
-            format!("stability.{name} is {written} in the plan and {found} in fact")
-        });
+    for (key, stated, computed) in [
+        ("stability.load_factor", stated.load_factor, found.load_factor),
+        ("stability.predicted_deflection_mm", stated.predicted_deflection_mm, found.predicted_deflection_mm),
+    ] {
+        let differs = (stated - computed).abs() > SOLVER_TOLERANCE * computed.max(1.0);
+        if differs || stated.is_nan() {
+            flaws.push(Flaw::Figure { key, stated, computed });
+        }
     }
 }

@@ -3,7 +3,10 @@
 //! This module knows the file's form and where files come from; what entries mean together is `assemble`'s business.
 //! The table of built-in robots below is the only place in the sources that names one.
 
-use std::{ops::Range, path::Path};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -48,6 +51,19 @@ impl Robot {
             Ok((path.display().to_string(), read_file(&path)?))
         })
     }
+}
+
+/// The files that [`Robot::load`] reads: the description and the URDF that it names; none for a built-in robot. Files that
+/// cannot be read are left out.
+pub fn source_files(description: &str, relative_to: &Path) -> Vec<PathBuf> {
+    if BUILTIN.contains(&description) {
+        return Vec::new();
+    }
+    let path = relative_to.join(description);
+    let Ok(text) = read_file(&path) else { return Vec::new() };
+    let urdf = Description::read(&Source { file: "", text: &text })
+        .map(|description| path.parent().unwrap_or(relative_to).join(description.urdf.get_ref()));
+    std::iter::once(path.clone()).chain(urdf.ok()).collect()
 }
 
 fn read_file(path: &Path) -> Result<String, RobotError> {

@@ -14,7 +14,7 @@ pub mod tree;
 mod urdf;
 
 pub use chain::Chain;
-pub use description::BUILTIN;
+pub use description::{BUILTIN, source_files};
 pub use inverse::{InverseKinematics, Solution};
 pub use tree::{
     Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Pad, PlacedShape, Robot, RobotError, Shape,

@@ -20,6 +20,7 @@ pub struct InputError {
 
 /// The kind of an [`InputError`].
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum InputErrorKind {
     /// The file cannot be read.
     #[error("failed to read the file: {0}")]

@@ -23,11 +23,12 @@ use crate::{
         plan::Plan,
         scenario::{ArmParameters, PadParameters, RobotParameters, Scenario},
     },
-    robot::{BUILTIN, Robot, RobotError},
+    robot::{BUILTIN, Robot, RobotError, source_files},
 };
 
 /// A resolved scenario with its robot and, if the file names one, its plan.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct LoadedScenario {
     /// The file that it was read from.
     pub path: PathBuf,
@@ -37,6 +38,31 @@ pub struct LoadedScenario {
     pub robot: Robot,
     /// The plan that `planner.plan` names.
     pub plan: Option<Plan>,
+    /// All files that were read.
+    pub inputs: Vec<PathBuf>,
+}
+
+impl LoadedScenario {
+    /// The path of the plan that `planner.plan` names.
+    pub fn plan_path(&self) -> Option<PathBuf> {
+        self.scenario.planner.plan.as_ref().map(|plan| folder_of(&self.path).join(plan))
+    }
+}
+
+/// A plan with its robot and the scenario to judge it by.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct LoadedPlan {
+    /// The file that the plan was read from.
+    pub path: PathBuf,
+    /// The plan.
+    pub plan: Plan,
+    /// The robot.
+    pub robot: Robot,
+    /// The scenario.
+    pub scenario: Scenario,
+    /// All files that were read.
+    pub inputs: Vec<PathBuf>,
 }
 
 /// Reads, checks and completes a scenario file.
@@ -57,16 +83,26 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     }
     let file = file::parse(path, text)?;
     let (scenario, robot) = resolve::resolve(path, text, &file)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let folder = folder_of(path);
+    let mut inputs = vec![path.to_owned()];
+    inputs.extend(source_files(&file.robot.description, folder));
+    inputs.extend(file.load.file.as_ref().map(|forces| folder.join(forces)));
     let plan = match &scenario.planner.plan {
         Some(plan) => {
-            let plan = read_plan(&folder.join(plan), Some(&robot))?.0;
+            let plan_path = folder.join(plan);
+            let plan = read_plan(&plan_path, Some(&robot))?.0;
             resolve::check_plan_matches(path, text, &scenario, &plan)?;
+            inputs.push(plan_path);
             Some(plan)
         }
         None => None,
     };
-    Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan })
+    Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan, inputs })
+}
+
+/// The folder that the paths in a file are relative to.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
 }
 
 /// Loads a robot for a file in `folder`. If the description is a path, the robot's `description` becomes the absolute
@@ -85,6 +121,7 @@ fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
 }
 
 /// The parameters of a robot that results depend on.
+#[must_use]
 pub fn robot_parameters(robot: &Robot) -> RobotParameters {
     let arms = robot
         .arms
@@ -110,33 +147,32 @@ pub fn robot_parameters(robot: &Robot) -> RobotParameters {
     RobotParameters { description: robot.description.clone(), arms }
 }
 
-/// Reads a scenario file for a given plan, which must have the same robot, board and operation.
+/// Reads a plan file and the scenario to judge the plan by: that of the file `scenario`, which must have the plan's robot,
+/// board, operation and grip force; or the one in the plan; or the defaults for its operation. The scenario gets the
+/// plan's name.
 ///
 /// # Errors
-/// As [`load`], and if the plan is for another robot, board, operation or grip force.
-pub fn load_for_plan(path: &Path, plan: &Plan) -> Result<Scenario, InputError> {
-    let scenario = load(path)?.scenario;
-    resolve::check_plan_matches(path, &error::read_text(path)?, &scenario, plan)?;
-    Ok(scenario)
-}
-
-/// Reads a plan file and returns the plan, its robot and the scenario to judge it by: that of the file `scenario`, or the
-/// one in the plan, or the defaults for its operation. The scenario gets the plan's name.
-///
-/// # Errors
-/// As [`read_plan`] and [`load_for_plan`].
-pub fn load_plan_and_scenario(plan: &Path, scenario: Option<&Path>) -> Result<(Plan, Robot, Scenario), InputError> {
-    let (plan, robot) = read_plan(plan, None)?;
+/// As [`read_plan`] and [`load`], and if the scenario is for another robot, board, operation or grip force.
+pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
+    let (plan, robot) = read_plan(path, None)?;
+    let mut inputs = vec![path.to_owned()];
+    inputs.extend(source_files(&plan.robot, folder_of(path)));
     let mut scenario = match (scenario, &plan.scenario) {
-        (Some(path), _) => load_for_plan(path, &plan)?,
+        (Some(path), _) => {
+            let loaded = load(path)?;
+            resolve::check_plan_matches(path, &error::read_text(path)?, &loaded.scenario, &plan)?;
+            inputs.extend(loaded.inputs);
+            loaded.scenario
+        }
         (None, Some(scenario)) => scenario.clone(),
         (None, None) => default_for_plan(&plan, &robot),
     };
     scenario.name.clone_from(&plan.name);
-    Ok((plan, robot, scenario))
+    Ok(LoadedPlan { path: path.to_owned(), plan, robot, scenario, inputs })
 }
 
 /// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
+#[must_use]
 pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
     resolve::default_for_plan(plan, robot)
 }

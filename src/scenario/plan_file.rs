@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use nalgebra::Vector3;
-
 use super::{
     InputError, InputErrorKind,
     check::{Checker, FormatProbe},
@@ -11,16 +9,11 @@ use super::{
     load_robot, resolve,
 };
 use crate::{
-    human::{Human, default_tool},
-    model::plan::{ArmHold, Plan},
-    robot::{Arm, Chain, Robot},
+    check::{CheckedPlan, Flaw},
+    human::default_tool,
+    model::plan::Plan,
+    robot::Robot,
 };
-
-/// Largest excess of a joint angle over its limit, rad: rounding of written numbers.
-const LIMIT_TOLERANCE_RAD: f64 = 1e-6;
-
-/// Largest deviation of a hand's pose from `x_wo x_og`, m and rad: 1 mm and 0.1 degrees.
-const HAND_TOLERANCE: (f64, f64) = (1e-3, 0.1 * std::f64::consts::PI / 180.0);
 
 /// Reads and checks a plan file. The robot that it names is loaded, unless it is `robot`.
 ///
@@ -42,9 +35,7 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
     };
     plan.robot.clone_from(&robot.description);
     check.name(&plan.name)?;
-    check_object(&check, &plan)?;
-    check_arms(&check, &plan, &robot)?;
-    check_human(&check, &plan)?;
+    check_plan(&check, &plan, &robot)?;
     if let Some(scenario) = &plan.scenario {
         let check = check.under("scenario.");
         check.format(scenario.format)?;
@@ -72,86 +63,16 @@ fn without_position(message: &str) -> String {
     message.split(" at line ").next().unwrap_or(message).to_owned()
 }
 
-fn check_object(check: &Checker<'_>, plan: &Plan) -> Result<(), InputError> {
-    check.board_size("object.size_m", plan.object.size_m, std::iter::empty())?;
-    check.positive("object.mass_kg", plan.object.mass_kg, "kg")?;
-    check.on_board("operation.x_ot", &plan.operation.x_ot, plan.object.size_m)
-}
-
-/// Requires a valid person whose joint angles are within their limits.
-fn check_human(check: &Checker<'_>, plan: &Plan) -> Result<(), InputError> {
-    let Some(posture) = &plan.human else { return Ok(()) };
-    let person = posture.person();
-    resolve::check_person(check, &person)?;
+/// Checks the plan against the robot and the person; the first flaw is the error.
+fn check_plan(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), InputError> {
+    if let Some(posture) = &plan.human {
+        resolve::check_person(check, &posture.person())?;
+    }
     let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.operation.kind), |scenario| scenario.tool);
-    let human = Human::new(&person, &tool).map_err(|error| check.syntax("human", error.to_string()))?;
-    for (i, (&q, [lower, upper])) in posture.q_rad.iter().zip(human.arm().limits_rad).enumerate() {
-        let inside = q >= lower - LIMIT_TOLERANCE_RAD && q <= upper + LIMIT_TOLERANCE_RAD;
-        let expected = format!("{lower} to {upper} rad, the limits of the person's joint q{}", i + 1);
-        check.that(inside, &format!("human.q_rad[{i}]"), q.to_string(), &expected)?;
-    }
-    Ok(())
-}
-
-fn check_arms(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), InputError> {
-    check.that(!plan.arms.is_empty(), "arms", "no arm", "at least one")?;
-    for (index, hold) in plan.arms.iter().enumerate() {
-        let key = |rest: &str| format!("arms[{index}].{rest}");
-        let known: Vec<_> = robot.arms.iter().map(|arm| arm.name.as_str()).collect();
-        let arm_index = robot.arm_index(&hold.name).ok_or_else(|| {
-            check.value(
-                &key("name"),
-                format!("\"{}\"", hold.name),
-                format!("an arm of the robot: {}", known.join(", ")),
-            )
-        })?;
-        let twice = plan.arms[..index].iter().any(|other| other.name == hold.name);
-        check.that(!twice, &key("name"), format!("\"{}\" again", hold.name), "every arm once")?;
-        let arm = &robot.arms[arm_index];
-        check_joints(check, index, hold, arm, robot)?;
-        check.grip_force(&key("grip_force_n"), hold.grip_force_n, std::iter::once(arm))?;
-        check.board_size("object.size_m", plan.object.size_m, std::iter::once(arm))?;
-        check_straddle(check, &key("x_og"), hold)?;
-        check_hand(check, &key("x_og"), hold, plan, &Chain::new(robot, arm_index, 0.0))?;
-    }
-    Ok(())
-}
-
-fn check_joints(check: &Checker<'_>, index: usize, hold: &ArmHold, arm: &Arm, robot: &Robot) -> Result<(), InputError> {
-    let names: Vec<_> = arm.joints.iter().map(|&joint| robot.joints[joint].name.as_str()).collect();
-    let same = hold.joints.iter().map(String::as_str).eq(names.iter().copied());
-    let expected = format!("the joints of the {} arm: {}", arm.name, names.join(", "));
-    check.that(same, &format!("arms[{index}].joints"), hold.joints.join(", "), &expected)?;
-    let expected = format!("{} angles in rad", names.len());
-    let count = hold.q_rad.len();
-    check.that(count == names.len(), &format!("arms[{index}].q_rad"), count.to_string(), &expected)?;
-    for (i, (&joint, &q)) in arm.joints.iter().zip(&hold.q_rad).enumerate() {
-        let (lower, upper) = (robot.joints[joint].lower, robot.joints[joint].upper);
-        let inside = q >= lower - LIMIT_TOLERANCE_RAD && q <= upper + LIMIT_TOLERANCE_RAD;
-        let expected = format!("{lower} to {upper} rad, the limits of {}", names[i]);
-        check.that(inside, &format!("arms[{index}].q_rad[{i}]"), q.to_string(), &expected)?;
-    }
-    Ok(())
-}
-
-/// Requires fingers that close across the board's thickness, centred on it.
-fn check_straddle(check: &Checker<'_>, key: &str, hold: &ArmHold) -> Result<(), InputError> {
-    let off_m = hold.x_og.translation.vector.z.abs();
-    let off_rad = (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos();
-    let found =
-        format!("fingers {:.2} mm off the board's middle and {:.2} degrees askew", off_m * 1e3, off_rad.to_degrees());
-    let astride = off_m <= HAND_TOLERANCE.0 && off_rad <= HAND_TOLERANCE.1;
-    check.that(astride, key, found, "fingers that close across the thickness, within 1 mm and 0.1 degrees")
-}
-
-/// Requires joint angles whose forward kinematics agree with `x_wo x_og`.
-fn check_hand(check: &Checker<'_>, key: &str, hold: &ArmHold, plan: &Plan, chain: &Chain) -> Result<(), InputError> {
-    let reached = chain.gripper_pose(&hold.q_rad);
-    let meant = plan.object.x_wo * hold.x_og;
-    let apart_m = (reached.translation.vector - meant.translation.vector).norm();
-    let apart_rad = reached.rotation.angle_to(&meant.rotation);
-    let found =
-        format!("the hand {:.2} mm and {:.2} degrees from where q_rad puts it", apart_m * 1e3, apart_rad.to_degrees());
-    let close = apart_m <= HAND_TOLERANCE.0 && apart_rad <= HAND_TOLERANCE.1;
-    check.that(close, key, found, "x_wo x_og to equal the arm's forward kinematics within 1 mm and 0.1 degrees")
+    let Err(flaws) = CheckedPlan::new(robot, plan, &tool) else { return Ok(()) };
+    let flaw = flaws.first();
+    Err(match flaw {
+        Flaw::Person(error) => check.syntax(&flaw.key(), error.to_string()),
+        _ => check.value(&flaw.key(), flaw.found(), flaw.expected()),
+    })
 }

@@ -1,75 +1,61 @@
-//! The person beside the hold: how far robot and board are from them while the arms give way.
+//! Distance of robot and board from the person during the simulation (docs/method.md#87-person-overlap).
 //!
-//! The person stands still in the posture of the plan and nothing pushes them: they are looked at, not simulated. Against
-//! them go all links of the robot and the board; what goes with the tool is left out, as
-//! [`StandingPerson`] has it. What the distance means is the judge's business.
+//! The person stands still in the posture of the plan and is not part of the dynamics. All links of the robot and the
+//! board are measured against them, without the body parts that move with the tool (see [`StandingPerson`]). The judge
+//! interprets the distance.
 
-use super::{Conditions, SimError};
+use super::conditions::Conditions;
 use crate::{
-    collision::{CollisionModel, Nearest, PersonPart, StandingPerson},
-    human::{Human, default_tool},
-    model::{
-        plan::Plan,
-        trace::{PersonTouch, Sample},
-    },
+    check::CheckedPlan,
+    collision::{CollisionModel, Nearest, StandingPerson},
+    model::trace::{PersonTouch, Sample},
     robot::{ArmState, Robot},
 };
 
-/// How often the distance is measured, s.
+/// Interval between two measurements, s.
 const INTERVAL_S: f64 = 0.01;
 
-/// Bodies nearer than this are measured in every step, m: at up to 1 m/s nothing comes from beyond it to a touch between two
-/// measurements.
+/// Below this distance it is measured in every step, m: at up to 1 m/s no body gets from beyond it into contact between
+/// two measurements.
 const NEAR_M: f64 = 0.01;
 
-/// How much farther away than last time the nearest bodies are looked for at first, m: nearly always enough, and little to
-/// look at.
+/// The nearest bodies are first searched for within the last distance plus this, m: nearly always enough, and fast.
 const SLACK_M: f64 = 0.02;
 
-/// The person of a plan.
+/// Monitors the distance of the person of a plan.
 pub(super) struct PersonMonitor<'a> {
     robot: &'a Robot,
     model: CollisionModel,
     person: StandingPerson,
-    /// The robot's arms (indices) in the order of every sample.
+    /// Indices of the robot's arms in the order of the samples.
     arms: Vec<usize>,
-    /// How many steps the distance is measured after.
-    every: usize,
-    /// The distance as it was measured last, m.
+    /// Interval between two measurements in steps.
+    interval_steps: usize,
+    /// The last measured distance, m.
     distance_m: f64,
-    /// The first bodies that overlapped.
+    /// The first pair of bodies that overlapped.
     pub touch: Option<PersonTouch>,
 }
 
 impl<'a> PersonMonitor<'a> {
-    /// The person of a plan; none when the plan has none.
-    ///
-    /// # Errors
-    /// [`SimError::Person`] when the person or the tool is none.
-    pub fn of(robot: &'a Robot, plan: &Plan, conditions: &Conditions) -> Result<Option<Self>, SimError> {
-        let Some(posture) = &plan.human else { return Ok(None) };
-        let tool = conditions.tool.unwrap_or_else(|| default_tool(plan.operation.kind));
-        let human = Human::new(&posture.person(), &tool).map_err(SimError::Person)?;
-        let finite = posture.x_wb.translation.vector.iter().chain(&posture.q_rad).all(|figure| figure.is_finite());
-        if !finite {
-            return Err(SimError::Posture);
-        }
-        let parts = human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from);
-        Ok(Some(Self {
-            robot,
-            model: CollisionModel::new(robot),
-            person: StandingPerson::new(&parts, plan.object.size_m),
-            arms: plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect(),
-            every: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
+    /// The monitor of a plan's person; `None` if the plan has no person.
+    pub fn of(checked: &CheckedPlan<'a>, conditions: &Conditions) -> Option<Self> {
+        checked.human.as_ref()?;
+        Some(Self {
+            robot: checked.robot,
+            model: CollisionModel::new(checked.robot),
+            person: StandingPerson::new(&checked.person_parts(), checked.plan.object.size_m),
+            arms: checked.arms.iter().map(|arm| arm.index).collect(),
+            interval_steps: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             distance_m: f64::INFINITY,
             touch: None,
-        }))
+        })
     }
 
-    /// The least distance of robot and board from the person after a step, m, negative when they overlap: measured where
-    /// it is due, else as it was measured last.
+    /// The smallest distance of robot and board from the person after a step, m, negative if they overlap. Measured if
+    /// due, otherwise the last measured value.
     pub fn distance_m(&mut self, step: usize, sample: &Sample) -> f64 {
-        if step.is_multiple_of(self.every) || self.distance_m < NEAR_M {
+        if step.is_multiple_of(self.interval_steps) || self.distance_m < NEAR_M {
             self.measure(sample);
         }
         self.distance_m

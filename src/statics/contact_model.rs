@@ -61,19 +61,6 @@ pub enum ContactModelError {
         /// The quantity.
         what: &'static str,
     },
-    /// An arm that the robot does not have.
-    #[error("found arm \"{0}\", which the robot does not have")]
-    UnknownArm(String),
-    /// The joints are not the arm's, or not in its order.
-    #[error("{hand} hand: found the joints {found:?}, expected {expected:?}")]
-    JointNames {
-        /// The hand.
-        hand: String,
-        /// The plan's joints.
-        found: Vec<String>,
-        /// The robot's joints.
-        expected: Vec<String>,
-    },
     /// No variation of load and friction to evaluate.
     #[error("found no variations, expected at least one")]
     NoVariations,
@@ -87,18 +74,6 @@ pub enum ContactModelError {
         hand: String,
         /// The pad.
         pad: String,
-    },
-    /// The finger axis is not along the board's normal.
-    #[error(
-        "{hand} hand: found the finger axis {angle_deg:.3} degrees from the board's normal, expected at most {limit_deg}"
-    )]
-    FingersNotAcross {
-        /// The hand.
-        hand: String,
-        /// Angle between finger axis and normal, degrees.
-        angle_deg: f64,
-        /// The largest allowed angle, degrees.
-        limit_deg: f64,
     },
 }
 

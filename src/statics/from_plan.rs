@@ -8,6 +8,7 @@ use super::{
     patch::clip_to_rectangle,
 };
 use crate::{
+    check::{CheckedArm, CheckedPlan},
     model::{
         GRAVITY_W,
         frames::Pose,
@@ -15,44 +16,25 @@ use crate::{
         plan::{ArmHold, PlacedObject},
         wrench::Wrench,
     },
-    robot::{
-        chain::Chain,
-        tree::{Gripper, Robot},
-    },
+    robot::{Arm, Chain, Gripper},
 };
-
-/// The largest angle between finger axis and board normal, degrees. The contact model has pads flat on the faces and is
-/// wrong for a gripper that leans more.
-const MAX_FINGER_LEAN_DEG: f64 = 2.0;
 
 impl ContactModel {
     /// The contact model of a plan. Board, pads and arms are at the plan's poses and angles. Pads lie flat on the two
     /// faces; only the part of a pad that is on the face counts (see [`clip_to_rectangle`]).
     ///
     /// # Errors
-    /// If an arm is unknown, its joints are not the robot's, the number of angles is wrong, the finger axis is not
-    /// along the board's normal, or a pad is off the board.
-    pub fn from_plan(
-        robot: &Robot,
-        plan_arms: &[ArmHold],
-        object: &PlacedObject,
-        operation: &Operation,
-        friction: f64,
-    ) -> Result<Self, ContactModelError> {
-        let hands: Result<Vec<_>, _> = plan_arms
-            .iter()
-            .map(|plan_arm| {
-                let index = robot
-                    .arm_index(&plan_arm.name)
-                    .ok_or_else(|| ContactModelError::UnknownArm(plan_arm.name.clone()))?;
-                let travel_m = robot.arms[index].gripper.travel_for_gap_m(0, object.size_m[2]);
-                HandModel::from_plan(robot, &Chain::new(robot, index, travel_m), plan_arm, object, friction)
-            })
-            .collect();
-        Ok(Self::from_hands(hands?, object, operation))
+    /// If a pad is off the board.
+    pub fn of_plan(checked: &CheckedPlan<'_>, friction: f64) -> Result<Self, ContactModelError> {
+        let object = &checked.plan.object;
+        let hand = |arm: &CheckedArm<'_>| {
+            HandModel::new(&checked.robot.arms[arm.index], &arm.chain, arm.hold, object, friction)
+        };
+        let hands: Result<Vec<_>, _> = checked.arms.iter().map(hand).collect();
+        Ok(Self::from_hands(hands?, object, &checked.plan.operation))
     }
 
-    /// The contact model of these hands, see [`HandModel::from_plan`].
+    /// The contact model of these hands, see [`HandModel::new`].
     #[must_use]
     pub fn from_hands(hands: Vec<HandModel>, object: &PlacedObject, operation: &Operation) -> Self {
         let weight_o = object.x_wo.rotation.inverse() * (GRAVITY_W * object.mass_kg);
@@ -66,62 +48,42 @@ impl ContactModel {
 }
 
 impl HandModel {
-    /// One arm's part of the contact model, for a planner that reuses its chains. The chain must be that of the plan's
-    /// arm with its fingers at the board's thickness.
+    /// One arm's part of the contact model. `chain` is that of the arm with its fingers at the board's thickness, and `hold`
+    /// belongs to the arm.
     ///
     /// # Errors
-    /// See [`ContactModel::from_plan`].
-    pub fn from_plan(
-        robot: &Robot,
+    /// If a pad is off the board.
+    pub fn new(
+        arm: &Arm,
         chain: &Chain,
-        plan_arm: &ArmHold,
+        hold: &ArmHold,
         object: &PlacedObject,
         friction: f64,
     ) -> Result<Self, ContactModelError> {
-        let name = &plan_arm.name;
-        let arm = robot
-            .arms
-            .iter()
-            .find(|arm| arm.name == *name)
-            .ok_or_else(|| ContactModelError::UnknownArm(name.clone()))?;
-        if plan_arm.q_rad.len() != chain.dof() {
-            let (found, expected) = (plan_arm.q_rad.len(), chain.dof());
-            return Err(ContactModelError::JointCount { hand: name.clone(), what: "q_rad", found, expected });
-        }
-        let joints: Vec<String> = arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect();
-        if plan_arm.joints != joints {
-            let found = plan_arm.joints.clone();
-            return Err(ContactModelError::JointNames { hand: name.clone(), found, expected: joints });
-        }
-        let pads = [0, 1].map(|finger| pad_model(&arm.gripper, finger, plan_arm, object, friction));
+        let pads = [0, 1].map(|finger| pad_model(&arm.gripper, finger, hold, object, friction));
         let [first, second] = pads;
         let grasp_point_g = arm.gripper.grasp_point_g();
         Ok(Self {
-            name: name.clone(),
-            joints,
+            name: hold.name.clone(),
+            joints: hold.joints.clone(),
             pads: [first?, second?],
-            grip_force_n: plan_arm.grip_force_n,
-            grasp_point_o: (plan_arm.x_og * nalgebra::Point3::from(grasp_point_g)).coords,
-            jacobian_o: jacobian_o(chain, plan_arm, object, &grasp_point_g),
-            gravity_torque_nm: chain.gravity_torque_nm(&plan_arm.q_rad),
+            grip_force_n: hold.grip_force_n,
+            grasp_point_o: (hold.x_og * nalgebra::Point3::from(grasp_point_g)).coords,
+            jacobian_o: jacobian_o(chain, hold, object, &grasp_point_g),
+            gravity_torque_nm: chain.gravity_torque_nm(&hold.q_rad),
             effort_nm: chain.effort_nm().to_vec().into(),
             stiffness_nm_rad: arm.stiffness_nm_rad.clone().into(),
-            gravity_stiffness_nm_rad: chain.gravity_stiffness_nm_rad(&plan_arm.q_rad),
+            gravity_stiffness_nm_rad: chain.gravity_stiffness_nm_rad(&hold.q_rad),
         })
     }
 }
 
 /// The Jacobian of the grasp point in O axes, from that of G's origin in W axes.
-fn jacobian_o(
-    chain: &Chain,
-    plan_arm: &ArmHold,
-    object: &PlacedObject,
-    grasp_point_g: &Vector3<f64>,
-) -> Matrix6xX<f64> {
-    let mut jacobian = chain.jacobian_w(&plan_arm.q_rad);
+fn jacobian_o(chain: &Chain, hold: &ArmHold, object: &PlacedObject, grasp_point_g: &Vector3<f64>) -> Matrix6xX<f64> {
+    let mut jacobian = chain.jacobian_w(&hold.q_rad);
     let r_ow = object.x_wo.rotation.inverse();
     // The hand is at the plan's X_WO X_OG; the arm's angles agree with it.
-    let lever_o = plan_arm.x_og.rotation * grasp_point_g;
+    let lever_o = hold.x_og.rotation * grasp_point_g;
     for mut column in jacobian.column_iter_mut() {
         let angular = r_ow * Vector3::new(column[3], column[4], column[5]);
         let linear = r_ow * Vector3::new(column[0], column[1], column[2]) + angular.cross(&lever_o);
@@ -135,28 +97,22 @@ fn jacobian_o(
 fn pad_model(
     gripper: &Gripper,
     finger: usize,
-    plan_arm: &ArmHold,
+    hold: &ArmHold,
     object: &PlacedObject,
     friction: f64,
 ) -> Result<PadModel, ContactModelError> {
-    let name = gripper.pad_name(finger, &plan_arm.x_og);
+    let name = gripper.pad_name(finger, &hold.x_og);
     let is_upper = name == "upper";
-    let finger_axis_o = plan_arm.x_og.rotation * Vector3::y();
-    let angle_deg = finger_axis_o.z.abs().min(1.0).acos().to_degrees();
-    if angle_deg > MAX_FINGER_LEAN_DEG {
-        let (hand, limit_deg) = (plan_arm.name.clone(), MAX_FINGER_LEAN_DEG);
-        return Err(ContactModelError::FingersNotAcross { hand, angle_deg, limit_deg });
-    }
     let pad = &gripper.fingers[finger].pad;
     let normal_o = if is_upper { -Vector3::z() } else { Vector3::z() };
-    let rotation = pad_rotation(&(plan_arm.x_og.rotation * Vector3::x()), &normal_o);
+    let rotation = pad_rotation(&(hold.x_og.rotation * Vector3::x()), &normal_o);
     let centre_g = Vector3::new(pad.centre_m[0], 0.0, pad.centre_m[1]);
-    let centre_o = (plan_arm.x_og * nalgebra::Point3::from(centre_g)).coords;
+    let centre_o = (hold.x_og * nalgebra::Point3::from(centre_g)).coords;
     let x_fp = face_pose(&centre_o, &rotation);
     let [width, height, thickness] = object.size_m;
     let half_sides = pad.size_m.map(|side| side / 2.0);
     let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
-        .ok_or_else(|| ContactModelError::PadOffBoard { hand: plan_arm.name.clone(), pad: name.into() })?;
+        .ok_or_else(|| ContactModelError::PadOffBoard { hand: hold.name.clone(), pad: name.into() })?;
     let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
     Ok(PadModel { name: name.into(), x_op: Pose::from_parts(place_o.into(), rotation), half_sides_m, friction })
 }

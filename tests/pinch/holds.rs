@@ -14,7 +14,7 @@ use benchdog::{
     },
     robot::Robot,
     scenario::read_plan,
-    sim::{Conditions, simulate},
+    sim::Conditions,
     statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace},
 };
 use nalgebra::Vector3;
@@ -23,6 +23,7 @@ use rand::{RngExt, SeedableRng};
 use crate::{
     THICKNESS_M,
     baxter::{self, BOARD_KG},
+    checked, simulate,
 };
 
 const FRICTION: f64 = 0.6;
@@ -88,7 +89,7 @@ fn a_quarter_of_the_time_step_changes_little() {
 fn ten_times_the_certificates_load_always_fails() {
     let (robot, plans) = plans();
     for plan in plans {
-        let hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, FRICTION).unwrap();
+        let hold = ContactModel::of_plan(&checked(&robot, &plan), FRICTION).unwrap();
         let found = StabilityWorkspace::new().load_factor(&hold).unwrap();
         let LoadFactorOutcome::Solved(certificate) = found else { panic!("{}: {found:?}", plan.name) };
         let conditions = Conditions::new(FRICTION, SETTINGS).scaled(10.0 * certificate.load_factor);

@@ -10,7 +10,7 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::Robot,
-    sim::{Conditions, SimError, simulate},
+    sim::{Conditions, SimError},
     statics::{ContactModel, WeldedStiffness},
 };
 use nalgebra::{UnitQuaternion, Vector3};
@@ -19,7 +19,7 @@ use crate::{
     GRAVITY_M_S2, LIGHT_KG, THICKNESS_M,
     baxter::{self, BOARD_KG},
     bench::{self, Bench, Grip, Hinge, fingers_level},
-    displacement_m, drill, force_along_x_g, last, moment_g,
+    checked, displacement_m, drill, force_along_x_g, last, moment_g, simulate,
 };
 
 const SHORT: SimulationSettings =
@@ -173,7 +173,7 @@ fn a_closed_chain_shares_load_and_squeeze_as_its_stiffness_says() {
     let plan = baxter::plan(&robot, cut, 1.0, 30.0);
     let settings = SimulationSettings { settle_s: 1.0, ramp_s: 0.5, hold_s: 0.5, ..SHORT };
     let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
-    let hold = ContactModel::from_plan(&robot, &plan.arms, &plan.object, &plan.operation, 0.6).unwrap();
+    let hold = ContactModel::of_plan(&checked(&robot, &plan), 0.6).unwrap();
     let predicted = WeldedStiffness::new(&hold).unwrap().hand_wrenches(&hold.load);
     let (before, after) = (last(&trace, Phase::Settle), last(&trace, Phase::Hold));
     for (arm, predicted) in predicted.iter().enumerate() {

@@ -13,13 +13,14 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::Robot,
-    sim::{Conditions, simulate},
+    sim::Conditions,
 };
 use nalgebra::Vector3;
 
 use crate::{
     THICKNESS_M,
     baxter::{self, BOARD_KG},
+    simulate,
 };
 
 const FRICTION: f64 = 0.6;

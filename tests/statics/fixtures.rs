@@ -12,7 +12,9 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::{Chain, InverseKinematics, Robot},
-    statics::{ContactModel, HandModel, LoadFactor, LoadFactorOutcome, PadModel, StabilityWorkspace},
+    statics::{
+        ContactModel, ContactModelError, HandModel, LoadFactor, LoadFactorOutcome, PadModel, StabilityWorkspace,
+    },
 };
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -194,4 +196,22 @@ pub fn baxter_holds(count: usize, seed: u64) -> (Robot, Vec<(Vec<ArmHold>, Place
         holds.push((arms, object, operation));
     }
     (robot, holds)
+}
+
+/// The contact model of arms that hold a board, without the check of a plan: grasps may be off the arms' kinematics.
+pub fn contact_model(
+    robot: &Robot,
+    arms: &[ArmHold],
+    object: &PlacedObject,
+    operation: &Operation,
+    friction: f64,
+) -> Result<ContactModel, ContactModelError> {
+    let hand = |hold: &ArmHold| {
+        let index = robot.arm_index(&hold.name).unwrap();
+        let arm = &robot.arms[index];
+        let chain = Chain::new(robot, index, arm.gripper.travel_for_gap_m(0, object.size_m[2]));
+        HandModel::new(arm, &chain, hold, object, friction)
+    };
+    let hands: Result<Vec<_>, _> = arms.iter().map(hand).collect();
+    Ok(ContactModel::from_hands(hands?, object, operation))
 }

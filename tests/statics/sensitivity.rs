@@ -6,7 +6,7 @@ use benchdog::{
 };
 use nalgebra::{DVector, Vector3};
 
-use crate::fixtures::{baxter_holds, random_hold, solved, strong_hand};
+use crate::fixtures::{baxter_holds, contact_model, random_hold, solved, strong_hand};
 
 /// Relative change of a limit: the solver's 1e-7 then blurs a relative derivative by 1e-4 of the load factor, and
 /// curvature by about a thousandth of itself.
@@ -92,8 +92,7 @@ fn derivatives_agree_with_finite_differences() {
 #[test]
 fn derivatives_of_holds_by_baxter_agree_with_finite_differences() {
     let (robot, plans) = baxter_holds(6, 11);
-    let holds =
-        plans.iter().map(|(arms, object, operation)| ContactModel::from_plan(&robot, arms, object, operation, 0.6));
+    let holds = plans.iter().map(|(arms, object, operation)| contact_model(&robot, arms, object, operation, 0.6));
     let compared: usize = holds.map(|hold| agrees_with_differences(&hold.unwrap())).sum();
     assert!(compared >= 12, "only {compared} derivatives matter");
 }

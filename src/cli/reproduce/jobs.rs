@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::{
+    check::CheckedPlan,
     cli::{
         args::RecordChoice,
         exit::CliError,
@@ -250,7 +251,8 @@ impl<'a> Workshop<'a> {
         self.write_recording(job, &run)?;
         if job.work == Work::FailingLoad && run.simulated.is_some() {
             let guess = plan.stability.as_ref().map_or(1.0, |stability| stability.compliant_load_factor);
-            let found = margin::simulated(plan, self.robot, &job.scenario, guess)?;
+            let checked = CheckedPlan::new(self.robot, plan, &job.scenario.tool)?;
+            let found = margin::simulated(&checked, &job.scenario, guess)?;
             hold.load_factor_simulated = Some(found.holds_at);
             hold.ended_by = Some(found.judgement.verdict);
         }

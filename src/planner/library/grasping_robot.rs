@@ -54,11 +54,13 @@ impl GraspingRobot {
                 finger_travel_m,
             }
         });
+        let arms: Vec<_> = arms.collect();
+        let chains = arms.iter().map(|arm: &GraspingArm| &arm.chain);
         Self {
+            domain: SearchDomain::of(chains, robot.floor_z_m),
             robot: robot.clone(),
             size_m,
-            arms: arms.collect(),
-            domain: SearchDomain::BAXTER,
+            arms,
             collision: CollisionModel::new(robot),
             moved_by: moved_by(robot),
             grasping: (0..robot.arms.len()).collect(),

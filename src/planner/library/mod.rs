@@ -12,7 +12,7 @@ mod reach;
 mod resample;
 
 pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, pattern};
-pub use grasping_robot::GraspingRobot;
+pub use grasping_robot::{GraspingArm, GraspingRobot};
 pub use grasps::{GraspLibrary, LibraryEntry, draw_grasp};
 pub use postures::{COARSE_POINTS, MEDIUM_POINTS, Posture, PostureLoad, PostureMap, posture_muscular, within_strength};
 pub use resample::resample;

@@ -87,9 +87,9 @@ pub fn continuous<'a>(
     let Some(mut problem) = PathProblem::new(points, library, observer)? else { return Ok(nothing()) };
     let coverages = single_grasp::search(&mut problem);
     let Some(best) = coverages.first() else { return Ok(nothing()) };
-    let hold = plans(&mut problem, best.responses.iter().map(|response| (&best.grasp, *response)))?;
+    let hold = plans(&mut problem, best.responses.iter().map(|response| (&best.grasp, *response)));
     let waypoints = sequence::search(&mut problem, &coverages).unwrap_or_default();
-    let sequence = plans(&mut problem, waypoints.iter().map(|waypoint| (&waypoint.grasp, waypoint.response)))?;
+    let sequence = plans(&mut problem, waypoints.iter().map(|waypoint| (&waypoint.grasp, waypoint.response)));
     let motions = sequence::motions(&problem, &waypoints);
     Ok(Continuous { hold, sequence, motions })
 }
@@ -98,10 +98,9 @@ pub fn continuous<'a>(
 fn plans<'h>(
     problem: &mut PathProblem<'_>,
     covered: impl Iterator<Item = (&'h BoardGrasp, Option<Answer>)>,
-) -> Result<PlansByPoint, PlanError> {
+) -> PlansByPoint {
     let plan = |(point, (grasp, response)): (usize, (&BoardGrasp, Option<Answer>))| {
-        let Some(response) = response else { return Ok(None) };
-        let response = problem.best_response(grasp, point, response);
+        let response = problem.best_response(grasp, point, response?);
         problem.plan(grasp, point, &response)
     };
     covered.enumerate().map(plan).collect()

@@ -1,0 +1,228 @@
+//! A plan that fits its robot, person and tool.
+
+use nalgebra::Vector3;
+
+use super::{
+    flaw::{Flaw, Flaws},
+    tolerances::{BOARD_SIDE_M, EXACT, GIVEN, LIMIT_RAD, ON_BOARD_M},
+};
+use crate::{
+    collision::{CollisionModel, PersonPart, Scene},
+    human::Human,
+    model::{
+        frames::Pose,
+        plan::{ArmHold, HumanPosture, Plan},
+        scenario::Tool,
+    },
+    robot::{Chain, Robot},
+};
+
+/// A plan without flaws, with what follows from it by kinematics.
+pub struct CheckedPlan<'a> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The plan.
+    pub plan: &'a Plan,
+    /// The arms that hold, in the order of the plan.
+    pub arms: Vec<CheckedArm<'a>>,
+    /// The person with the tool; `None` if the plan has no person.
+    pub human: Option<Human>,
+    /// Poses of all links, W.
+    pub link_poses: Vec<Pose>,
+    holding: Vec<usize>,
+}
+
+/// An arm that holds the board.
+pub struct CheckedArm<'a> {
+    /// Index into the robot's arms.
+    pub index: usize,
+    /// Its part of the plan.
+    pub hold: &'a ArmHold,
+    /// Its chain, with the fingers at the board's thickness.
+    pub chain: Chain,
+    /// Deviation of the gripper from X_WO X_OG: m, rad.
+    off: [f64; 2],
+}
+
+impl<'a> CheckedPlan<'a> {
+    /// Checks a plan. `tool` is in the person's hand; it does not matter if the plan has no person.
+    ///
+    /// # Errors
+    /// All flaws of the plan.
+    pub fn new(robot: &'a Robot, plan: &'a Plan, tool: &Tool) -> Result<Self, Flaws> {
+        let mut flaws = Vec::new();
+        check_task(plan, &mut flaws);
+        let arms: Vec<_> = (0..plan.arms.len()).filter_map(|arm| check_arm(robot, plan, arm, &mut flaws)).collect();
+        if plan.arms.is_empty() {
+            flaws.push(Flaw::NoArm);
+        }
+        let human = plan.human.as_ref().and_then(|posture| check_person(posture, tool, &mut flaws));
+        match Flaws::of(flaws) {
+            Some(flaws) => Err(flaws),
+            None => Ok(Self {
+                link_poses: robot.planned_link_poses(&plan.arms, plan.object.size_m[2]),
+                holding: arms.iter().map(|arm| arm.index).collect(),
+                robot,
+                plan,
+                arms,
+                human,
+            }),
+        }
+    }
+
+    /// The collision scene of robot and board without the person.
+    #[must_use]
+    pub fn scene(&self) -> Scene<'_> {
+        let object = &self.plan.object;
+        Scene {
+            link_poses: &self.link_poses,
+            holding: &self.holding,
+            board_size_m: object.size_m,
+            x_wo: object.x_wo,
+            person: &[],
+        }
+    }
+
+    /// The capsules of the person, W; empty without a person.
+    #[must_use]
+    pub fn person_parts(&self) -> Vec<PersonPart> {
+        let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return Vec::new() };
+        human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from).to_vec()
+    }
+
+    /// The first two bodies that touch, or are closer to the person than docs/method.md#35-clearances allows.
+    #[must_use]
+    pub fn first_contact(&self) -> Option<String> {
+        let person = self.person_parts();
+        let scene = Scene { person: &person, ..self.scene() };
+        CollisionModel::new(self.robot).first_violation(&scene).map(|violation| violation.describe(self.robot))
+    }
+
+    /// Flaws by the tolerance of the planner's own plans: the grippers, the tool, and where the person stands.
+    #[must_use]
+    pub fn inexact(&self) -> Vec<Flaw> {
+        let mut flaws = Vec::new();
+        for (arm, checked) in self.arms.iter().enumerate() {
+            let ([off_m, off_rad], name) = (checked.off, checked.hold.name.clone());
+            if !EXACT.allows(checked.off) {
+                flaws.push(Flaw::Hand { arm, name, off_m, off_rad });
+            }
+        }
+        let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return flaws };
+        let tool = posture.x_wb * human.tool_pose_b(&posture.q_rad);
+        let off = deviation(&tool, &(self.plan.object.x_wo * self.plan.operation.x_ot));
+        if !EXACT.allows(off) {
+            flaws.push(Flaw::Tool { off_m: off[0], off_rad: off[1] });
+        }
+        let off_m = (posture.x_wb.translation.z - self.robot.floor_z_m).abs();
+        let off_rad = (posture.x_wb.rotation * Vector3::z()).angle(&Vector3::z());
+        if !EXACT.allows([off_m, off_rad]) {
+            flaws.push(Flaw::Standing { off_m, off_rad });
+        }
+        flaws
+    }
+}
+
+/// Distance and angle of two poses, m and rad.
+fn deviation(a: &Pose, b: &Pose) -> [f64; 2] {
+    [(a.translation.vector - b.translation.vector).norm(), a.rotation.angle_to(&b.rotation)]
+}
+
+/// The board and the operation.
+fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
+    let object = &plan.object;
+    for (axis, &found_m) in object.size_m.iter().enumerate() {
+        if !(BOARD_SIDE_M[0]..=BOARD_SIDE_M[1]).contains(&found_m) {
+            flaws.push(Flaw::BoardSide { axis, found_m, range_m: BOARD_SIDE_M });
+        }
+    }
+    let found_kg = object.mass_kg;
+    if !(found_kg.is_finite() && found_kg > 0.0) {
+        flaws.push(Flaw::BoardMass { found_kg });
+    }
+    if !plan.operation.wrench_o.is_finite() {
+        flaws.push(Flaw::Wrench);
+    }
+    let found_m: [f64; 3] = plan.operation.x_ot.translation.vector.into();
+    let half_sides_m = object.size_m.map(|side_m| side_m / 2.0);
+    let on_board = found_m.iter().zip(half_sides_m).all(|(p_m, half_m)| p_m.abs() - half_m <= ON_BOARD_M);
+    if !on_board {
+        flaws.push(Flaw::ToolPoint { found_m, half_sides_m });
+    }
+}
+
+/// One arm; `None` if it cannot be checked any further.
+fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw>) -> Option<CheckedArm<'a>> {
+    let hold = &plan.arms[arm];
+    let Some(index) = robot.arm_index(&hold.name) else {
+        let known = robot.arms.iter().map(|arm| arm.name.clone()).collect();
+        flaws.push(Flaw::UnknownArm { arm, found: hold.name.clone(), known });
+        return None;
+    };
+    let before = flaws.len();
+    if plan.arms[..arm].iter().any(|other| other.name == hold.name) {
+        flaws.push(Flaw::ArmTwice { arm, found: hold.name.clone() });
+    }
+    check_joints(robot, index, arm, hold, flaws);
+    let gripper = &robot.arms[index].gripper;
+    let (name, found_n, max_n) = (hold.name.clone(), hold.grip_force_n, gripper.max_force_n);
+    if !(found_n > 0.0 && found_n <= max_n) {
+        flaws.push(Flaw::GripForce { arm, name: name.clone(), found_n, max_n });
+    }
+    let (thickness_m, opening_m) = (plan.object.size_m[2], gripper.opening_m);
+    if !(opening_m[0]..=opening_m[1]).contains(&thickness_m) {
+        flaws.push(Flaw::Thickness { name: name.clone(), found_m: thickness_m, opening_m });
+    }
+    let across = [hold.x_og.translation.vector.z.abs(), (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
+    if !GIVEN.allows(across) {
+        flaws.push(Flaw::FingersAcross { arm, off_m: across[0], off_rad: across[1] });
+    }
+    if flaws.len() > before {
+        return None;
+    }
+    let chain = Chain::new(robot, index, gripper.travel_for_gap_m(0, thickness_m));
+    let off = deviation(&chain.gripper_pose(&hold.q_rad), &(plan.object.x_wo * hold.x_og));
+    if !GIVEN.allows(off) {
+        flaws.push(Flaw::Hand { arm, name, off_m: off[0], off_rad: off[1] });
+    }
+    Some(CheckedArm { index, hold, chain, off })
+}
+
+fn check_joints(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, flaws: &mut Vec<Flaw>) {
+    let joints = &robot.arms[index].joints;
+    let names = || joints.iter().map(|&joint| &robot.joints[joint].name);
+    if !hold.joints.iter().eq(names()) {
+        let (found, expected) = (hold.joints.clone(), names().cloned().collect());
+        flaws.push(Flaw::Joints { arm, name: hold.name.clone(), found, expected });
+    }
+    let (found, expected) = (hold.q_rad.len(), joints.len());
+    if found != expected {
+        return flaws.push(Flaw::AngleCount { arm, found, expected });
+    }
+    for (joint, (&of_robot, &found_rad)) in joints.iter().zip(&hold.q_rad).enumerate() {
+        let of_robot = &robot.joints[of_robot];
+        let limits_rad = [of_robot.lower, of_robot.upper];
+        if !within(found_rad, limits_rad) {
+            flaws.push(Flaw::Angle { arm, joint, name: of_robot.name.clone(), found_rad, limits_rad });
+        }
+    }
+}
+
+/// The person; `None` if the person or the tool is invalid.
+fn check_person(posture: &HumanPosture, tool: &Tool, flaws: &mut Vec<Flaw>) -> Option<Human> {
+    if !posture.x_wb.translation.vector.iter().all(|x| x.is_finite()) {
+        flaws.push(Flaw::PersonPose);
+    }
+    let human = Human::new(&posture.person(), tool).map_err(|error| flaws.push(Flaw::Person(error))).ok()?;
+    for (joint, (&found_rad, limits_rad)) in posture.q_rad.iter().zip(human.arm().limits_rad).enumerate() {
+        if !within(found_rad, limits_rad) {
+            flaws.push(Flaw::PersonAngle { joint, found_rad, limits_rad });
+        }
+    }
+    Some(human)
+}
+
+/// True if an angle is within its limits; false if it is not a number.
+fn within(q_rad: f64, [low_rad, high_rad]: [f64; 2]) -> bool {
+    q_rad >= low_rad - LIMIT_RAD && q_rad <= high_rad + LIMIT_RAD
+}

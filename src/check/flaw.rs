@@ -1,0 +1,358 @@
+//! What can be wrong with a plan.
+
+use std::fmt;
+
+use crate::human::HumanError;
+
+/// One fault of a plan: its key, what was found and what was expected.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Flaw {
+    /// A side of the board out of range, m.
+    BoardSide {
+        /// 0 to 2: along x_O, y_O, z_O.
+        axis: usize,
+        /// The side, m.
+        found_m: f64,
+        /// Its range, m.
+        range_m: [f64; 2],
+    },
+    /// The board's mass is not a positive number.
+    BoardMass {
+        /// The mass, kg.
+        found_kg: f64,
+    },
+    /// The operation's wrench is not finite.
+    Wrench,
+    /// The tool point is off the board.
+    ToolPoint {
+        /// The point in O, m.
+        found_m: [f64; 3],
+        /// Half of the board's sides, m.
+        half_sides_m: [f64; 3],
+    },
+    /// No arm holds the board.
+    NoArm,
+    /// An arm that the robot does not have.
+    UnknownArm {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Its name.
+        found: String,
+        /// The robot's arms.
+        known: Vec<String>,
+    },
+    /// An arm that occurs twice.
+    ArmTwice {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Its name.
+        found: String,
+    },
+    /// Joints that are not the arm's, or in another order.
+    Joints {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Its name.
+        name: String,
+        /// The plan's joints.
+        found: Vec<String>,
+        /// The arm's joints.
+        expected: Vec<String>,
+    },
+    /// A wrong number of angles.
+    AngleCount {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Number of angles.
+        found: usize,
+        /// Number of joints.
+        expected: usize,
+    },
+    /// An angle beyond its joint's limits, or not a number.
+    Angle {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Index of the joint in the arm.
+        joint: usize,
+        /// The joint's name.
+        name: String,
+        /// The angle, rad.
+        found_rad: f64,
+        /// The joint's limits, rad.
+        limits_rad: [f64; 2],
+    },
+    /// A grip force that is not positive, or more than the gripper exerts.
+    GripForce {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Its name.
+        name: String,
+        /// The force, N.
+        found_n: f64,
+        /// The gripper's largest force, N.
+        max_n: f64,
+    },
+    /// A board that the gripper does not close on.
+    Thickness {
+        /// Name of the arm.
+        name: String,
+        /// Thickness, m.
+        found_m: f64,
+        /// The gripper's opening, m.
+        opening_m: [f64; 2],
+    },
+    /// Fingers that do not close across the board's thickness.
+    FingersAcross {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Distance of G from the board's middle plane, m.
+        off_m: f64,
+        /// Angle between the finger axis and the board's normal, rad.
+        off_rad: f64,
+    },
+    /// Joint angles that put the gripper elsewhere than X_WO X_OG.
+    Hand {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Its name.
+        name: String,
+        /// Distance, m.
+        off_m: f64,
+        /// Angle, rad.
+        off_rad: f64,
+    },
+    /// The person or the tool is invalid.
+    Person(HumanError),
+    /// The person's pose is not finite.
+    PersonPose,
+    /// An angle of the person's arm beyond its limits, or not a number.
+    PersonAngle {
+        /// Index of the joint.
+        joint: usize,
+        /// The angle, rad.
+        found_rad: f64,
+        /// The joint's limits, rad.
+        limits_rad: [f64; 2],
+    },
+    /// The person's arm puts the tool elsewhere than X_WO X_OT.
+    Tool {
+        /// Distance, m.
+        off_m: f64,
+        /// Angle, rad.
+        off_rad: f64,
+    },
+    /// The person does not stand upright on the floor.
+    Standing {
+        /// Height above the floor, m.
+        off_m: f64,
+        /// Tilt against the vertical, rad.
+        off_rad: f64,
+    },
+    /// Two bodies touch or are closer than their clearance.
+    Contact(String),
+    /// A joint of the person needs more than its strength.
+    Strength {
+        /// The largest activation.
+        found: f64,
+    },
+    /// The person has no response on the grid of the mean.
+    NoResponse,
+    /// There is no equilibrium under the load.
+    NoEquilibrium,
+    /// The contact model refuses the grasp.
+    ContactModel(String),
+    /// The plan lacks figures that are to be verified.
+    Missing {
+        /// What is missing.
+        key: &'static str,
+    },
+    /// A figure of stability beyond the scenario's limit.
+    Limit {
+        /// The figure's key.
+        key: &'static str,
+        /// Its recomputed value.
+        found: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// A stated figure that differs from the recomputed one.
+    Figure {
+        /// The figure's key.
+        key: &'static str,
+        /// As the plan states it.
+        stated: f64,
+        /// As it is recomputed.
+        computed: f64,
+    },
+}
+
+impl Flaw {
+    /// The plan's key that is at fault.
+    #[must_use]
+    pub fn key(&self) -> String {
+        match self {
+            Self::BoardSide { axis, .. } => format!("object.size_m[{axis}]"),
+            Self::Thickness { .. } => "object.size_m[2]".into(),
+            Self::BoardMass { .. } => "object.mass_kg".into(),
+            Self::Wrench => "operation.wrench_o".into(),
+            Self::ToolPoint { .. } => "operation.x_ot".into(),
+            Self::NoArm => "arms".into(),
+            Self::UnknownArm { arm, .. } | Self::ArmTwice { arm, .. } => format!("arms[{arm}].name"),
+            Self::Joints { arm, .. } => format!("arms[{arm}].joints"),
+            Self::AngleCount { arm, .. } => format!("arms[{arm}].q_rad"),
+            Self::Angle { arm, joint, .. } => format!("arms[{arm}].q_rad[{joint}]"),
+            Self::GripForce { arm, .. } => format!("arms[{arm}].grip_force_n"),
+            Self::FingersAcross { arm, .. } | Self::Hand { arm, .. } => format!("arms[{arm}].x_og"),
+            Self::Person(_) => "human".into(),
+            Self::PersonPose | Self::Standing { .. } => "human.x_wb".into(),
+            Self::PersonAngle { joint, .. } => format!("human.q_rad[{joint}]"),
+            Self::Tool { .. } => "human.q_rad".into(),
+            Self::Contact(_) => "object.x_wo".into(),
+            Self::Strength { .. } => "comfort.activations".into(),
+            Self::NoResponse => "comfort.average".into(),
+            Self::NoEquilibrium | Self::ContactModel(_) => "stability".into(),
+            Self::Missing { key } | Self::Limit { key, .. } | Self::Figure { key, .. } => (*key).into(),
+        }
+    }
+
+    /// What was found.
+    #[must_use]
+    pub fn found(&self) -> String {
+        match self {
+            Self::BoardSide { found_m, .. } | Self::Thickness { found_m, .. } => found_m.to_string(),
+            Self::BoardMass { found_kg } => found_kg.to_string(),
+            Self::Wrench => "a wrench that is not finite".into(),
+            Self::ToolPoint { found_m: [x, y, z], half_sides_m } => {
+                if z.abs() > half_sides_m[2] {
+                    format!("z = {z}")
+                } else {
+                    format!("[{x}, {y}]")
+                }
+            }
+            Self::NoArm => "no arm".into(),
+            Self::UnknownArm { found, .. } => format!("\"{found}\""),
+            Self::ArmTwice { found, .. } => format!("\"{found}\" again"),
+            Self::Joints { found, .. } => found.join(", "),
+            Self::AngleCount { found, .. } => found.to_string(),
+            Self::Angle { found_rad, .. } | Self::PersonAngle { found_rad, .. } => found_rad.to_string(),
+            Self::GripForce { found_n, .. } => found_n.to_string(),
+            Self::FingersAcross { off_m, off_rad, .. } => {
+                format!("fingers {} off the board's middle plane", off(off_m, off_rad))
+            }
+            Self::Hand { off_m, off_rad, .. } => {
+                format!("the gripper {} from where q_rad puts it", off(off_m, off_rad))
+            }
+            Self::Person(error) => error.to_string(),
+            Self::PersonPose => "a pose that is not finite".into(),
+            Self::Tool { off_m, off_rad } => format!("the tool {} off the operation", off(off_m, off_rad)),
+            Self::Standing { off_m, off_rad } => format!("feet {} off the floor and the vertical", off(off_m, off_rad)),
+            Self::Contact(contact) => contact.clone(),
+            Self::Strength { found } => format!("an activation of {found}"),
+            Self::NoResponse => "no response on the grid".into(),
+            Self::NoEquilibrium => "a grasp that does not resist the load".into(),
+            Self::ContactModel(error) => error.clone(),
+            Self::Missing { .. } => "nothing".into(),
+            Self::Limit { found, .. } => found.to_string(),
+            Self::Figure { stated, .. } => stated.to_string(),
+        }
+    }
+
+    /// What was expected.
+    #[must_use]
+    pub fn expected(&self) -> String {
+        match self {
+            Self::BoardSide { range_m: [low, high], .. } => format!("a number from {low} to {high} (m)"),
+            Self::Thickness { name, opening_m: [closed, open], .. } => {
+                format!("a thickness that the {name} gripper closes on: {closed} to {open} m")
+            }
+            Self::BoardMass { .. } => "a positive number (kg)".into(),
+            Self::Wrench => "finite numbers (N, N m)".into(),
+            Self::ToolPoint { found_m, half_sides_m: [x, y, z] } => {
+                if found_m[2].abs() > *z {
+                    format!("a point on the board: |z| <= {z} m")
+                } else {
+                    format!("a point on the board: |x| <= {x} m, |y| <= {y} m")
+                }
+            }
+            Self::NoArm => "at least one".into(),
+            Self::UnknownArm { known, .. } => format!("an arm of the robot: {}", known.join(", ")),
+            Self::ArmTwice { .. } => "every arm once".into(),
+            Self::Joints { name, expected, .. } => format!("the joints of the {name} arm: {}", expected.join(", ")),
+            Self::AngleCount { expected, .. } => format!("{expected} angles in rad"),
+            Self::Angle { name, limits_rad: [low, high], .. } => format!("{low} to {high} rad, the limits of {name}"),
+            Self::GripForce { name, found_n, max_n, .. } => {
+                if *found_n > 0.0 {
+                    format!("at most {max_n} N, what the {name} gripper gives")
+                } else {
+                    "a positive number (N)".into()
+                }
+            }
+            Self::FingersAcross { .. } => "fingers that close across the thickness, within 1 mm and 0.1 degrees".into(),
+            Self::Hand { .. } => {
+                "x_wo x_og to equal the arm's forward kinematics within the tolerance of the check".into()
+            }
+            Self::Person(_) => "a valid person and tool".into(),
+            Self::PersonPose => "finite numbers (m)".into(),
+            Self::PersonAngle { joint, limits_rad: [low, high], .. } => {
+                format!("{low} to {high} rad, the limits of the person's joint q{}", joint + 1)
+            }
+            Self::Tool { .. } => "x_wo x_ot to equal the person's forward kinematics".into(),
+            Self::Standing { .. } => "a person who stands upright on the floor".into(),
+            Self::Contact(_) => "bodies that keep their clearances".into(),
+            Self::Strength { .. } => "at most 1".into(),
+            Self::NoResponse => "at least one response".into(),
+            Self::NoEquilibrium | Self::ContactModel(_) => "a stable grasp".into(),
+            Self::Missing { .. } => "a value to verify".into(),
+            Self::Limit { limit, .. } => format!("the limit {limit}"),
+            Self::Figure { computed, .. } => format!("{computed}, as recomputed"),
+        }
+    }
+}
+
+/// A deviation in words.
+fn off(off_m: &f64, off_rad: &f64) -> String {
+    format!("{:.2} mm and {:.2} degrees", off_m * 1e3, off_rad.to_degrees())
+}
+
+impl fmt::Display for Flaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: found {}, expected {}", self.key(), self.found(), self.expected())
+    }
+}
+
+/// All faults of a plan, at least one, in the order of the plan's keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flaws {
+    first: Flaw,
+    others: Vec<Flaw>,
+}
+
+impl Flaws {
+    /// These flaws; `None` without any.
+    #[must_use]
+    pub fn of(flaws: Vec<Flaw>) -> Option<Self> {
+        let mut flaws = flaws.into_iter();
+        flaws.next().map(|first| Self { first, others: flaws.collect() })
+    }
+
+    /// The first one.
+    #[must_use]
+    pub fn first(&self) -> &Flaw {
+        &self.first
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Flaw> {
+        std::iter::once(&self.first).chain(&self.others)
+    }
+}
+
+impl fmt::Display for Flaws {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.first)?;
+        self.others.iter().try_for_each(|flaw| write!(f, "; {flaw}"))
+    }
+}
+
+impl std::error::Error for Flaws {}

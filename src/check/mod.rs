@@ -1,0 +1,13 @@
+//! The check of a plan against its robot, person and tool (docs/method.md#34-constraints).
+//!
+//! [`CheckedPlan`] is built once from a plan and passed to everything that uses it: statics, simulation, export, recording and
+//! the planner's own verification do not validate a plan again. Each fault is a typed [`Flaw`] that names its key. The
+//! module does not know comfort, stability or files.
+
+mod checked_plan;
+mod flaw;
+mod tolerances;
+
+pub use checked_plan::{CheckedArm, CheckedPlan};
+pub use flaw::{Flaw, Flaws};
+pub use tolerances::{EXACT, FIGURE_TOLERANCE, GIVEN, PoseTolerance};

@@ -1,0 +1,138 @@
+//! The check of a plan: each fault is one typed flaw with its key, and all faults are found at once.
+
+use std::path::Path;
+
+use benchdog::{
+    check::{CheckedPlan, Flaw},
+    human::default_tool,
+    model::plan::Plan,
+    robot::Robot,
+    scenario::read_plan,
+};
+
+fn load() -> (Plan, Robot) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
+    read_plan(&path, None).unwrap()
+}
+
+/// The flaws of the plan after a change.
+fn flaws(change: impl Fn(&mut Plan)) -> Vec<Flaw> {
+    let (mut plan, robot) = load();
+    change(&mut plan);
+    match CheckedPlan::new(&robot, &plan, &default_tool(plan.operation.kind)) {
+        Ok(_) => Vec::new(),
+        Err(flaws) => flaws.iter().cloned().collect(),
+    }
+}
+
+#[test]
+fn a_good_plan_has_no_flaw() {
+    assert_eq!(flaws(|_| ()), []);
+    let (plan, robot) = load();
+    let checked = CheckedPlan::new(&robot, &plan, &default_tool(plan.operation.kind)).unwrap();
+    assert_eq!(checked.arms.len(), 2);
+    assert_eq!(checked.first_contact(), None);
+}
+
+#[test]
+fn each_fault_is_one_flaw_with_its_key() {
+    type Change = fn(&mut Plan);
+    let cases: [(&str, Change, fn(&Flaw) -> bool); 20] = [
+        ("object.size_m[0]", |plan| plan.object.size_m[0] = 6.0, |flaw| matches!(flaw, Flaw::BoardSide { .. })),
+        ("object.mass_kg", |plan| plan.object.mass_kg = 0.0, |flaw| matches!(flaw, Flaw::BoardMass { .. })),
+        (
+            "operation.wrench_o",
+            |plan| plan.operation.wrench_o.force_n.x = f64::INFINITY,
+            |flaw| matches!(flaw, Flaw::Wrench),
+        ),
+        (
+            "operation.x_ot",
+            |plan| plan.operation.x_ot.translation.vector.x = 0.3,
+            |flaw| matches!(flaw, Flaw::ToolPoint { .. }),
+        ),
+        (
+            "operation.x_ot",
+            |plan| plan.operation.x_ot.translation.vector.z = f64::NAN,
+            |flaw| matches!(flaw, Flaw::ToolPoint { .. }),
+        ),
+        ("arms", |plan| plan.arms.clear(), |flaw| matches!(flaw, Flaw::NoArm)),
+        ("arms[0].name", |plan| plan.arms[0].name = "middle".into(), |flaw| matches!(flaw, Flaw::UnknownArm { .. })),
+        ("arms[1].name", |plan| plan.arms[1] = plan.arms[0].clone(), |flaw| matches!(flaw, Flaw::ArmTwice { .. })),
+        ("arms[0].joints", |plan| plan.arms[0].joints.swap(0, 1), |flaw| matches!(flaw, Flaw::Joints { .. })),
+        (
+            "arms[0].q_rad",
+            |plan| plan.arms[0].q_rad.truncate(6),
+            |flaw| matches!(flaw, Flaw::AngleCount { found: 6, expected: 7, .. }),
+        ),
+        ("arms[0].q_rad[2]", |plan| plan.arms[0].q_rad[2] = f64::NAN, |flaw| matches!(flaw, Flaw::Angle { .. })),
+        ("arms[0].q_rad[1]", |plan| plan.arms[0].q_rad[1] = 1.1, |flaw| matches!(flaw, Flaw::Angle { .. })),
+        (
+            "arms[0].grip_force_n",
+            |plan| plan.arms[0].grip_force_n = 36.0,
+            |flaw| matches!(flaw, Flaw::GripForce { .. }),
+        ),
+        (
+            "arms[0].grip_force_n",
+            |plan| plan.arms[0].grip_force_n = f64::NAN,
+            |flaw| matches!(flaw, Flaw::GripForce { .. }),
+        ),
+        (
+            "arms[0].x_og",
+            |plan| plan.arms[0].x_og.translation.vector.z += 2e-3,
+            |flaw| matches!(flaw, Flaw::FingersAcross { .. }),
+        ),
+        (
+            "arms[0].x_og",
+            |plan| plan.arms[0].x_og.translation.vector.x += 1.1e-3,
+            |flaw| matches!(flaw, Flaw::Hand { .. }),
+        ),
+        ("arms[0].x_og", |plan| plan.arms[0].q_rad[6] += 0.002, |flaw| matches!(flaw, Flaw::Hand { .. })),
+        ("human", |plan| plan.human.as_mut().unwrap().height_m = -1.0, |flaw| matches!(flaw, Flaw::Person(_))),
+        (
+            "human.x_wb",
+            |plan| plan.human.as_mut().unwrap().x_wb.translation.vector.x = f64::NAN,
+            |flaw| matches!(flaw, Flaw::PersonPose),
+        ),
+        (
+            "human.q_rad[3]",
+            |plan| plan.human.as_mut().unwrap().q_rad[3] = -0.1,
+            |flaw| matches!(flaw, Flaw::PersonAngle { joint: 3, .. }),
+        ),
+    ];
+    for (key, change, is_it) in cases {
+        let flaws = flaws(change);
+        let [flaw] = &flaws[..] else { panic!("{key}: {flaws:?}") };
+        assert_eq!(flaw.key(), key);
+        assert!(is_it(flaw), "{flaw:?}");
+        let text = flaw.to_string();
+        assert!(text.starts_with(&format!("{key}: found ")) && text.contains(", expected "), "{text}");
+    }
+}
+
+#[test]
+fn all_faults_are_found_at_once() {
+    let flaws = flaws(|plan| {
+        plan.object.mass_kg = -1.0;
+        plan.arms[0].grip_force_n = 99.0;
+        plan.arms[1].q_rad[0] = 9.0;
+        plan.human.as_mut().unwrap().q_rad[0] = 9.0;
+    });
+    let keys: Vec<_> = flaws.iter().map(Flaw::key).collect();
+    assert_eq!(keys, ["object.mass_kg", "arms[0].grip_force_n", "arms[1].q_rad[0]", "human.q_rad[0]"]);
+}
+
+/// A board that no gripper closes on has a flaw for each arm.
+#[test]
+fn a_thick_board_is_a_flaw_of_both_arms() {
+    let flaws = flaws(|plan| plan.object.size_m[2] = 0.05);
+    assert!(flaws.iter().filter(|flaw| matches!(flaw, Flaw::Thickness { .. })).count() == 2, "{flaws:?}");
+}
+
+/// 0.9 mm off is within the tolerance of given plans, and beyond that of the planner's own.
+#[test]
+fn the_two_tolerances_differ() {
+    let (mut plan, robot) = load();
+    plan.arms[0].x_og.translation.vector.x += 0.9e-3;
+    let checked = CheckedPlan::new(&robot, &plan, &default_tool(plan.operation.kind)).unwrap();
+    assert!(checked.inexact().iter().any(|flaw| matches!(flaw, Flaw::Hand { arm: 0, .. })));
+}
