@@ -3,7 +3,7 @@
 //!
 //! The board's pose is fixed and no robot stands in the way; the person keeps clear of the board. The paper does not say
 //! where its board was, nor whether its person could step aside. So each point is looked at twice: with every standing
-//! place and heading of the grid of [`super::Answer`] (`free`), and from one place and heading for all points (`fixed`),
+//! place and heading of the grid of [`super::Response`] (`free`), and from one place and heading for all points (`fixed`),
 //! the one from which the most points can be cut, and among those the one with the largest sum of best comforts.
 //!
 //! Like the paper's figure, the result (`benchdog curve`) has a band from worst to best at each point, lower and narrower
@@ -17,8 +17,8 @@ use std::{collections::BTreeMap, f64::consts::TAU};
 use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 
 use super::{
-    Hold,
-    answers::{self, GridPlace},
+    ResponseQuery,
+    responses::{self, GridPlace},
 };
 use crate::{
     collision::{CollisionModel, Scene},
@@ -101,7 +101,7 @@ pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
     let mut free: Spans = [None; POINTS];
     let mut by_place = BTreeMap::<GridPlace, (Pose, Spans)>::new();
     for point in 0..POINTS {
-        let hold = Hold {
+        let query = ResponseQuery {
             human: cut.human,
             collision: cut.collision,
             settings: cut.settings,
@@ -110,11 +110,11 @@ pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
             robot_points_w: &[],
             scene: Scene { link_poses: &[], holding: &[], board_size_m: cut.board_size_m, x_wo, person: &[] },
         };
-        answers::visit(&hold, |place, answer| {
-            let (_, spans) = by_place.entry(place).or_insert((answer.x_wb, [None; POINTS]));
+        responses::visit(&query, |place, response| {
+            let (_, spans) = by_place.entry(place).or_insert((response.x_wb, [None; POINTS]));
             for span in [&mut free[point], &mut spans[point]] {
-                let alone = Span { worst: answer.muscular, best: answer.muscular };
-                *span = Some(span.map_or(alone, |span| span.with(&answer.muscular)));
+                let alone = Span { worst: response.muscular, best: response.muscular };
+                *span = Some(span.map_or(alone, |span| span.with(&response.muscular)));
             }
         });
     }

@@ -5,16 +5,16 @@
 //! This module stands between the person and the planner: it knows bodies, collisions and both metrics; it does not know
 //! how a hold is searched for, nor whether it stands.
 
-mod answers;
-mod best;
+mod best_response;
 pub mod curve;
+mod responses;
 #[cfg(test)]
 mod tests;
 
 use nalgebra::Point3;
 
-pub use answers::Answer;
-pub use best::{most, near};
+pub use best_response::{best_response, response_near};
+pub use responses::Response;
 
 use crate::{
     collision::{CollisionModel, Scene},
@@ -31,7 +31,7 @@ use crate::{
 
 /// A robot that holds a board for a person with a tool.
 #[derive(Clone, Copy)]
-pub struct Hold<'a> {
+pub struct ResponseQuery<'a> {
     /// The person and the tool.
     pub human: &'a Human,
     /// Who touches whom.
@@ -55,7 +55,7 @@ pub fn robot_points_w(robot: &Robot, link_poses: &[Pose]) -> Vec<Point3<f64>> {
 
 /// The comfort of one posture of the person (METHOD sections 4 and 5): planner and check both take it from here.
 /// `wrench_w` is the operation's about the tool tip in world axes.
-pub fn of_posture(
+pub fn posture_comfort(
     human: &Human,
     settings: &ComfortSettings,
     robot_points_w: &[Point3<f64>],
@@ -94,23 +94,23 @@ pub fn weighted(comfort: Comfort, settings: &ComfortSettings) -> Comfort {
 }
 
 /// Makes the mean over all answers the objective of a posture's comfort.
-pub fn rate_by_average(comfort: &mut Comfort, average: MeanComfort, settings: &ComfortSettings) {
+pub fn use_mean_response(comfort: &mut Comfort, average: MeanComfort, settings: &ComfortSettings) {
     comfort.objective = objective(settings, average.muscular_regularised, average.peripersonal_m);
     comfort.average = Some(average);
 }
 
-/// The mean comfort over the person's answers to a hold, discretised uniformly (METHOD section 3; the steps are those of
-/// [`Answer`]); none when there is no answer.
-pub fn average(hold: &Hold<'_>) -> Option<MeanComfort> {
-    let (mut answers, mut muscular, mut peripersonal_m) = (0_u64, 0.0, 0.0);
-    answers::visit(hold, |_, answer| {
-        answers += 1;
-        muscular += answer.muscular.regularised;
-        peripersonal_m += answer.peripersonal_m;
+/// The mean comfort over the person's answers to a query, discretised uniformly (METHOD section 3; the steps are those of
+/// [`Response`]); none when there is no response.
+pub fn mean_response(query: &ResponseQuery<'_>) -> Option<MeanComfort> {
+    let (mut responses, mut muscular, mut peripersonal_m) = (0_u64, 0.0, 0.0);
+    responses::visit(query, |_, response| {
+        responses += 1;
+        muscular += response.muscular.regularised;
+        peripersonal_m += response.peripersonal_m;
     });
-    let n = answers as f64;
-    (answers > 0).then(|| MeanComfort {
-        responses: answers,
+    let n = responses as f64;
+    (responses > 0).then(|| MeanComfort {
+        responses,
         muscular_regularised: muscular / n,
         peripersonal_m: peripersonal_m / n,
     })

@@ -108,12 +108,13 @@ fn figures(
 ) {
     let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
     let surface = comfort::robot_points_w(robot, &robot.planned_link_poses(&plan.arms, plan.object.size_m[2]));
-    let mut found = comfort::of_posture(human, &scenario.comfort, &surface, &posture.x_wb, &posture.q_rad, &wrench_w);
+    let mut found =
+        comfort::posture_comfort(human, &scenario.comfort, &surface, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
     expect(strongest <= 1.0, flaws, || format!("an activation is {strongest}, more than the person has"));
     if scenario.comfort.person == ResponseKind::Mean {
         match average(plan, scenario, robot, human) {
-            Some(average) => comfort::rate_by_average(&mut found, average, &scenario.comfort),
+            Some(average) => comfort::use_mean_response(&mut found, average, &scenario.comfort),
             None => flaws.push(Flaw("the person has no answer on the grid of the average".into())),
         }
     }
@@ -137,7 +138,7 @@ fn figures(
 fn average(plan: &Plan, scenario: &Scenario, robot: &Robot, human: &Human) -> Option<MeanComfort> {
     let poses = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     let holding: Vec<_> = plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect();
-    comfort::average(&comfort::Hold {
+    comfort::mean_response(&comfort::ResponseQuery {
         human,
         collision: &CollisionModel::new(robot),
         settings: scenario.comfort,

@@ -2,11 +2,11 @@
 //!
 //! The person stands still in the posture of the plan and nothing pushes them: they are looked at, not simulated. Against
 //! them go all links of the robot and the board; what goes with the tool is left out, as
-//! [`StandingPerson`] has it. What the distance means is the judge's business.
+//! [`PersonClearance`] has it. What the distance means is the judge's business.
 
 use super::{Conditions, SimError};
 use crate::{
-    collision::{CollisionModel, Nearest, PersonPart, StandingPerson},
+    collision::{CollisionModel, Nearest, PersonClearance, PersonPart},
     human::{Human, default_tool},
     model::{
         plan::Plan,
@@ -30,7 +30,7 @@ const SLACK_M: f64 = 0.02;
 pub(super) struct PersonMonitor<'a> {
     robot: &'a Robot,
     model: CollisionModel,
-    person: StandingPerson,
+    person: PersonClearance,
     /// The robot's arms (indices) in the order of every sample.
     arms: Vec<usize>,
     /// How many steps the distance is measured after.
@@ -58,7 +58,7 @@ impl<'a> PersonMonitor<'a> {
         Ok(Some(Self {
             robot,
             model: CollisionModel::new(robot),
-            person: StandingPerson::new(&parts, plan.object.size_m),
+            person: PersonClearance::new(&parts, plan.object.size_m),
             arms: plan.arms.iter().filter_map(|hold| robot.arm_index(&hold.name)).collect(),
             every: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             distance_m: f64::INFINITY,

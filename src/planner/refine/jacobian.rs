@@ -16,7 +16,7 @@ use super::{
     variables::{RigidTwist, Variables, perturbed, perturbed_grasp},
 };
 use crate::{
-    collision::{Carrier, Near, PersonPart},
+    collision::{BodyRef, NearPair, PersonPart},
     comfort,
     human::{ArmAngles, BODY_POINTS, CAPSULES, Muscular, peripersonal_pulls},
 };
@@ -133,18 +133,18 @@ impl<'a, 'p> Jacobian<'a, 'p> {
     }
 
     /// Gradient of the distance of two bodies.
-    pub fn distance_gradient(&self, near: &Near) -> DVector<f64> {
+    pub fn distance_gradient(&self, near: &NearPair) -> DVector<f64> {
         let mut gradient = self.zeros();
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             let (p_w, along) = (near.p_w[side], near.normal_w * sign);
-            match near.carriers[side].0 {
-                Carrier::Link(link) => self.add_link_points(std::iter::once((link, p_w, along)), &mut gradient),
-                Carrier::Board => {
+            match near.bodies[side].0 {
+                BodyRef::Link(link) => self.add_link_points(std::iter::once((link, p_w, along)), &mut gradient),
+                BodyRef::Board => {
                     for (number, work) in self.variables.work.iter().enumerate() {
                         gradient[number] += along.dot(&work.board.at(&p_w));
                     }
                 }
-                Carrier::Person(part) => self.add_person_part(part, &p_w, &along, &mut gradient),
+                BodyRef::Person(part) => self.add_person_part(part, &p_w, &along, &mut gradient),
             }
         }
         gradient

@@ -1,4 +1,4 @@
-//! The person's feasible answers to a hold, on a uniform grid.
+//! The person's feasible answers to a query, on a uniform grid.
 //!
 //! An answer is feasible when the arm's inverse kinematics has a solution within the joints' limits, no joint needs more
 //! than its strength, and nobody comes too close to anything (METHOD section 3). Cheap tests come first: where the wrist
@@ -9,7 +9,7 @@ use std::{cell::OnceCell, f64::consts::TAU};
 
 use nalgebra::Point3;
 
-use super::{Hold, objective};
+use super::{ResponseQuery, objective};
 use crate::{
     collision::{PersonPart, Scene},
     human::{
@@ -39,11 +39,11 @@ pub(super) struct Choice {
     pub branch: ShoulderBranch,
 }
 
-/// A feasible answer of the person to a hold. On the grid the standing place is a multiple of 5 cm along x_W and y_W, the
+/// A feasible answer of the person to a query. On the grid the standing place is a multiple of 5 cm along x_W and y_W, the
 /// heading of 10 degrees, the roll (where it is free) of 30 degrees and the swivel of 5 degrees, for either branch of the
 /// shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct Response {
     pub(super) choice: Choice,
     /// Pose of the body.
     pub x_wb: Pose,
@@ -57,7 +57,7 @@ pub struct Answer {
     pub objective: f64,
 }
 
-impl Answer {
+impl Response {
     /// The tool's roll from the operation's own, rad.
     pub fn roll_rad(&self) -> f64 {
         self.choice.roll_rad
@@ -76,25 +76,25 @@ struct RolledTool {
 }
 
 impl RolledTool {
-    fn new(hold: &Hold<'_>, roll_rad: f64) -> Self {
-        let x_wt = hold.scene.x_wo * hold.operation.rolled(roll_rad).x_ot;
-        let wrist = x_wt * hold.human.x_ht().inverse();
+    fn new(query: &ResponseQuery<'_>, roll_rad: f64) -> Self {
+        let x_wt = query.scene.x_wo * query.operation.rolled(roll_rad).x_ot;
+        let wrist = x_wt * query.human.x_ht().inverse();
         Self { roll_rad, x_wt, p_ww: wrist.translation.vector.into() }
     }
 
-    fn all(hold: &Hold<'_>) -> Vec<Self> {
-        let rolls = if hold.operation.kind.roll_is_free() { ROLLS } else { 1 };
-        (0..rolls).map(|k| Self::new(hold, f64::from(k) * ROLL_STEP_RAD)).collect()
+    fn all(query: &ResponseQuery<'_>) -> Vec<Self> {
+        let rolls = if query.operation.kind.roll_is_free() { ROLLS } else { 1 };
+        (0..rolls).map(|k| Self::new(query, f64::from(k) * ROLL_STEP_RAD)).collect()
     }
 }
 
 /// Calls `visitor` with every feasible answer of the grid, always in the same order.
-pub(super) fn visit(hold: &Hold<'_>, mut visitor: impl FnMut(GridPlace, &Answer)) {
-    let tools = RolledTool::all(hold);
-    let reach_m = hold.human.reach_m();
+pub(super) fn visit(query: &ResponseQuery<'_>, mut visitor: impl FnMut(GridPlace, &Response)) {
+    let tools = RolledTool::all(query);
+    let reach_m = query.human.reach_m();
     for k in 0..HEADINGS {
         let heading_rad = f64::from(k) * HEADING_STEP_RAD;
-        let shoulder = standing_pose_w(0.0, 0.0, heading_rad, hold.floor_z_m) * hold.human.x_bs();
+        let shoulder = standing_pose_w(0.0, 0.0, heading_rad, query.floor_z_m) * query.human.x_bs();
         let p_shoulder_m = shoulder.translation.vector;
         let [xs, ys] = [0, 1].map(|axis| {
             let wrists = || tools.iter().map(|tool| tool.p_ww[axis] - p_shoulder_m[axis]);
@@ -105,25 +105,25 @@ pub(super) fn visit(hold: &Hold<'_>, mut visitor: impl FnMut(GridPlace, &Answer)
         for (i, j) in xs.flat_map(|i| ys.clone().map(move |j| (i, j))) {
             let place_w_m = [i, j].map(|step| f64::from(step) * PLACE_STEP_M);
             let p_ws = Point3::new(place_w_m[0], place_w_m[1], 0.0) + p_shoulder_m;
-            let stance = Stance::new(hold, place_w_m, heading_rad);
+            let standing = StandingPose::new(query, place_w_m, heading_rad);
             for tool in tools.iter().filter(|tool| (tool.p_ww - p_ws).norm() <= reach_m) {
-                stance.visit(tool, |answer| visitor([i, j, k], answer));
+                standing.visit(tool, |response| visitor([i, j, k], response));
             }
         }
     }
 }
 
 /// A choice's answer, if it is feasible.
-pub(super) fn answer(hold: &Hold<'_>, choice: &Choice) -> Option<Answer> {
-    let stance = Stance::new(hold, choice.place_w_m, choice.heading_rad);
-    let tool = RolledTool::new(hold, choice.roll_rad);
-    let circle = stance.circle(&tool)?;
-    stance.answer(&circle, *choice)
+pub(super) fn response_to(query: &ResponseQuery<'_>, choice: &Choice) -> Option<Response> {
+    let standing = StandingPose::new(query, choice.place_w_m, choice.heading_rad);
+    let tool = RolledTool::new(query, choice.roll_rad);
+    let circle = standing.circle(&tool)?;
+    standing.response(&circle, *choice)
 }
 
 /// A person who stands somewhere.
-struct Stance<'a> {
-    hold: &'a Hold<'a>,
+struct StandingPose<'a> {
+    query: &'a ResponseQuery<'a>,
     place_w_m: [f64; 2],
     heading_rad: f64,
     x_wb: Pose,
@@ -132,20 +132,20 @@ struct Stance<'a> {
     still: OnceCell<Option<Distances>>,
 }
 
-impl<'a> Stance<'a> {
-    fn new(hold: &'a Hold<'a>, place_w_m: [f64; 2], heading_rad: f64) -> Self {
+impl<'a> StandingPose<'a> {
+    fn new(query: &'a ResponseQuery<'a>, place_w_m: [f64; 2], heading_rad: f64) -> Self {
         let [x_m, y_m] = place_w_m;
-        let x_wb = standing_pose_w(x_m, y_m, heading_rad, hold.floor_z_m);
-        let wrench_w = hold.operation.wrench_w(&hold.scene.x_wo);
-        Self { hold, place_w_m, heading_rad, x_wb, wrench_w, still: OnceCell::new() }
+        let x_wb = standing_pose_w(x_m, y_m, heading_rad, query.floor_z_m);
+        let wrench_w = query.operation.wrench_w(&query.scene.x_wo);
+        Self { query, place_w_m, heading_rad, x_wb, wrench_w, still: OnceCell::new() }
     }
 
     fn circle(&self, tool: &RolledTool) -> Option<SwivelCircle> {
-        self.hold.human.swivel_circle(&(self.x_wb.inverse() * tool.x_wt))
+        self.query.human.swivel_circle(&(self.x_wb.inverse() * tool.x_wt))
     }
 
     /// Calls `visitor` with the feasible answers from here with one roll of the tool.
-    fn visit(&self, tool: &RolledTool, mut visitor: impl FnMut(&Answer)) {
+    fn visit(&self, tool: &RolledTool, mut visitor: impl FnMut(&Response)) {
         let Some(circle) = self.circle(tool) else { return };
         for SwivelInterval { branch, from_rad, to_rad } in circle.intervals() {
             let first = (from_rad / SWIVEL_STEP_RAD).ceil() as i32;
@@ -155,16 +155,16 @@ impl<'a> Stance<'a> {
             for swivel_rad in (first..=last).map(|k| f64::from(k) * SWIVEL_STEP_RAD) {
                 let Self { place_w_m, heading_rad, .. } = *self;
                 let choice = Choice { place_w_m, heading_rad, roll_rad: tool.roll_rad, swivel_rad, branch };
-                if let Some(answer) = self.answer(&circle, choice) {
-                    visitor(&answer);
+                if let Some(response) = self.response(&circle, choice) {
+                    visitor(&response);
                 }
             }
         }
     }
 
     /// The answer with this swivel, if it is feasible.
-    fn answer(&self, circle: &SwivelCircle, choice: Choice) -> Option<Answer> {
-        let Hold { human, settings, robot_points_w, .. } = *self.hold;
+    fn response(&self, circle: &SwivelCircle, choice: Choice) -> Option<Response> {
+        let ResponseQuery { human, settings, robot_points_w, .. } = *self.query;
         let q_rad = circle.solution(choice.swivel_rad, choice.branch)?;
         let muscular = human.muscular(&q_rad, &self.x_wb, &self.wrench_w, settings.direction);
         if muscular.activations.iter().any(|&activation| activation > 1.0) {
@@ -177,24 +177,24 @@ impl<'a> Stance<'a> {
         distances.add(&human.body_points_w(&self.x_wb, &q_rad)[STILL_POINTS..], robot_points_w);
         let peripersonal_m = distances.peripersonal_m(settings.peripersonal);
         let objective = objective(&settings, muscular.regularised, peripersonal_m);
-        Some(Answer { choice, x_wb: self.x_wb, q_rad, muscular, peripersonal_m, objective })
+        Some(Response { choice, x_wb: self.x_wb, q_rad, muscular, peripersonal_m, objective })
     }
 
     fn still(&self, q_rad: &ArmAngles) -> Option<Distances> {
         if self.in_the_way(q_rad, false) {
             return None;
         }
-        let mut distances = Distances::new(self.hold.settings.saturation_m);
-        distances.add(&self.hold.human.body_points_w(&self.x_wb, q_rad)[..STILL_POINTS], self.hold.robot_points_w);
+        let mut distances = Distances::new(self.query.settings.saturation_m);
+        distances.add(&self.query.human.body_points_w(&self.x_wb, q_rad)[..STILL_POINTS], self.query.robot_points_w);
         Some(distances)
     }
 
     /// True when the working arm and the tool, or else all the rest of the body, touch or come too close.
     fn in_the_way(&self, q_rad: &ArmAngles, arm: bool) -> bool {
-        let capsules = self.hold.human.capsules_w(&self.x_wb, q_rad);
+        let capsules = self.query.human.capsules_w(&self.x_wb, q_rad);
         let parts: Vec<_> =
             capsules.into_iter().filter(|part| part.name.moves_with_arm() == arm).map(PersonPart::from).collect();
-        let scene = Scene { person: &parts, ..self.hold.scene };
-        self.hold.collision.first_violation_of_person(&scene).is_some()
+        let scene = Scene { person: &parts, ..self.query.scene };
+        self.query.collision.first_violation_of_person(&scene).is_some()
     }
 }
