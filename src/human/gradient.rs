@@ -237,8 +237,9 @@ mod tests {
                     let velocity =
                         |moves: bool, p_w| if moves { axes.velocity_w(joint, p_w) } else { Default::default() };
                     // Positions of order one: rounding 1e-16 / step.
-                    let near =
-                        |found: nalgebra::Vector3<f64>, slope: nalgebra::Vector3<f64>| assert!((found - slope * 0.5 / STEP).norm() < 1e-8);
+                    let near = |found: nalgebra::Vector3<f64>, slope: nalgebra::Vector3<f64>| {
+                        assert!((found - slope * 0.5 / STEP).norm() < 1e-8)
+                    };
                     let there = [&back, &forth].map(|q_rad| human.body_points_w(&x_wb, q_rad));
                     for (number, p_w) in points.iter().enumerate() {
                         near(velocity(joint < body_point_joints(number), p_w), there[1][number] - there[0][number]);
