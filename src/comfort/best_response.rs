@@ -1,4 +1,4 @@
-//! The person's best answer to a query.
+//! The person's best response: search of the grid, then local refinement.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -6,7 +6,7 @@ use libm::atan2;
 use nalgebra::Vector3;
 
 use super::{
-    ResponseQuery,
+    query::ResponseQuery,
     responses::{self, Choice, HEADING_STEP_RAD, PLACE_STEP_M, ROLL_STEP_RAD, Response, SWIVEL_STEP_RAD},
 };
 use crate::{
@@ -14,14 +14,16 @@ use crate::{
     model::frames::Pose,
 };
 
-/// How many answers of the grid are refined.
+/// How many responses of the grid are refined.
 const REFINED: usize = 8;
-/// How often the steps of the refinement are halved, from half of the grid's: to 0.4 mm and 0.08 degrees of heading.
+/// Number of step sizes of the refinement. The first is half of the grid's step, each next one half of the last; the last ones
+/// are 0.8 mm and 0.16 degrees of heading.
 const HALVINGS: i32 = 6;
 
-/// The best of the person's answers to a query: the best few of the grid, each refined until no small change of standing
-/// place, heading, roll (where it is free) or swivel makes it better. It is a local optimum at least as good as every
-/// answer of the grid. None when there is no answer on the grid.
+/// The best response: the best few of the grid, each refined by compass search over standing place, heading, roll (where it
+/// is free) and swivel. A local optimum, at least as good as every response of the grid. `None` if the grid has no feasible
+/// response.
+#[must_use]
 pub fn best_response(query: &ResponseQuery<'_>) -> Option<Response> {
     let mut best: Vec<Response> = Vec::with_capacity(REFINED + 1);
     responses::visit(query, |_, response| {
@@ -34,9 +36,10 @@ pub fn best_response(query: &ResponseQuery<'_>) -> Option<Response> {
     best.into_iter().map(|start| refined(query, start)).max_by(|a, b| a.objective.total_cmp(&b.objective))
 }
 
-/// The best answer near a posture: no small change of standing place, heading, roll (where it is free) or swivel makes it
-/// better. The posture's own place and swivel are where the search starts; they need not answer the query, but something a
-/// step of the grid away must. None when nothing there does. A local optimum, far cheaper than [`best_response`].
+/// The local optimum near a posture, by the refinement of [`best_response`] without its grid. It starts at the posture's
+/// standing place and swivel or, if that is infeasible, at the best of the choices one grid step away; `None` if all of
+/// them are infeasible.
+#[must_use]
 pub fn response_near(query: &ResponseQuery<'_>, x_wb: &Pose, q_rad: &ArmAngles) -> Option<Response> {
     let ahead = x_wb.rotation * Vector3::x();
     let place = x_wb.translation.vector;
@@ -45,7 +48,7 @@ pub fn response_near(query: &ResponseQuery<'_>, x_wb: &Pose, q_rad: &ArmAngles) 
         heading_rad: atan2(ahead.y, ahead.x),
         roll_rad: 0.0,
         swivel_rad: query.human.swivel_rad(q_rad),
-        // Abduction beyond 90 degrees is the other way of the shoulder.
+        // The branches meet at 90 degrees of abduction.
         branch: if q_rad[1] > FRAC_PI_2 { ShoulderBranch::High } else { ShoulderBranch::Low },
     };
     let around =
@@ -55,7 +58,7 @@ pub fn response_near(query: &ResponseQuery<'_>, x_wb: &Pose, q_rad: &ArmAngles) 
     Some(refined(query, start))
 }
 
-/// Compass search: along each freedom a step either way; when none is better, half the step.
+/// Compass search: moves to the best neighbour while that improves the objective, then halves the step.
 fn refined(query: &ResponseQuery<'_>, start: Response) -> Response {
     let mut best = start;
     for halving in 1..=HALVINGS {

@@ -1,15 +1,15 @@
-//! The person's feasible answers to a query, on a uniform grid.
+//! The person's feasible responses, on a uniform grid.
 //!
-//! An answer is feasible when the arm's inverse kinematics has a solution within the joints' limits, no joint needs more
-//! than its strength, and nobody comes too close to anything (METHOD section 3). Cheap tests come first: where the wrist
-//! is out of the shoulder's reach no heading, roll or swivel is looked at; the exact ranges of the swivel leave out what
-//! no joint allows; and what does not move with the arm is tested once for all postures of one standing place.
+//! A response is feasible if the arm's inverse kinematics has a solution within the joint limits, every activation is at
+//! most 1, and all bodies keep their clearances (docs/method.md#34-constraints). Cheap tests run first: standing places from
+//! which the wrist is out of reach are skipped; the exact intervals of the swivel leave out angles beyond joint limits; the
+//! parts that do not move with the arm are tested once per standing pose.
 
 use std::{cell::OnceCell, f64::consts::TAU};
 
 use nalgebra::Point3;
 
-use super::{ResponseQuery, objective};
+use super::{posture::objective, query::ResponseQuery};
 use crate::{
     collision::{PersonPart, Scene},
     human::{
@@ -18,18 +18,18 @@ use crate::{
     model::{frames::Pose, wrench::Wrench},
 };
 
-/// Step of the standing place along x_W and y_W, m.
+/// Step of the standing place along x_W and along y_W, m.
 pub(super) const PLACE_STEP_M: f64 = 0.05;
 /// Step of the heading, rad: 10 degrees.
 pub(super) const HEADING_STEP_RAD: f64 = TAU / HEADINGS as f64;
 const HEADINGS: i32 = 36;
-/// Step of the tool's roll, where it is free, rad: 30 degrees.
+/// Step of the tool's roll if it is free, rad: 30 degrees.
 pub(super) const ROLL_STEP_RAD: f64 = TAU / ROLLS as f64;
 const ROLLS: i32 = 12;
 /// Step of the arm's swivel, rad: 5 degrees.
 pub(super) const SWIVEL_STEP_RAD: f64 = TAU / 72.0;
 
-/// What the person is free to choose.
+/// The person's decision variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Choice {
     pub place_w_m: [f64; 2],
@@ -39,9 +39,8 @@ pub(super) struct Choice {
     pub branch: ShoulderBranch,
 }
 
-/// A feasible answer of the person to a query. On the grid the standing place is a multiple of 5 cm along x_W and y_W, the
-/// heading of 10 degrees, the roll (where it is free) of 30 degrees and the swivel of 5 degrees, for either branch of the
-/// shoulder.
+/// A feasible response of the person. On the grid the standing place is a multiple of 5 cm along x_W and y_W, the heading of
+/// 10 degrees, the roll (if free) of 30 degrees and the swivel of 5 degrees, for each branch of the shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     pub(super) choice: Choice,
@@ -53,25 +52,26 @@ pub struct Response {
     pub muscular: Muscular,
     /// Peripersonal comfort, m.
     pub peripersonal_m: f64,
-    /// The weighted sum of both.
+    /// The weighted sum of both comforts.
     pub objective: f64,
 }
 
 impl Response {
-    /// The tool's roll from the operation's own, rad.
+    /// The tool's roll relative to the operation's, rad.
+    #[must_use]
     pub fn roll_rad(&self) -> f64 {
         self.choice.roll_rad
     }
 }
 
-/// A place of the grid to stand: multiples of the steps in x, y and heading.
+/// A standing pose of the grid: multiples of the steps in x, y and heading.
 pub(super) type GridPlace = [i32; 3];
 
-/// The tool's tip at one roll.
+/// The pose of the tool tip at one roll.
 struct RolledTool {
     roll_rad: f64,
     x_wt: Pose,
-    /// Where the wrist must be, m.
+    /// Required position of the wrist, m.
     p_ww: Point3<f64>,
 }
 
@@ -88,7 +88,7 @@ impl RolledTool {
     }
 }
 
-/// Calls `visitor` with every feasible answer of the grid, always in the same order.
+/// Calls `visitor` with every feasible response of the grid, in a fixed order.
 pub(super) fn visit(query: &ResponseQuery<'_>, mut visitor: impl FnMut(GridPlace, &Response)) {
     let tools = RolledTool::all(query);
     let reach_m = query.human.reach_m();
@@ -113,7 +113,7 @@ pub(super) fn visit(query: &ResponseQuery<'_>, mut visitor: impl FnMut(GridPlace
     }
 }
 
-/// A choice's answer, if it is feasible.
+/// The response of a choice, if it is feasible.
 pub(super) fn response_to(query: &ResponseQuery<'_>, choice: &Choice) -> Option<Response> {
     let standing = StandingPose::new(query, choice.place_w_m, choice.heading_rad);
     let tool = RolledTool::new(query, choice.roll_rad);
@@ -121,14 +121,15 @@ pub(super) fn response_to(query: &ResponseQuery<'_>, choice: &Choice) -> Option<
     standing.response(&circle, *choice)
 }
 
-/// A person who stands somewhere.
+/// A standing place and heading.
 struct StandingPose<'a> {
     query: &'a ResponseQuery<'a>,
     place_w_m: [f64; 2],
     heading_rad: f64,
     x_wb: Pose,
     wrench_w: Wrench,
-    /// The robot's distances from what does not move with the arm; none when that is in the way.
+    /// Distances of the robot's points from the body points that do not move with the arm; `None` inside if those parts break
+    /// a clearance.
     still: OnceCell<Option<Distances>>,
 }
 
@@ -144,12 +145,12 @@ impl<'a> StandingPose<'a> {
         self.query.human.swivel_circle(&(self.x_wb.inverse() * tool.x_wt))
     }
 
-    /// Calls `visitor` with the feasible answers from here with one roll of the tool.
+    /// Calls `visitor` with the feasible responses at this standing pose and one roll of the tool.
     fn visit(&self, tool: &RolledTool, mut visitor: impl FnMut(&Response)) {
         let Some(circle) = self.circle(tool) else { return };
         for SwivelInterval { branch, from_rad, to_rad } in circle.intervals() {
             let first = (from_rad / SWIVEL_STEP_RAD).ceil() as i32;
-            // Both ends of a whole circle are the same angle.
+            // Both ends of a full circle are the same angle.
             let whole = to_rad - from_rad >= TAU;
             let last = (to_rad / SWIVEL_STEP_RAD).floor() as i32 - i32::from(whole);
             for swivel_rad in (first..=last).map(|k| f64::from(k) * SWIVEL_STEP_RAD) {
@@ -162,7 +163,7 @@ impl<'a> StandingPose<'a> {
         }
     }
 
-    /// The answer with this swivel, if it is feasible.
+    /// The response of a choice, if it is feasible.
     fn response(&self, circle: &SwivelCircle, choice: Choice) -> Option<Response> {
         let ResponseQuery { human, settings, robot_points_w, .. } = *self.query;
         let q_rad = circle.solution(choice.swivel_rad, choice.branch)?;
@@ -171,7 +172,7 @@ impl<'a> StandingPose<'a> {
             return None;
         }
         let mut distances = (*self.still.get_or_init(|| self.still(&q_rad)))?;
-        if self.in_the_way(&q_rad, true) {
+        if self.breaks_clearance(&q_rad, true) {
             return None;
         }
         distances.add(&human.body_points_w(&self.x_wb, &q_rad)[STILL_POINTS..], robot_points_w);
@@ -181,7 +182,7 @@ impl<'a> StandingPose<'a> {
     }
 
     fn still(&self, q_rad: &ArmAngles) -> Option<Distances> {
-        if self.in_the_way(q_rad, false) {
+        if self.breaks_clearance(q_rad, false) {
             return None;
         }
         let mut distances = Distances::new(self.query.settings.saturation_m);
@@ -189,8 +190,8 @@ impl<'a> StandingPose<'a> {
         Some(distances)
     }
 
-    /// True when the working arm and the tool, or else all the rest of the body, touch or come too close.
-    fn in_the_way(&self, q_rad: &ArmAngles, arm: bool) -> bool {
+    /// True if the working arm and the tool (`arm`), or all other parts, break a clearance.
+    fn breaks_clearance(&self, q_rad: &ArmAngles, arm: bool) -> bool {
         let capsules = self.query.human.capsules_w(&self.x_wb, q_rad);
         let parts: Vec<_> =
             capsules.into_iter().filter(|part| part.name.moves_with_arm() == arm).map(PersonPart::from).collect();

@@ -1,20 +1,24 @@
-//! The answers to a query, against what can be known of them without the grid.
+//! Responses against checks that do not use the grid.
 
 use std::path::Path;
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::{
     curve::{Cut, POINTS, muscular_curve},
+    posture::objective,
     responses::{self, HEADING_STEP_RAD, PLACE_STEP_M},
     *,
 };
 use crate::{
-    human::default_tool,
+    collision::{CollisionModel, Scene},
+    human::{Human, default_tool},
     model::{
-        operation::OperationKind,
-        scenario::{Hand, Person, Sex},
+        frames::Pose,
+        operation::{Operation, OperationKind},
+        scenario::{ComfortSettings, Hand, Person, Sex},
     },
+    robot::Robot,
 };
 
 const FLOOR_Z_M: f64 = -0.92;
@@ -29,7 +33,7 @@ fn collision() -> CollisionModel {
     CollisionModel::new(&Robot::load("baxter", Path::new("")).unwrap())
 }
 
-/// A board before a person, and a robot of two points behind it.
+/// A board in front of a person, and a robot of two points behind it.
 struct Fixture {
     human: Human,
     collision: CollisionModel,
@@ -76,7 +80,7 @@ fn drill() -> Operation {
 }
 
 #[test]
-fn every_answer_puts_the_tool_at_the_operation_within_all_limits() {
+fn every_response_places_the_tool_at_the_operation_within_all_limits() {
     for (hand, operation) in [(Hand::Right, cut()), (Hand::Left, cut()), (Hand::Right, drill())] {
         let fixture = Fixture::new(hand, operation);
         let query = fixture.query();
@@ -88,7 +92,7 @@ fn every_answer_puts_the_tool_at_the_operation_within_all_limits() {
             }
             let expected = fixture.x_wo * operation.rolled(response.roll_rad()).x_ot;
             let reached = response.x_wb * fixture.human.tool_pose_b(&response.q_rad);
-            // METHOD section 3 asks for 1e-6.
+            // docs/method.md#34-constraints requires 1e-6.
             assert!((reached.translation.vector - expected.translation.vector).norm() < 1e-12);
             assert!(reached.rotation.angle_to(&expected.rotation) < 1e-7);
             assert!(fixture.human.arm().within_limits(&response.q_rad));
@@ -108,7 +112,7 @@ fn every_answer_puts_the_tool_at_the_operation_within_all_limits() {
 }
 
 #[test]
-fn an_answer_is_worth_what_its_posture_is_worth() {
+fn the_objective_of_a_response_is_that_of_its_posture() {
     let fixture = Fixture::new(Hand::Right, cut());
     let query = fixture.query();
     let wrench_w = fixture.operation.wrench_w(&fixture.x_wo);
@@ -128,7 +132,7 @@ fn an_answer_is_worth_what_its_posture_is_worth() {
 
 #[test]
 fn the_pruned_grid_finds_what_a_search_without_pruning_finds() {
-    // One heading, all places of a wide square and all swivels, asked one by one.
+    // One heading; every place of a wide square and every swivel is evaluated.
     let fixture = Fixture::new(Hand::Right, cut());
     let query = fixture.query();
     let heading = 18;
@@ -154,7 +158,7 @@ fn the_pruned_grid_finds_what_a_search_without_pruning_finds() {
 }
 
 #[test]
-fn the_best_answer_beats_the_grid_and_the_mean_lies_below_it() {
+fn the_best_response_beats_the_grid_and_the_mean_is_below_it() {
     for operation in [cut(), drill()] {
         let fixture = Fixture::new(Hand::Right, operation);
         let query = fixture.query();
@@ -169,7 +173,7 @@ fn the_best_answer_beats_the_grid_and_the_mean_lies_below_it() {
 }
 
 #[test]
-fn nobody_answers_a_board_on_the_ceiling() {
+fn a_board_on_the_ceiling_has_no_response() {
     let mut fixture = Fixture::new(Hand::Right, drill());
     fixture.x_wo.translation.vector.z = 3.0;
     assert!(best_response(&fixture.query()).is_none() && mean_response(&fixture.query()).is_none());
