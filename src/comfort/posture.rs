@@ -12,9 +12,9 @@ use crate::{
     },
 };
 
-/// The comfort of one posture of the person (docs/method.md#4-muscular-comfort, docs/method.md#5-peripersonal-comfort),
-/// `wrench_w` is the operation's about the
-/// tool tip, W axes.
+/// The comfort of one posture of the person (docs/method.md#4-muscular-comfort, docs/method.md#5-peripersonal-comfort).
+/// `wrench_w` is the operation's about the tool tip, W axes. The RULA score is left out, since it is only reported:
+/// [`Human::rula`] computes it for plans.
 #[must_use]
 pub fn posture_comfort(
     human: &Human,
@@ -35,7 +35,7 @@ pub fn posture_comfort(
         objective: objective(settings, regularised, peripersonal_m),
         activations,
         average: None,
-        rula: Some(human.rula(q_rad, wrench_w)),
+        rula: None,
     }
 }
 
