@@ -4,7 +4,7 @@
 use std::{path::Path, sync::LazyLock};
 
 use benchdog::{
-    collision::{Body, CollisionModel, PersonPart, Scene, StandingPerson},
+    collision::{Body, CollisionModel, PersonClearance, PersonPart, Scene},
     human::{BodyPart, Side},
     model::frames::Pose,
     robot::{ArmState, PlacedShape, Robot, Shape},
@@ -252,7 +252,7 @@ fn what_goes_with_the_tool_is_not_in_the_way_of_the_board_it_works_on() {
     let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
     let in_the_board = part([-3.1, 0.0, 0.0], [-2.9, 0.0, 0.0], 0.05);
     let nearest = |part| {
-        let person = StandingPerson::new(&[part], BOARD_SIZE_M);
+        let person = PersonClearance::new(&[part], BOARD_SIZE_M);
         model.nearest_to_person(&person, &poses, &far_away(), 0.0).map(|nearest| nearest.bodies[0])
     };
     assert_eq!(nearest(in_the_board), Some(Body::Board));
@@ -307,7 +307,7 @@ proptest! {
             UnitQuaternion::from_euler_angles(turn[0], turn[1], turn[2]),
         );
         let part = part(ends[0], ends[1], radius_m);
-        let person = StandingPerson::new(&[part], BOARD_SIZE_M);
+        let person = PersonClearance::new(&[part], BOARD_SIZE_M);
         let found = model.nearest_to_person(&person, &poses, &x_wo, f64::INFINITY).unwrap();
         let bodies = links_w(robot, &poses).into_iter().chain([board_w(BOARD_SIZE_M, &x_wo)]);
         let expected_m = bodies.map(|body| distance_m(&body, &capsule_w(&part))).fold(f64::INFINITY, f64::min);

@@ -4,18 +4,18 @@
 //! are sorted out by spheres about links and about primitives. This module knows geometry and the distances that must be
 //! kept (METHOD section 3); it does not know why a pose was chosen.
 
-mod near;
-mod person;
+mod clearances;
+mod near_pairs;
+mod person_clearance;
 mod shapes;
-mod standing;
 
 use nalgebra::Point3;
 use parry3d_f64::glamx::DVec3;
 
 use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
-pub use near::{Carrier, Near};
+pub use near_pairs::{BodyRef, NearPair};
+pub use person_clearance::{Nearest, PersonClearance};
 use shapes::{Measure, Piece, Placed, place_all, point_w, sphere_about};
-pub use standing::{Nearest, StandingPerson};
 
 /// A scene to be checked, in W.
 #[derive(Clone, Copy, Debug)]

@@ -1,20 +1,24 @@
-//! The answers to a hold, against what can be known of them without the grid.
+//! Responses against checks that do not use the grid.
 
 use std::path::Path;
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::{
-    answers::{self, HEADING_STEP_RAD, PLACE_STEP_M},
     curve::{Cut, POINTS, muscular_curve},
+    posture::objective,
+    responses::{self, HEADING_STEP_RAD, PLACE_STEP_M},
     *,
 };
 use crate::{
-    human::default_tool,
+    collision::{CollisionModel, Scene},
+    human::{Human, default_tool},
     model::{
-        operation::OperationKind,
-        scenario::{Hand, Person, Sex},
+        frames::Pose,
+        operation::{Operation, OperationKind},
+        scenario::{ComfortSettings, Hand, Person, Sex},
     },
+    robot::Robot,
 };
 
 const FLOOR_Z_M: f64 = -0.92;
@@ -29,7 +33,7 @@ fn collision() -> CollisionModel {
     CollisionModel::new(&Robot::load("baxter", Path::new("")).unwrap())
 }
 
-/// A board before a person, and a robot of two points behind it.
+/// A board in front of a person, and a robot of two points behind it.
 struct Fixture {
     human: Human,
     collision: CollisionModel,
@@ -54,8 +58,8 @@ impl Fixture {
         }
     }
 
-    fn hold(&self) -> Hold<'_> {
-        Hold {
+    fn query(&self) -> ResponseQuery<'_> {
+        ResponseQuery {
             human: &self.human,
             collision: &self.collision,
             settings: ComfortSettings::default(),
@@ -76,30 +80,31 @@ fn drill() -> Operation {
 }
 
 #[test]
-fn every_answer_puts_the_tool_at_the_operation_within_all_limits() {
+fn every_response_places_the_tool_at_the_operation_within_all_limits() {
     for (hand, operation) in [(Hand::Right, cut()), (Hand::Left, cut()), (Hand::Right, drill())] {
         let fixture = Fixture::new(hand, operation);
-        let hold = fixture.hold();
+        let query = fixture.query();
         let mut count = 0;
-        answers::visit(&hold, |[i, j, k], answer| {
+        responses::visit(&query, |[i, j, k], response| {
             count += 1;
             if count % 97 != 0 {
                 return;
             }
-            let expected = fixture.x_wo * operation.rolled(answer.roll_rad()).x_ot;
-            let reached = answer.x_wb * fixture.human.tool_pose_b(&answer.q_rad);
-            // METHOD section 3 asks for 1e-6.
+            let expected = fixture.x_wo * operation.rolled(response.roll_rad()).x_ot;
+            let reached = response.x_wb * fixture.human.tool_pose_b(&response.q_rad);
+            // docs/method.md#34-constraints requires 1e-6.
             assert!((reached.translation.vector - expected.translation.vector).norm() < 1e-12);
             assert!(reached.rotation.angle_to(&expected.rotation) < 1e-7);
-            assert!(fixture.human.arm().within_limits(&answer.q_rad));
-            assert!(answer.muscular.activations.iter().all(|&activation| activation <= 1.0));
-            let parts = fixture.human.capsules_w(&answer.x_wb, &answer.q_rad).map(crate::collision::PersonPart::from);
-            let scene = Scene { person: &parts, ..hold.scene };
+            assert!(fixture.human.arm().within_limits(&response.q_rad));
+            assert!(response.muscular.activations.iter().all(|&activation| activation <= 1.0));
+            let parts =
+                fixture.human.capsules_w(&response.x_wb, &response.q_rad).map(crate::collision::PersonPart::from);
+            let scene = Scene { person: &parts, ..query.scene };
             assert_eq!(fixture.collision.first_violation_of_person(&scene), None);
-            let place = answer.x_wb.translation.vector;
+            let place = response.x_wb.translation.vector;
             assert!((place.x - f64::from(i) * PLACE_STEP_M).abs() < 1e-12);
             assert!((place.y - f64::from(j) * PLACE_STEP_M).abs() < 1e-12);
-            let facing_x = (answer.x_wb.rotation * Vector3::x()).x;
+            let facing_x = (response.x_wb.rotation * Vector3::x()).x;
             assert!((facing_x - libm::cos(f64::from(k) * HEADING_STEP_RAD)).abs() < 1e-12);
         });
         assert!(count > 1_000, "{count}");
@@ -107,43 +112,44 @@ fn every_answer_puts_the_tool_at_the_operation_within_all_limits() {
 }
 
 #[test]
-fn an_answer_is_worth_what_its_posture_is_worth() {
+fn the_objective_of_a_response_is_that_of_its_posture() {
     let fixture = Fixture::new(Hand::Right, cut());
-    let hold = fixture.hold();
+    let query = fixture.query();
     let wrench_w = fixture.operation.wrench_w(&fixture.x_wo);
     let mut count = 0;
-    answers::visit(&hold, |_, answer| {
+    responses::visit(&query, |_, response| {
         count += 1;
         if count % 97 == 0 {
             let robot = &fixture.robot_points_w;
-            let alone = of_posture(&fixture.human, &hold.settings, robot, &answer.x_wb, &answer.q_rad, &wrench_w);
-            assert_eq!(alone.muscular_regularised, answer.muscular.regularised);
+            let alone =
+                posture_comfort(&fixture.human, &query.settings, robot, &response.x_wb, &response.q_rad, &wrench_w);
+            assert_eq!(alone.muscular_regularised, response.muscular.regularised);
             // The distances are added in two parts.
-            assert!((alone.objective - answer.objective).abs() < 1e-10);
+            assert!((alone.objective - response.objective).abs() < 1e-10);
         }
     });
 }
 
 #[test]
 fn the_pruned_grid_finds_what_a_search_without_pruning_finds() {
-    // One heading, all places of a wide square and all swivels, asked one by one.
+    // One heading; every place of a wide square and every swivel is evaluated.
     let fixture = Fixture::new(Hand::Right, cut());
-    let hold = fixture.hold();
+    let query = fixture.query();
     let heading = 18;
     let mut pruned = 0;
-    answers::visit(&hold, |[_, _, k], _| pruned += usize::from(k == heading));
+    responses::visit(&query, |[_, _, k], _| pruned += usize::from(k == heading));
     let mut plain = 0;
     for (i, j) in (-10..50).flat_map(|i| (-30..30).map(move |j| (i, j))) {
         for swivel in -36..36 {
             for branch in crate::human::ShoulderBranch::ALL {
-                let choice = answers::Choice {
+                let choice = responses::Choice {
                     place_w_m: [f64::from(i) * PLACE_STEP_M, f64::from(j) * PLACE_STEP_M],
                     heading_rad: f64::from(heading) * HEADING_STEP_RAD,
                     roll_rad: 0.0,
-                    swivel_rad: f64::from(swivel) * answers::SWIVEL_STEP_RAD,
+                    swivel_rad: f64::from(swivel) * responses::SWIVEL_STEP_RAD,
                     branch,
                 };
-                plain += usize::from(answers::answer(&hold, &choice).is_some());
+                plain += usize::from(responses::response_to(&query, &choice).is_some());
             }
         }
     }
@@ -152,25 +158,25 @@ fn the_pruned_grid_finds_what_a_search_without_pruning_finds() {
 }
 
 #[test]
-fn the_best_answer_beats_the_grid_and_the_mean_lies_below_it() {
+fn the_best_response_beats_the_grid_and_the_mean_is_below_it() {
     for operation in [cut(), drill()] {
         let fixture = Fixture::new(Hand::Right, operation);
-        let hold = fixture.hold();
-        let best = most(&hold).unwrap();
+        let query = fixture.query();
+        let best = best_response(&query).unwrap();
         let mut of_grid = f64::NEG_INFINITY;
-        answers::visit(&hold, |_, answer| of_grid = of_grid.max(answer.objective));
+        responses::visit(&query, |_, response| of_grid = of_grid.max(response.objective));
         assert!(best.objective >= of_grid, "{} {of_grid}", best.objective);
-        let mean = average(&hold).unwrap();
-        assert!(objective(&hold.settings, mean.muscular_regularised, mean.peripersonal_m) < of_grid);
+        let mean = mean_response(&query).unwrap();
+        assert!(objective(&query.settings, mean.muscular_regularised, mean.peripersonal_m) < of_grid);
         assert!(mean.responses > 1_000);
     }
 }
 
 #[test]
-fn nobody_answers_a_board_on_the_ceiling() {
+fn a_board_on_the_ceiling_has_no_response() {
     let mut fixture = Fixture::new(Hand::Right, drill());
     fixture.x_wo.translation.vector.z = 3.0;
-    assert!(most(&fixture.hold()).is_none() && average(&fixture.hold()).is_none());
+    assert!(best_response(&fixture.query()).is_none() && mean_response(&fixture.query()).is_none());
 }
 
 #[test]

@@ -1,32 +1,62 @@
-//! How the regularised muscular comfort changes with the angles of the arm.
+//! Derivatives of the muscular comfort and of points of the working arm by the arm's angles.
 //!
-//! The tool's wrench keeps its direction in the world, as it does when the board stays and the arm moves. With the load k
-//! a force `F_k` at `p_k` (the tool's at the tip, with a moment `m`, and those that hold up the weights), joint i's axis
-//! `a_i` through `o_i`, and `k > i` for the loads beyond joint i:
+//! The operation's wrench is fixed in the tool's axes, so it turns with the hand. With the wrench's force `F` and moment
+//! `m` at the tool tip `p`, the weights' holding forces `F_k` at `p_k`, and the axis `a_i` of joint i through `o_i`:
 //!
 //! ```text
-//! tau_i = a_i . (m + sum_{k > i} (p_k - o_i) x F_k)
-//! d tau_i / d q_j = a_i . sum_{k > j} (a_j x (p_k - o_j)) x F_k                                       for j >= i
-//!                 = (a_j x a_i) . M_i + a_i . sum_{k > i} (a_j x (p_k - o_i)) x F_k                   for j < i
-//! d (1 / (E + eps)) / d q_j = -(dE / d q_j) / (E + eps)^2,   E = sum alpha_i^2,   alpha_i = tau_i / tau_max,i(q_i)
+//! tau_i = a_i . (m + (p - o_i) x F) + a_i . sum_{k > i} (p_k - o_i) x F_k
+//! d tau_i / d q_j, wrench  = a_i . (a_j x m + (a_j x (p - o_j)) x F + (p - o_i) x (a_j x F))          for j >= i
+//!                          = 0: arm and wrench turn together                                          for j < i
+//! d tau_i / d q_j, weights = a_i . sum_{k > j} (a_j x (p_k - o_j)) x F_k                              for j >= i
+//!                          = sum_{k > i} (a_j x a_i) . (p_k - o_i) x F_k + a_i . (a_j x (p_k - o_i)) x F_k  for j < i
+//! alpha_i = |tau_i| / tau_max,i(q_i),   C = 1 / (sum alpha_i^2 + eps),   dC = -C^2 sum 2 alpha_i d alpha_i
 //! ```
 //!
-//! It is not defined where a joint changes between its two strengths, and at the ends of their ranges; there it is that
-//! of the strength which [`super::muscular`] picks.
+//! `k > i` are the weights beyond joint i. The derivatives are undefined where a joint's torque changes sign, where a
+//! joint changes between its two strengths, and at the ends of the strengths' ranges. There they are those of the
+//! strength that [`super::muscular`] uses.
 
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 use super::{
     arm::{Arm, ArmAngles, ArmFrames},
     body::Body,
-    muscular::{self, RESTING},
+    muscular::{self, Muscular},
     strength::Strength,
 };
 use crate::model::{scenario::StrengthDirection, wrench::Wrench};
 
+/// The muscular comfort of a posture and its derivatives by the arm's angles.
+#[derive(Clone, Copy, Debug)]
+pub struct MuscularGradient {
+    /// The comfort and the activations.
+    pub muscular: Muscular,
+    /// Gradient of the regularised comfort, 1/rad.
+    pub regularised: [f64; 7],
+    /// Jacobian of the activations, 1/rad: one row per activation, one column per joint.
+    pub activations: [[f64; 7]; 7],
+}
+
+/// The axes of the working arm's joints in W.
+#[derive(Clone, Copy, Debug)]
+pub struct ArmAxes {
+    /// A point on each axis, m.
+    pub origins_w: [Point3<f64>; 7],
+    /// Direction of each axis, unit vectors.
+    pub axes_w: [Vector3<f64>; 7],
+}
+
+impl ArmAxes {
+    /// Derivative of a point by a joint (counted from 0) that moves it, m/rad.
+    #[must_use]
+    pub fn velocity_w(&self, joint: usize, p_w: &Point3<f64>) -> Vector3<f64> {
+        self.axes_w[joint].cross(&(p_w - self.origins_w[joint]))
+    }
+}
+
 /// What the arm carries.
 #[derive(Clone, Copy, Debug)]
-pub struct Load<'a> {
+pub(super) struct Load<'a> {
     /// Mass of the tool, kg.
     pub tool_kg: f64,
     /// What the hand exerts at the tool's tip: about the tip, B axes.
@@ -41,45 +71,45 @@ struct Force {
     p_b_m: Vector3<f64>,
 }
 
-/// The gradient of `1 / (||alpha||^2 + 0.01)` with respect to the angles of a right arm, 1/rad.
-pub fn regularised_gradient(
+/// The muscular comfort of a right arm and its derivatives.
+pub(super) fn muscular_gradient(
     arm: &Arm,
     body: &Body,
     strength: &Strength,
     q_rad: &ArmAngles,
     load: &Load<'_>,
     direction: StrengthDirection,
-) -> [f64; 7] {
+) -> MuscularGradient {
     let torques = muscular::joint_torques(arm, body, load.tool_kg, q_rad, load.wrench_b, load.gravity_b);
     let (total_nm, senses) = (torques.total_nm(), torques.senses(q_rad, strength, direction));
+    let muscular = Muscular::of(torques.activations(q_rad, strength, direction));
     let frames = arm.frames(q_rad);
-    let forces = forces(arm, body, &frames, load);
-    let limits_nm: [f64; 7] = std::array::from_fn(|i| strength.torque_nm(i, q_rad[i], senses[i]));
-    let effort: f64 = (0..7).map(|i| (total_nm[i] / limits_nm[i]).powi(2)).sum();
-    let scale = -1.0 / (effort + RESTING).powi(2);
-    std::array::from_fn(|j| {
-        let by_torques: f64 = (0..7)
-            .map(|i| {
-                let slope = torque_slope(&frames, &forces, &load.wrench_b.moment_nm, i, j);
-                2.0 * total_nm[i] * slope / limits_nm[i].powi(2)
-            })
-            .sum();
-        let limit_slope = strength.slope_nm_rad(j, q_rad[j], senses[j]);
-        let by_strength = -2.0 * total_nm[j].powi(2) * limit_slope / limits_nm[j].powi(3);
-        scale * (by_torques + by_strength)
-    })
+    let p_bt_m = frames.hand_point_b(&arm.x_ht.translation.vector);
+    let weights = holding_forces(body, &frames, load);
+    let activations: [[f64; 7]; 7] = std::array::from_fn(|i| {
+        let limit_nm = strength.torque_nm(i, q_rad[i], senses[i]);
+        let strength_slope = strength.slope_nm_rad(i, q_rad[i], senses[i]);
+        std::array::from_fn(|j| {
+            let slope = wrench_slope(&frames, &p_bt_m, load.wrench_b, i, j) + weight_slope(&frames, &weights, i, j);
+            let by_torque = total_nm[i].signum() * slope / limit_nm;
+            if i == j { by_torque - muscular.activations[i] * strength_slope / limit_nm } else { by_torque }
+        })
+    });
+    let regularised = std::array::from_fn(|j| {
+        let effort_slope: f64 = (0..7).map(|i| 2.0 * muscular.activations[i] * activations[i][j]).sum();
+        -muscular.regularised.powi(2) * effort_slope
+    });
+    MuscularGradient { muscular, regularised, activations }
 }
 
-/// The tool's force and those that hold up the weights, from the shoulder outward, the tool's last.
-fn forces(arm: &Arm, body: &Body, frames: &ArmFrames, load: &Load<'_>) -> [Force; 5] {
-    let [upper_arm, forearm, hand, tool] = muscular::weights(body, load.tool_kg, frames)
-        .map(|(mass_kg, p_b_m)| Force { force_n: load.gravity_b * -mass_kg, p_b_m });
-    let tip = Force { force_n: load.wrench_b.force_n, p_b_m: frames.hand_point_b(&arm.x_ht.translation.vector) };
-    [upper_arm, forearm, hand, tool, tip]
+/// The forces that hold upper arm, forearm, hand and tool against gravity.
+fn holding_forces(body: &Body, frames: &ArmFrames, load: &Load<'_>) -> [Force; 4] {
+    muscular::weights(body, load.tool_kg, frames)
+        .map(|(mass_kg, p_b_m)| Force { force_n: load.gravity_b * -mass_kg, p_b_m })
 }
 
 /// The forces beyond a joint. The forearm's centre of mass lies on the axis of pronation.
-fn beyond(forces: &[Force; 5], joint: usize) -> &[Force] {
+fn beyond(forces: &[Force; 4], joint: usize) -> &[Force] {
     match joint {
         0..=2 => forces,
         3 => &forces[1..],
@@ -87,10 +117,22 @@ fn beyond(forces: &[Force; 5], joint: usize) -> &[Force] {
     }
 }
 
-/// `d tau_i / d q_j`, N m/rad: the module's text derives it.
-fn torque_slope(frames: &ArmFrames, forces: &[Force; 5], moment: &Vector3<f64>, i: usize, j: usize) -> f64 {
+/// Derivative of joint i's torque from the wrench by joint j, N m/rad.
+fn wrench_slope(frames: &ArmFrames, p_bt_m: &Vector3<f64>, wrench_b: &Wrench, i: usize, j: usize) -> f64 {
+    if j < i {
+        return 0.0;
+    }
     let (a_i, a_j) = (&frames.axes_b[i], &frames.axes_b[j]);
-    // Only what is beyond both joints moves against joint i; it moves as if carried by the farther of the two.
+    let Wrench { force_n, moment_nm } = wrench_b;
+    let moved = a_j.cross(&(p_bt_m - frames.joint_origin_m(j))).cross(force_n);
+    let turned = (p_bt_m - frames.joint_origin_m(i)).cross(&a_j.cross(force_n));
+    a_i.dot(&(a_j.cross(moment_nm) + moved + turned))
+}
+
+/// Derivative of joint i's torque from the weights by joint j, N m/rad.
+fn weight_slope(frames: &ArmFrames, forces: &[Force; 4], i: usize, j: usize) -> f64 {
+    let (a_i, a_j) = (&frames.axes_b[i], &frames.axes_b[j]);
+    // Only the weights beyond both joints move relative to joint i, as if carried by the farther joint.
     let farther = i.max(j);
     let origin = frames.joint_origin_m(farther);
     let moved: Vector3<f64> =
@@ -99,59 +141,116 @@ fn torque_slope(frames: &ArmFrames, forces: &[Force; 5], moment: &Vector3<f64>, 
         return a_i.dot(&moved);
     }
     let about_joint: Vector3<f64> = beyond(forces, i).iter().map(|f| (f.p_b_m - origin).cross(&f.force_n)).sum();
-    a_j.cross(a_i).dot(&(moment + about_joint)) + a_i.dot(&moved)
+    a_j.cross(a_i).dot(&about_joint) + a_i.dot(&moved)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::MuscularGradient;
     use crate::{
         human::{
-            standing_pose_w,
-            testing::{generator, random_angles, worker},
+            ArmAngles, BodyPart, Human, body_point_joints, standing_pose_w,
+            testing::{average_man, generator, random_angles},
         },
         model::{
+            frames::Pose,
             operation::OperationKind,
-            scenario::{Hand, StrengthDirection},
+            scenario::{Hand, Person, StrengthDirection},
             wrench::Wrench,
         },
     };
 
+    const STEP: f64 = 1e-6;
+
+    fn leaning(hand: Hand) -> Human {
+        let person = Person { hand, lean_deg: 8.0, ..average_man() };
+        Human::new(&person, &crate::human::default_tool(OperationKind::Drill)).unwrap()
+    }
+
+    /// The wrench of the tool, in the axes of the body.
+    fn wrench_b(human: &Human, q_rad: &ArmAngles, wrench_t: &Wrench) -> Wrench {
+        let r_bt = human.tool_pose_b(q_rad).rotation;
+        Wrench::new(r_bt * wrench_t.force_n, r_bt * wrench_t.moment_nm)
+    }
+
+    fn moved(q_rad: &ArmAngles, joint: usize, by: f64) -> ArmAngles {
+        let mut q_rad = *q_rad;
+        q_rad[joint] += by;
+        q_rad
+    }
+
     #[test]
-    fn the_gradient_is_the_slope_of_the_comfort() {
-        let step = 1e-6;
-        let wrench = Wrench::from([12.0, -7.0, 20.0, 0.4, -0.3, 0.8]);
-        let x_wb = standing_pose_w(1.0, 0.2, 2.5, -0.9);
+    fn the_gradient_equals_central_differences() {
+        let wrench_t = Wrench::from([12.0, -7.0, 20.0, 0.4, -0.3, 0.8]);
         for hand in [Hand::Right, Hand::Left] {
-            let (human, mut generator) = (worker(hand, OperationKind::Drill), generator(21));
+            let (human, mut generator) = (leaning(hand), generator(21));
             for direction in [StrengthDirection::Paper, StrengthDirection::Torque] {
+                let muscular = |q_rad: &ArmAngles| {
+                    human.muscular(q_rad, &Pose::identity(), &wrench_b(&human, q_rad, &wrench_t), direction)
+                };
                 let mut compared = 0;
                 for _ in 0..300 {
                     let q_rad = random_angles(human.arm(), &mut generator);
-                    let gradient = human.regularised_gradient(&q_rad, &x_wb, &wrench, direction);
-                    // Where a joint changes between its strengths the slope jumps: postures within a step of that are
-                    // left out.
-                    let torques = human.joint_torques(&q_rad, &x_wb, &wrench);
-                    let deciding = match direction {
-                        StrengthDirection::Paper => torques.operation_nm,
-                        StrengthDirection::Torque => torques.total_nm(),
-                    };
-                    if deciding.iter().any(|torque| torque.abs() < 1e-3) {
+                    // Where a torque changes its sign or a joint its strength, the slope jumps: postures within a step of
+                    // that are left out.
+                    let torques = human.joint_torques(&q_rad, &Pose::identity(), &wrench_b(&human, &q_rad, &wrench_t));
+                    if torques.operation_nm.iter().chain(&torques.total_nm()).any(|torque| torque.abs() < 1e-3) {
                         continue;
                     }
-                    let comfort = |joint: usize, by: f64| {
-                        let mut q_rad = q_rad;
-                        q_rad[joint] += by;
-                        human.muscular(&q_rad, &x_wb, &wrench, direction).regularised
-                    };
-                    for (joint, found) in gradient.into_iter().enumerate() {
-                        let slope = (comfort(joint, step) - comfort(joint, -step)) / (2.0 * step);
-                        // Comforts up to 100: rounding 1e-14 x 100 / step = 1e-6, third derivative times step^2 less.
-                        let apart = (found - slope).abs();
-                        assert!(apart < 2e-6 * (1.0 + slope.abs()), "joint {joint}: {found} {slope}");
+                    let found = human.muscular_gradient(&q_rad, &wrench_t, direction);
+                    assert_eq!(found.muscular, muscular(&q_rad));
+                    for joint in 0..7 {
+                        let (back, forth) = (moved(&q_rad, joint, -STEP), moved(&q_rad, joint, STEP));
+                        compare(&found, joint, |pick| {
+                            (pick(&muscular(&forth)) - pick(&muscular(&back))) / (2.0 * STEP)
+                        });
                     }
                     compared += 1;
                 }
                 assert!(compared > 250, "{compared}");
+            }
+        }
+    }
+
+    fn compare(found: &MuscularGradient, joint: usize, slope: impl Fn(&dyn Fn(&crate::human::Muscular) -> f64) -> f64) {
+        // Comforts up to 100: rounding 1e-14 x 100 / step = 1e-6, third derivative times step^2 less.
+        let expected = slope(&|muscular| muscular.regularised);
+        let error = (found.regularised[joint] - expected).abs();
+        assert!(error < 2e-6 * (1.0 + expected.abs()), "joint {joint}: {} {expected}", found.regularised[joint]);
+        for (i, row) in found.activations.iter().enumerate() {
+            let expected = slope(&|muscular| muscular.activations[i]);
+            assert!((row[joint] - expected).abs() < 1e-7 * (1.0 + expected.abs()), "{i} {joint}: {row:?} {expected}");
+        }
+    }
+
+    #[test]
+    fn points_of_the_arm_move_as_the_axes_say() {
+        let x_wb = standing_pose_w(1.0, 0.2, 2.5, -0.9);
+        for hand in [Hand::Right, Hand::Left] {
+            let (human, mut generator) = (leaning(hand), generator(22));
+            for _ in 0..100 {
+                let q_rad = random_angles(human.arm(), &mut generator);
+                let axes = human.arm_axes_w(&x_wb, &q_rad);
+                let (points, capsules) = (human.body_points_w(&x_wb, &q_rad), human.capsules_w(&x_wb, &q_rad));
+                for joint in 0..7 {
+                    let [back, forth] = [-STEP, STEP].map(|by| moved(&q_rad, joint, by));
+                    let velocity =
+                        |moves: bool, p_w| if moves { axes.velocity_w(joint, p_w) } else { Default::default() };
+                    // Positions of order one: rounding 1e-16 / step.
+                    let near = |found: nalgebra::Vector3<f64>, slope: nalgebra::Vector3<f64>| {
+                        assert!((found - slope * 0.5 / STEP).norm() < 1e-8)
+                    };
+                    let there = [&back, &forth].map(|q_rad| human.body_points_w(&x_wb, q_rad));
+                    for (number, p_w) in points.iter().enumerate() {
+                        near(velocity(joint < body_point_joints(number), p_w), there[1][number] - there[0][number]);
+                    }
+                    let there = [&back, &forth].map(|q_rad| human.capsules_w(&x_wb, q_rad));
+                    for (number, capsule) in capsules.iter().enumerate() {
+                        let moves = joint < BodyPart::joints(capsule.name);
+                        near(velocity(moves, &capsule.p0_w), there[1][number].p0_w - there[0][number].p0_w);
+                        near(velocity(moves, &capsule.p1_w), there[1][number].p1_w - there[0][number].p1_w);
+                    }
+                }
             }
         }
     }

@@ -37,9 +37,10 @@ mod tests;
 
 pub use arm::{Arm, ArmAngles, ArmFrames, ArmJacobian};
 pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
+pub use gradient::{ArmAxes, MuscularGradient};
 pub use muscular::{JointTorques, Muscular};
 pub use peripersonal::{Distances, Pull, peripersonal_m, peripersonal_pulls};
-pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, STILL_POINTS, Side};
+pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, STILL_POINTS, Side, body_point_joints};
 pub use strength::{Sense, Strength};
 pub use swivel::{ArmSolutions, ShoulderBranch, SwivelCircle, SwivelInterval, SwivelIntervals};
 pub use tools::default_tool;
@@ -198,19 +199,33 @@ impl Human {
         Muscular::of(self.activations(q_rad, x_wb, wrench_w, direction))
     }
 
-    /// How the regularised muscular comfort changes with each angle of the arm while the body stays and the wrench keeps
-    /// its direction in the world, 1/rad; arguments as for [`Self::joint_torques`]. [`gradient`] states where it is
-    /// defined.
-    pub fn regularised_gradient(
+    /// The muscular comfort of a posture and its derivatives by the arm's angles, for a wrench about the tool tip that is
+    /// fixed in T axes. [`gradient`] states where they are defined.
+    #[must_use]
+    pub fn muscular_gradient(
         &self,
         q_rad: &ArmAngles,
-        x_wb: &Pose,
-        wrench_w: &Wrench,
+        wrench_t: &Wrench,
         direction: StrengthDirection,
-    ) -> [f64; 7] {
-        let (wrench_v, gravity_v) = self.loads_v(x_wb, wrench_w);
+    ) -> MuscularGradient {
+        let r_bt = self.tool_pose_b(q_rad).rotation;
+        let wrench_b = Wrench::new(r_bt * wrench_t.force_n, r_bt * wrench_t.moment_nm);
+        let (wrench_v, gravity_v) = self.loads_v(&Pose::identity(), &wrench_b);
         let load = gradient::Load { tool_kg: self.tool_kg, wrench_b: &wrench_v, gravity_b: &gravity_v };
-        gradient::regularised_gradient(&self.arm, &self.body, &self.strength, q_rad, &load, direction)
+        gradient::muscular_gradient(&self.arm, &self.body, &self.strength, q_rad, &load, direction)
+    }
+
+    /// The axes of the working arm's joints in W, positive towards larger angles.
+    #[must_use]
+    pub fn arm_axes_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> ArmAxes {
+        let x_wv = x_wb * self.x_bv;
+        let (to_w, frames) = (self.placed(&x_wv), self.arm.frames(q_rad));
+        // An axis turns the other way in the mirror, as a moment does.
+        let axis_w = |axis_v| x_wv.rotation * self.on_working_side(Wrench::new(Vector3::zeros(), axis_v)).moment_nm;
+        ArmAxes {
+            origins_w: std::array::from_fn(|joint| to_w(frames.joint_origin_m(joint))),
+            axes_w: frames.axes_b.map(axis_w),
+        }
     }
 
     /// The RULA score of a posture; arguments as for [`Self::joint_torques`].

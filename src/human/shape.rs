@@ -58,6 +58,17 @@ impl BodyPart {
         use Side::Working;
         matches!(self, Self::UpperArm(Working) | Self::Forearm(Working) | Self::Hand(Working) | Self::Tool)
     }
+
+    /// How many of the working arm's joints, the first, move it. Its capsule lies on the axes of the next ones.
+    #[must_use]
+    pub fn joints(self) -> usize {
+        match self {
+            Self::UpperArm(Side::Working) => 3,
+            Self::Forearm(Side::Working) => 4,
+            Self::Hand(Side::Working) | Self::Tool => 7,
+            _ => 0,
+        }
+    }
 }
 
 /// A cylinder with round ends, in the world.
@@ -110,6 +121,17 @@ fn parse_point(row: &str) -> Option<BodyPoint> {
     };
     let mut number = || cells.next()?.parse().ok();
     Some(BodyPoint { carrier, position: Vector3::new(number()?, number()?, number()?) })
+}
+
+/// How many of the working arm's joints, the first, move a point of [`super::Human::body_points_w`].
+#[must_use]
+pub fn body_point_joints(point: usize) -> usize {
+    match POINTS[point].carrier {
+        Carrier::UpperArm(Side::Working) => 3,
+        Carrier::Forearm(Side::Working) => 4,
+        Carrier::Hand(Side::Working) => 7,
+        _ => 0,
+    }
 }
 
 impl Body {

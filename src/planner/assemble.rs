@@ -35,6 +35,8 @@ pub fn assemble_placed(
     let operation = scenario.operation.rolled(candidate.work.roll_rad);
     let object = evaluate::placed_object(scenario, x_wo);
     let arms = evaluate::plan_arms(problem, candidate);
+    let rula = problem.human.rula(&candidate.work.q_h_rad, &scenario.operation.wrench_w(&x_wo));
+    let comfort = Comfort { rula: Some(rula), ..comfort::weighted(*comfort, &scenario.comfort) };
     let stability = evaluator.predict(&arms, &object, &operation)?;
     Some(Plan {
         format: FORMAT,
@@ -44,7 +46,7 @@ pub fn assemble_placed(
         object,
         arms,
         human: Some(HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad)),
-        comfort: Some(comfort::weighted(*comfort, &scenario.comfort)),
+        comfort: Some(comfort),
         stability: Some(stability),
         planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations }),
         scenario: Some(scenario.clone()),

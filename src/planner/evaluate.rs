@@ -177,7 +177,14 @@ pub fn comfort(problem: &Problem<'_>, candidate: &Candidate, configuration: &Con
     let robot_points_w = comfort::robot_points_w(&problem.robot.robot, &configuration.link_poses);
     let Placement { x_wo, x_wb } = configuration.placement;
     let wrench_w = problem.scenario.operation.wrench_w(&x_wo);
-    comfort::of_posture(&problem.human, &problem.objective, &robot_points_w, &x_wb, &candidate.work.q_h_rad, &wrench_w)
+    comfort::posture_comfort(
+        &problem.human,
+        &problem.objective,
+        &robot_points_w,
+        &x_wb,
+        &candidate.work.q_h_rad,
+        &wrench_w,
+    )
 }
 
 /// The query for the person's responses to a grasp; the tool's roll is counted from that of `operation`.
@@ -187,8 +194,8 @@ pub fn response_query<'q>(
     link_poses: &'q [Pose],
     x_wo: Pose,
     robot_points_w: &'q [Point3<f64>],
-) -> comfort::Hold<'q> {
-    comfort::Hold {
+) -> comfort::ResponseQuery<'q> {
+    comfort::ResponseQuery {
         human: &problem.human,
         collision: &problem.robot.collision,
         settings: problem.objective,
@@ -204,7 +211,7 @@ pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComf
     let Configuration { placement, link_poses, .. } = &found.configuration;
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
     let operation = problem.scenario.operation.rolled(found.candidate.work.roll_rad);
-    comfort::average(&response_query(problem, operation, link_poses, placement.x_wo, &points_w))
+    comfort::mean_response(&response_query(problem, operation, link_poses, placement.x_wo, &points_w))
 }
 
 /// The arms of a candidate as a plan lists them.

@@ -75,7 +75,7 @@ fn rank(evaluator: &Evaluator<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
         .take(MEAN_RESPONSES)
         .filter_map(|mut found| {
             let mean = evaluate::mean_response(problem, &found)?;
-            comfort::rate_by_average(&mut found.comfort, mean, &problem.objective);
+            comfort::use_mean_response(&mut found.comfort, mean, &problem.objective);
             found.objective = found.comfort.objective;
             Some(found)
         })

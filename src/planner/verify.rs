@@ -53,14 +53,15 @@ fn verify_comfort(
     let plan = checked.plan;
     let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
     let points_w = comfort::robot_points_w(checked.robot, &checked.link_poses);
-    let mut found = comfort::of_posture(human, &scenario.comfort, &points_w, &posture.x_wb, &posture.q_rad, &wrench_w);
+    let mut found =
+        comfort::posture_comfort(human, &scenario.comfort, &points_w, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
     if strongest > 1.0 {
         flaws.push(Flaw::Strength { found: strongest });
     }
     if scenario.comfort.person == ResponseKind::Mean {
         match mean_response(checked, scenario, human, &points_w) {
-            Some(mean) => comfort::rate_by_average(&mut found, mean, &scenario.comfort),
+            Some(mean) => comfort::use_mean_response(&mut found, mean, &scenario.comfort),
             None => flaws.push(Flaw::NoResponse),
         }
     }
@@ -90,7 +91,7 @@ fn mean_response(
     human: &Human,
     robot_points_w: &[nalgebra::Point3<f64>],
 ) -> Option<MeanComfort> {
-    comfort::average(&comfort::Hold {
+    comfort::mean_response(&comfort::ResponseQuery {
         human,
         collision: &CollisionModel::new(checked.robot),
         settings: scenario.comfort,

@@ -1,13 +1,13 @@
 //! Distance of robot and board from the person during the simulation (docs/method.md#87-person-overlap).
 //!
 //! The person stands still in the posture of the plan and is not part of the dynamics. All links of the robot and the
-//! board are measured against them, without the body parts that move with the tool (see [`StandingPerson`]). The judge
+//! board are measured against them, without the body parts that move with the tool (see [`PersonClearance`]). The judge
 //! interprets the distance.
 
 use super::conditions::Conditions;
 use crate::{
     check::CheckedPlan,
-    collision::{CollisionModel, Nearest, StandingPerson},
+    collision::{CollisionModel, Nearest, PersonClearance},
     model::trace::{PersonTouch, Sample},
     robot::{ArmState, Robot},
 };
@@ -26,7 +26,7 @@ const SLACK_M: f64 = 0.02;
 pub(super) struct PersonMonitor<'a> {
     robot: &'a Robot,
     model: CollisionModel,
-    person: StandingPerson,
+    person: PersonClearance,
     /// Indices of the robot's arms in the order of the samples.
     arms: Vec<usize>,
     /// Interval between two measurements in steps.
@@ -44,7 +44,7 @@ impl<'a> PersonMonitor<'a> {
         Some(Self {
             robot: checked.robot,
             model: CollisionModel::new(checked.robot),
-            person: StandingPerson::new(&checked.person_parts(), checked.plan.object.size_m),
+            person: PersonClearance::new(&checked.person_parts(), checked.plan.object.size_m),
             arms: checked.arms.iter().map(|arm| arm.index).collect(),
             interval_steps: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             distance_m: f64::INFINITY,

@@ -1,7 +1,7 @@
 //! A person too close to robot and board, and one at a safe distance.
 
 use benchdog::{
-    collision::{CollisionModel, PersonPart, StandingPerson},
+    collision::{CollisionModel, PersonClearance, PersonPart},
     human::{Human, default_tool, standing_pose_w},
     judge::{Judgement, judge},
     model::{
@@ -51,7 +51,7 @@ fn posture(robot: &Robot, x_m: f64) -> HumanPosture {
 fn distance_m(robot: &Robot, plan: &Plan, x_m: f64) -> f64 {
     let HumanPosture { x_wb, q_rad, .. } = posture(robot, x_m);
     let human = Human::new(&PERSON, &default_tool(OperationKind::Wrench)).unwrap();
-    let person = StandingPerson::new(&human.capsules_w(&x_wb, &q_rad).map(PersonPart::from), plan.object.size_m);
+    let person = PersonClearance::new(&human.capsules_w(&x_wb, &q_rad).map(PersonPart::from), plan.object.size_m);
     let poses = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     let model = CollisionModel::new(robot);
     model.nearest_to_person(&person, &poses, &plan.object.x_wo, f64::INFINITY).unwrap().distance_m

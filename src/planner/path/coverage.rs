@@ -19,7 +19,7 @@ use super::super::{
     stats::{Observer, Progress, SearchStats},
 };
 use crate::{
-    comfort::{self, Answer},
+    comfort::{self, Response},
     human::peripersonal_m,
     model::{frames::Pose, plan::Plan, scenario::Scenario},
 };
@@ -117,7 +117,7 @@ impl<'a, 'o> PathProblem<'a> {
 
     /// The person's response to a grasp at a point if the grasp is stable there: the best near `known`, or else near the most
     /// promising postures of the map. `None` beyond the limit of evaluations.
-    pub fn response(&mut self, grasp: &BoardGrasp, point: usize, known: Option<&Answer>) -> Option<Answer> {
+    pub fn response(&mut self, grasp: &BoardGrasp, point: usize, known: Option<&Response>) -> Option<Response> {
         if self.evaluations >= self.last_evaluation {
             return None;
         }
@@ -129,21 +129,21 @@ impl<'a, 'o> PathProblem<'a> {
         let link_poses = self.library.robot.link_poses(&grasp.arms);
         let points_w = comfort::robot_points_w(&self.library.robot.robot, &link_poses);
         let query = self.query(grasp, point, &link_poses, &points_w);
-        let near_known = known.and_then(|known| comfort::near(&query, &known.x_wb, &known.q_rad));
+        let near_known = known.and_then(|known| comfort::response_near(&query, &known.x_wb, &known.q_rad));
         if near_known.is_some() {
             return near_known;
         }
         let estimates = self.estimated(grasp, point, &points_w);
-        let near = |estimate: &Estimate| comfort::near(&query, &estimate.x_wb, &estimate.posture.q_h_rad);
+        let near = |estimate: &Estimate| comfort::response_near(&query, &estimate.x_wb, &estimate.posture.q_h_rad);
         let responses = estimates.iter().take(RESPONSE_STARTS).filter_map(near);
         responses.max_by(|a, b| a.objective.total_cmp(&b.objective))
     }
 
     /// The better of a response and the best of the whole grid.
-    pub fn best_response(&self, grasp: &BoardGrasp, point: usize, known: Answer) -> Answer {
+    pub fn best_response(&self, grasp: &BoardGrasp, point: usize, known: Response) -> Response {
         let link_poses = self.library.robot.link_poses(&grasp.arms);
         let points_w = comfort::robot_points_w(&self.library.robot.robot, &link_poses);
-        let found = comfort::most(&self.query(grasp, point, &link_poses, &points_w));
+        let found = comfort::best_response(&self.query(grasp, point, &link_poses, &points_w));
         found.filter(|found| found.objective > known.objective).unwrap_or(known)
     }
 
@@ -153,20 +153,20 @@ impl<'a, 'o> PathProblem<'a> {
         point: usize,
         link_poses: &'h [Pose],
         robot_points_w: &'h [Point3<f64>],
-    ) -> comfort::Hold<'h> {
+    ) -> comfort::ResponseQuery<'h> {
         let problem = &self.evaluators[point].problem;
         evaluate::response_query(problem, problem.scenario.operation, link_poses, grasp.x_wo, robot_points_w)
     }
 
     /// The plan of a grasp with a response at a point, if its check finds no flaw.
-    pub fn plan(&mut self, grasp: &BoardGrasp, point: usize, response: &Answer) -> Option<Plan> {
+    pub fn plan(&mut self, grasp: &BoardGrasp, point: usize, response: &Response) -> Option<Plan> {
         let evaluations = self.evaluations;
         let robot = &self.library.robot;
         let points_w = comfort::robot_points_w(&robot.robot, &robot.link_poses(&grasp.arms));
         let evaluator = &mut self.evaluators[point];
         let Problem { scenario, human, objective, .. } = &evaluator.problem;
         let wrench_w = scenario.operation.wrench_w(&grasp.x_wo);
-        let comfort = comfort::of_posture(human, objective, &points_w, &response.x_wb, &response.q_rad, &wrench_w);
+        let comfort = comfort::posture_comfort(human, objective, &points_w, &response.x_wb, &response.q_rad, &wrench_w);
         let mut candidate = Candidate::without_person(grasp);
         let heading_rad = response.x_wb.rotation.euler_angles().2;
         candidate.work = WorkPose { q_h_rad: response.q_rad, heading_rad, ..candidate.work };
@@ -200,13 +200,13 @@ impl<'a, 'o> PathProblem<'a> {
 pub struct Coverage {
     pub grasp: BoardGrasp,
     /// The response at each point; `None` where the point is not covered.
-    pub responses: Vec<Option<Answer>>,
+    pub responses: Vec<Option<Response>>,
     pub score: Score,
 }
 
 impl Coverage {
     /// The coverage of a grasp with these responses.
-    pub fn new(grasp: BoardGrasp, responses: Vec<Option<Answer>>) -> Self {
+    pub fn new(grasp: BoardGrasp, responses: Vec<Option<Response>>) -> Self {
         let objectives = responses.iter().map(|response| response.map_or(f64::NAN, |response| response.objective));
         let score = Score::of(objectives);
         Self { grasp, responses, score }

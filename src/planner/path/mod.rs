@@ -27,7 +27,7 @@ use super::{
     stats::Observer,
 };
 use crate::{
-    comfort::{Answer, curve},
+    comfort::{Response, curve},
     model::{operation::Operation, plan::Plan, scenario::Scenario},
 };
 
@@ -97,9 +97,9 @@ pub fn continuous<'a>(
 /// The plans of grasps and responses, each with the best response of the whole grid.
 fn plans<'h>(
     problem: &mut PathProblem<'_>,
-    covered: impl Iterator<Item = (&'h BoardGrasp, Option<Answer>)>,
+    covered: impl Iterator<Item = (&'h BoardGrasp, Option<Response>)>,
 ) -> PlansByPoint {
-    let plan = |(point, (grasp, response)): (usize, (&BoardGrasp, Option<Answer>))| {
+    let plan = |(point, (grasp, response)): (usize, (&BoardGrasp, Option<Response>))| {
         let response = problem.best_response(grasp, point, response?);
         problem.plan(grasp, point, &response)
     };

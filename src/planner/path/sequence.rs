@@ -21,7 +21,7 @@ use super::{
     coverage::{Coverage, PathProblem, displaced},
     motion::{self, MotionStep},
 };
-use crate::{comfort::Answer, model::frames::Pose};
+use crate::{comfort::Response, model::frames::Pose};
 
 /// The best sequence from these grasps; `None` without a grasp. It covers no fewer points than the first of them, whose pose
 /// is one of its poses.
@@ -53,7 +53,7 @@ pub fn motions(problem: &PathProblem<'_>, waypoints: &[Waypoint]) -> Vec<Vec<Mot
 #[derive(Clone)]
 pub struct Waypoint {
     pub grasp: BoardGrasp,
-    pub response: Option<Answer>,
+    pub response: Option<Response>,
 }
 
 impl Waypoint {
@@ -91,7 +91,7 @@ fn draw_near(problem: &mut PathProblem<'_>, from: &BoardGrasp, scale: f64) -> Po
 struct Value {
     value: f64,
     /// The person's response, once it has been computed.
-    response: Option<Answer>,
+    response: Option<Response>,
     exact: bool,
 }
 
@@ -102,7 +102,7 @@ impl Value {
         Self { value, response: None, exact: false }
     }
 
-    fn exact(response: Option<Answer>) -> Self {
+    fn exact(response: Option<Response>) -> Self {
         let value = response.map_or(0.0, |response| COVERED + response.objective);
         Self { value, response, exact: true }
     }

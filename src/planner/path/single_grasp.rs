@@ -18,7 +18,7 @@ use super::{
     },
     coverage::{Coverage, PathProblem, Score, displaced},
 };
-use crate::comfort::Answer;
+use crate::comfort::Response;
 
 /// The best grasps that are found for all points, the best first.
 pub fn search(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
@@ -115,7 +115,7 @@ fn displaced_grasp(problem: &mut PathProblem<'_>, from: &BoardGrasp, scale: f64)
 
 /// The coverage of a grasp if it is better than another; the points with the least objective are evaluated first.
 fn better(problem: &mut PathProblem<'_>, grasp: BoardGrasp, than: &Coverage) -> Option<Coverage> {
-    let objective = |response: &Option<Answer>| response.map_or(f64::INFINITY, |response| response.objective);
+    let objective = |response: &Option<Response>| response.map_or(f64::INFINITY, |response| response.objective);
     let mut order: Vec<_> = (0..problem.points()).collect();
     order.sort_by(|&a, &b| objective(&than.responses[a]).total_cmp(&objective(&than.responses[b])));
     let mut responses = vec![None; order.len()];

@@ -1,24 +1,23 @@
 //! First derivatives of a candidate's objective and constraints by its free variables.
 //!
 //! By the chain rule: what depends on the poses of links is differentiated by the arms' joints once, and the joints'
-//! derivatives by the variables do the rest; board and body move as rigid bodies. Only what the person's joints change is
-//! computed by differences.
+//! derivatives by the variables do the rest; board and body move as rigid bodies, and the person's working arm moves by the
+//! axes of its joints.
 
 use nalgebra::{DVector, Point3, Vector3};
 
 use super::{
     super::{
         evaluate::Feasible,
-        library::posture_muscular,
         params::refine::{DIFFERENCE, GRASP, PERSON_RAD, PLACE_M},
         problem::Problem,
     },
-    variables::{RigidTwist, Variables, perturbed, perturbed_grasp},
+    variables::{RigidTwist, Variables, perturbed_grasp},
 };
 use crate::{
-    collision::{Carrier, Near, PersonPart},
+    collision::{BodyRef, NearPair},
     comfort,
-    human::{ArmAngles, BODY_POINTS, CAPSULES, Muscular, peripersonal_pulls},
+    human::{self, BODY_POINTS, MuscularGradient, body_point_joints, peripersonal_pulls},
 };
 
 /// The person's joints.
@@ -32,21 +31,16 @@ pub struct Jacobian<'a, 'p> {
     arms: Vec<ArmAxes>,
     /// Body points, W.
     body_w: [Point3<f64>; BODY_POINTS],
-    /// The person after a small step of each joint.
-    perturbed: Vec<PerturbedPerson>,
+    /// The axes of the person's arm.
+    person_axes: human::ArmAxes,
+    /// Derivatives by the person's joints.
+    muscular: MuscularGradient,
 }
 
 /// The axes of an arm's joints in W.
 struct ArmAxes {
     origins_w: Vec<Point3<f64>>,
     axes_w: Vec<Vector3<f64>>,
-}
-
-/// The person with one joint moved by [`DIFFERENCE`] of a unit.
-struct PerturbedPerson {
-    body_w: [Point3<f64>; BODY_POINTS],
-    capsules: [PersonPart; CAPSULES],
-    muscular: Muscular,
 }
 
 impl<'a, 'p> Jacobian<'a, 'p> {
@@ -59,22 +53,16 @@ impl<'a, 'p> Jacobian<'a, 'p> {
                 origins_w: frames.iter().map(|x_wj| x_wj.translation.vector.into()).collect(),
             }
         });
-        let perturbed = (0..JOINTS).map(|joint| {
-            let work = perturbed(here.candidate.work, joint);
-            let (q_h_rad, x_wb) = (&work.q_h_rad, work.placement(problem).x_wb);
-            PerturbedPerson {
-                body_w: problem.human.body_points_w(&x_wb, q_h_rad),
-                capsules: problem.human.capsules_w(&x_wb, q_h_rad).map(PersonPart::from),
-                muscular: muscular(problem, q_h_rad),
-            }
-        });
+        let human = &problem.human;
+        let (q_h_rad, x_wb) = (&here.candidate.work.q_h_rad, &here.configuration.placement.x_wb);
         Self {
             problem,
             here,
             variables,
             arms: arms.collect(),
-            body_w: problem.human.body_points_w(&here.configuration.placement.x_wb, &here.candidate.work.q_h_rad),
-            perturbed: perturbed.collect(),
+            body_w: human.body_points_w(x_wb, q_h_rad),
+            person_axes: human.arm_axes_w(x_wb, q_h_rad),
+            muscular: human.muscular_gradient(q_h_rad, &problem.wrench_t, problem.scenario.comfort.direction),
         }
     }
 
@@ -93,24 +81,24 @@ impl<'a, 'p> Jacobian<'a, 'p> {
         for (point, pull) in pulls.iter().enumerate() {
             let away = pull.away * settings.weight_peripersonal;
             robot_pulls[pull.nearest] -= away;
-            self.add_body_point(point, &away, &mut gradient);
+            self.add_person_point(body_point_joints(point), &self.body_w[point], &away, &mut gradient);
         }
         let points = robot.body_points.iter().zip(robot_w.iter().zip(&robot_pulls));
         self.add_link_points(points.map(|(point, (p_w, pull))| (point.link, *p_w, *pull)), &mut gradient);
-        let here = self.here.comfort.muscular_regularised;
-        for (joint, perturbed) in self.perturbed.iter().enumerate() {
-            gradient[joint] += settings.weight_muscular * (perturbed.muscular.regularised - here) / DIFFERENCE;
+        for (joint, slope) in self.muscular.regularised.iter().enumerate() {
+            gradient[joint] += settings.weight_muscular * PERSON_RAD * slope;
         }
         gradient
     }
 
-    /// Adds `along . v`, v the derivative of a point of the body by each variable.
-    fn add_body_point(&self, point: usize, along: &Vector3<f64>, gradient: &mut DVector<f64>) {
+    /// Adds `along . v`, v the derivative by each variable of a point of the person that the first `joints` joints of the
+    /// working arm move.
+    fn add_person_point(&self, joints: usize, p_w: &Point3<f64>, along: &Vector3<f64>, gradient: &mut DVector<f64>) {
         for (number, work) in self.variables.work.iter().enumerate() {
-            gradient[number] += match self.perturbed.get(number) {
-                Some(perturbed) => along.dot(&(perturbed.body_w[point] - self.body_w[point])) / DIFFERENCE,
-                None => along.dot(&work.body.at(&self.body_w[point])),
-            };
+            gradient[number] += along.dot(&work.body.at(p_w));
+        }
+        for joint in 0..joints {
+            gradient[joint] += PERSON_RAD * along.dot(&self.person_axes.velocity_w(joint, p_w));
         }
     }
 
@@ -133,36 +121,24 @@ impl<'a, 'p> Jacobian<'a, 'p> {
     }
 
     /// Gradient of the distance of two bodies.
-    pub fn distance_gradient(&self, near: &Near) -> DVector<f64> {
+    pub fn distance_gradient(&self, near: &NearPair) -> DVector<f64> {
         let mut gradient = self.zeros();
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             let (p_w, along) = (near.p_w[side], near.normal_w * sign);
-            match near.carriers[side].0 {
-                Carrier::Link(link) => self.add_link_points(std::iter::once((link, p_w, along)), &mut gradient),
-                Carrier::Board => {
+            match near.bodies[side].0 {
+                BodyRef::Link(link) => self.add_link_points(std::iter::once((link, p_w, along)), &mut gradient),
+                BodyRef::Board => {
                     for (number, work) in self.variables.work.iter().enumerate() {
                         gradient[number] += along.dot(&work.board.at(&p_w));
                     }
                 }
-                Carrier::Person(part) => self.add_person_part(part, &p_w, &along, &mut gradient),
+                BodyRef::Person(part) => {
+                    let joints = self.here.configuration.person[part].name.joints();
+                    self.add_person_point(joints, &p_w, &along, &mut gradient);
+                }
             }
         }
         gradient
-    }
-
-    fn add_person_part(&self, part: usize, p_w: &Point3<f64>, along: &Vector3<f64>, gradient: &mut DVector<f64>) {
-        let here = &self.here.configuration.person[part];
-        let share = share_along(p_w, &here.p0_w, &here.p1_w);
-        for (number, work) in self.variables.work.iter().enumerate() {
-            gradient[number] += match self.perturbed.get(number) {
-                Some(perturbed) => {
-                    let there = &perturbed.capsules[part];
-                    let moved = (there.p0_w - here.p0_w) * (1.0 - share) + (there.p1_w - here.p1_w) * share;
-                    along.dot(&moved) / DIFFERENCE
-                }
-                None => along.dot(&work.body.at(p_w)),
-            };
-        }
     }
 
     /// Gradients of the margins of [`super::linearization::simple_margins`], in their order.
@@ -212,9 +188,8 @@ impl<'a, 'p> Jacobian<'a, 'p> {
     /// Gradient of `1 - alpha` of one of the person's joints.
     fn activation_gradient(&self, joint: usize) -> DVector<f64> {
         let mut gradient = self.zeros();
-        let here = self.here.comfort.activations[joint];
-        for (number, perturbed) in self.perturbed.iter().enumerate() {
-            gradient[number] = (here - perturbed.muscular.activations[joint]) / DIFFERENCE;
+        for (number, slope) in self.muscular.activations[joint].iter().enumerate() {
+            gradient[number] = -PERSON_RAD * slope;
         }
         gradient
     }
@@ -234,20 +209,6 @@ impl<'a, 'p> Jacobian<'a, 'p> {
         }
         gradients
     }
-}
-
-/// The muscular comfort of a posture, which does not depend on where the person stands.
-fn muscular(problem: &Problem<'_>, q_h_rad: &ArmAngles) -> Muscular {
-    let human = &problem.human;
-    let direction = problem.scenario.comfort.direction;
-    posture_muscular(human, q_h_rad, &human.tool_pose_b(q_h_rad), &problem.wrench_t, direction)
-}
-
-/// Position of a point along a segment, from 0 to 1.
-fn share_along(p: &Point3<f64>, p0: &Point3<f64>, p1: &Point3<f64>) -> f64 {
-    let axis = p1 - p0;
-    let length2 = axis.norm_squared();
-    if length2 == 0.0 { 0.0 } else { ((p - p0).dot(&axis) / length2).clamp(0.0, 1.0) }
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use super::{
     variables::Variables,
 };
 use crate::{
-    collision::{Carrier, Near},
+    collision::{BodyRef, NearPair},
     model::plan::Comfort,
 };
 
@@ -31,7 +31,7 @@ pub struct Linearization {
     /// The constraints: simple ones, then pairs of near bodies, then stability if it is included.
     pub constraints: Vec<LinearConstraint>,
     /// The pairs of near bodies.
-    near: Vec<[(Carrier, usize); 2]>,
+    near: Vec<[(BodyRef, usize); 2]>,
     /// Gradient of the utilisation of stability, if it is included.
     stability: Option<DVector<f64>>,
     /// True if that gradient is an update of one at another candidate.
@@ -55,7 +55,7 @@ impl Linearization {
         }));
         let gradient = jacobian.objective_gradient();
         drop(jacobian);
-        let near = near.iter().map(|near| near.carriers).collect();
+        let near = near.iter().map(|near| near.bodies).collect();
         Self { variables, gradient, constraints, near, stability: None, stability_is_updated: false }
     }
 
@@ -72,9 +72,9 @@ impl Linearization {
     ) -> bool {
         let simple = simple_margins(problem, candidate, configuration, &comfort.activations);
         let near = problem.robot.collision.near(&configuration.scene(problem), NEAR_M);
-        let mut violated = near.iter().any(|near| near.margin_m <= 0.0 && !self.near.contains(&near.carriers));
-        let near_margin = |bodies: &[(Carrier, usize); 2]| {
-            near.iter().find(|near: &&Near| near.carriers == *bodies).map(|near| near.margin_m - CLEARANCE_MARGIN_M)
+        let mut violated = near.iter().any(|near| near.margin_m <= 0.0 && !self.near.contains(&near.bodies));
+        let near_margin = |bodies: &[(BodyRef, usize); 2]| {
+            near.iter().find(|near: &&NearPair| near.bodies == *bodies).map(|near| near.margin_m - CLEARANCE_MARGIN_M)
         };
         let margins = simple.iter().map(|&margin| Some(margin - MARGIN)).chain(self.near.iter().map(near_margin));
         for ((corrected, linear), margin) in corrected.iter_mut().zip(&self.constraints).zip(margins) {

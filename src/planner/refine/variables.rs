@@ -174,7 +174,7 @@ impl Variables {
 }
 
 /// A work pose changed by [`DIFFERENCE`] of one of its variables.
-pub fn perturbed(mut work: WorkPose, number: usize) -> WorkPose {
+fn perturbed(mut work: WorkPose, number: usize) -> WorkPose {
     match number {
         0..7 => work.q_h_rad[number] += PERSON_RAD * DIFFERENCE,
         7 => work.heading_rad += PERSON_RAD * DIFFERENCE,

@@ -10,7 +10,7 @@ use crate::model::frames::Pose;
 
 /// A body that a point belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Carrier {
+pub enum BodyRef {
     /// A link of the robot, by its index.
     Link(usize),
     /// The board.
@@ -21,9 +21,9 @@ pub enum Carrier {
 
 /// Two primitives that come near each other.
 #[derive(Clone, Copy, Debug)]
-pub struct Near {
+pub struct NearPair {
     /// The two bodies, and the number of the primitive in each.
-    pub carriers: [(Carrier, usize); 2],
+    pub bodies: [(BodyRef, usize); 2],
     /// The point of each that is closest to the other, W, m.
     pub p_w: [Point3<f64>; 2],
     /// From the first to the second, a unit vector in W.
@@ -33,24 +33,24 @@ pub struct Near {
 }
 
 /// A body with its primitives where they are.
-struct Body<'a> {
-    carrier: Carrier,
+struct PlacedBody<'a> {
+    body: BodyRef,
     pieces: Vec<Placed<'a>>,
 }
 
 impl CollisionModel {
     /// Every pair of primitives that is less than `within_m` farther apart than it must be: the rules are those of
     /// [`CollisionModel::first_violation`]. `scene` must be finite.
-    pub fn near(&self, scene: &Scene<'_>, within_m: f64) -> Vec<Near> {
+    pub fn near(&self, scene: &Scene<'_>, within_m: f64) -> Vec<NearPair> {
         let links = self.links.iter().zip(scene.link_poses).enumerate();
         let links: Vec<_> = links
-            .map(|(link, (shapes, x_wl))| Body {
-                carrier: Carrier::Link(link),
+            .map(|(link, (shapes, x_wl))| PlacedBody {
+                body: BodyRef::Link(link),
                 pieces: shapes.pieces.iter().map(|piece| piece.placed(x_wl)).collect(),
             })
             .collect();
         let board_piece = Piece::cuboid(scene.board_size_m);
-        let board = Body { carrier: Carrier::Board, pieces: vec![board_piece.placed(&scene.x_wo)] };
+        let board = PlacedBody { body: BodyRef::Board, pieces: vec![board_piece.placed(&scene.x_wo)] };
         let capsules: Vec<_> =
             scene.person.iter().map(|part| Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m)).collect();
         let mut found = Vec::new();
@@ -64,7 +64,7 @@ impl CollisionModel {
             pairs(&links[link], &board, 0.0, within_m, &mut found);
         }
         for (index, (part, capsule)) in scene.person.iter().zip(&capsules).enumerate() {
-            let body = Body { carrier: Carrier::Person(index), pieces: vec![capsule.placed(&Pose::identity())] };
+            let body = PlacedBody { body: BodyRef::Person(index), pieces: vec![capsule.placed(&Pose::identity())] };
             if let Some(clearance_m) = part.board_clearance_m {
                 pairs(&board, &body, clearance_m, within_m, &mut found);
             }
@@ -80,12 +80,12 @@ impl CollisionModel {
     }
 }
 
-fn pairs(a: &Body<'_>, b: &Body<'_>, required_m: f64, within_m: f64, found: &mut Vec<Near>) {
+fn pairs(a: &PlacedBody<'_>, b: &PlacedBody<'_>, required_m: f64, within_m: f64, found: &mut Vec<NearPair>) {
     for (i, piece) in a.pieces.iter().enumerate() {
         for (j, other) in b.pieces.iter().enumerate() {
             if let Some(closest) = piece.closest(other, required_m + within_m) {
-                found.push(Near {
-                    carriers: [(a.carrier, i), (b.carrier, j)],
+                found.push(NearPair {
+                    bodies: [(a.body, i), (b.body, j)],
                     p_w: closest.p_w,
                     normal_w: closest.normal_w,
                     margin_m: closest.distance_m - required_m,

@@ -10,7 +10,7 @@ use crate::{human::BodyPart, model::frames::Pose};
 
 /// A person who stands still, with the tool, and the board that they work on.
 #[derive(Clone)]
-pub struct StandingPerson {
+pub struct PersonClearance {
     parts: Vec<StandingPart>,
     board: Piece,
 }
@@ -35,7 +35,7 @@ pub struct Nearest {
     pub distance_m: f64,
 }
 
-impl StandingPerson {
+impl PersonClearance {
     /// A person of these parts at a board of these sides. How large the distances are that the parts must keep in a plan is no
     /// matter here.
     pub fn new(parts: &[PersonPart], board_size_m: [f64; 3]) -> Self {
@@ -54,7 +54,7 @@ impl CollisionModel {
     /// apart. `link_poses` and `x_wo` must be finite.
     pub fn nearest_to_person(
         &self,
-        person: &StandingPerson,
+        person: &PersonClearance,
         link_poses: &[Pose],
         x_wo: &Pose,
         within_m: f64,
