@@ -17,7 +17,6 @@ pub mod junit;
 mod picture;
 pub mod plans;
 mod plot;
-pub mod reproduce;
 pub mod summary;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,10 @@
 //! What the paper concludes from its table, put to the test on ours.
 
-use super::{Hold, Reproduction, printed, table, table::Row, task};
+use super::{
+    evaluation::{HoldRow, KINDS, Reproduction, task},
+    printed,
+    table::{self, Row},
+};
 use crate::model::{operation::OperationKind, scenario::PlannerKind, verdict::VerdictKind};
 
 /// Largest loss of peripersonal comfort against the planner of that comfort alone that still counts as near: in the paper
@@ -22,7 +26,7 @@ pub struct Claim {
 pub fn claims(reproduction: &Reproduction) -> Vec<Claim> {
     let rows = table::rows(reproduction.holds.iter());
     let mut claims = Vec::new();
-    for kind in super::KINDS {
+    for kind in KINDS {
         let row = |planner| rows.iter().find(|row| row.kind == kind && row.planner == planner).and_then(Figures::of);
         if let (Some(comfort), Some(peripersonal), Some(muscular), Some(random)) = (
             row(PlannerKind::Comfort),
@@ -119,6 +123,6 @@ fn simulated(reproduction: &Reproduction) -> Option<Claim> {
 }
 
 /// True when a hold was simulated and held.
-pub fn holds(hold: &Hold) -> bool {
+pub fn holds(hold: &HoldRow) -> bool {
     hold.verdict.as_ref().is_some_and(|verdict| verdict.verdict == VerdictKind::Holds)
 }

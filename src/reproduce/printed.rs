@@ -40,7 +40,7 @@ struct Paper {
 
 static PAPER: LazyLock<Paper> = LazyLock::new(|| {
     // The file is part of the program and a test reads it: a mistake in it cannot be shipped.
-    toml::from_str(include_str!("../../../assets/paper.toml")).expect("the shipped figures of the paper are sound")
+    toml::from_str(include_str!("../../assets/paper.toml")).expect("the shipped figures of the paper are sound")
 });
 
 fn find(rows: &[Printed], task: OperationKind, planner: PlannerKind) -> Option<Printed> {
@@ -65,7 +65,7 @@ pub fn plan_time() -> PlanTime {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::reproduce::KINDS;
+    use crate::reproduce::evaluation::KINDS;
 
     #[test]
     fn every_task_and_planner_has_its_figures() {

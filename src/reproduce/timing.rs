@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Reproduction, printed, table};
+use super::{evaluation::Reproduction, printed, statistics};
 use crate::model::scenario::PlannerKind;
 
 /// Mean, standard deviation and percentiles of the planning times, planner by planner, and of the simulations.
@@ -26,10 +26,10 @@ fn line(text: &mut String, name: &str, times_ms: Vec<f64>) {
     if times_ms.is_empty() {
         return;
     }
-    let quantile = |share| table::quantile(times_ms.clone(), share);
+    let quantile = |share| statistics::quantile(times_ms.clone(), share);
     let figures = [
-        table::mean(times_ms.iter().copied()),
-        table::standard_deviation(&times_ms),
+        statistics::mean(times_ms.iter().copied()),
+        statistics::standard_deviation(&times_ms),
         quantile(0.5),
         quantile(0.9),
         quantile(1.0),

@@ -1,17 +1,4 @@
-//! The report on a reproduction of the paper's evaluation: tables, Markdown and pictures from holds that were planned and
-//! simulated.
-//!
-//! Pure functions, as all of the report. Times are in [`timing`] alone, which is not part of what two runs share. Nothing
-//! here may plan, simulate, or leave out a hold because of what became of it.
-
-pub mod claims;
-mod hull;
-pub mod markdown;
-pub mod picture;
-pub mod printed;
-pub mod table;
-pub mod tables;
-pub mod timing;
+//! The rows that tables, pictures and conclusions are computed from.
 
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +18,7 @@ pub const FIRST_SEED: u64 = 1;
 /// One hold: an operation, planned by one planner with one seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Hold {
+pub struct HoldRow {
     /// The operation's name.
     pub operation: String,
     /// Cut or drill.
@@ -56,7 +43,7 @@ pub struct Hold {
     pub simulate_ms: Option<f64>,
 }
 
-impl Hold {
+impl HoldRow {
     /// The comfort of the plan.
     pub fn comfort(&self) -> Option<&Comfort> {
         self.plan.as_ref()?.comfort.as_ref()
@@ -87,18 +74,18 @@ pub struct Variant {
     /// What differs, in words.
     pub name: String,
     /// The holds.
-    pub holds: Vec<Hold>,
+    pub holds: Vec<HoldRow>,
 }
 
 /// All that the report is made from.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
     /// Every hold, operation by operation in the order of tables, in each planner by planner, seed by seed.
-    pub holds: Vec<Hold>,
+    pub holds: Vec<HoldRow>,
     /// How many seeds the random planner had.
     pub random_seeds: u64,
     /// The comfort planner's holds when it asks for the paper's stability alone, which is a best case.
-    pub best_case: Vec<Hold>,
+    pub best_case: Vec<HoldRow>,
     /// The sensitivity analysis: first the default, then what differs from it; empty when it was left out.
     pub sensitivity: Vec<Variant>,
     /// The seeds of the random planner in the sensitivity analysis.
@@ -109,12 +96,12 @@ pub struct Reproduction {
 
 impl Reproduction {
     /// The holds that are simulated and drawn: one an operation and planner.
-    pub fn first_seeds(&self) -> impl Iterator<Item = &Hold> {
+    pub fn first_seeds(&self) -> impl Iterator<Item = &HoldRow> {
         self.holds.iter().filter(|hold| hold.seed == FIRST_SEED)
     }
 
     /// The hold of an operation by a planner.
-    pub fn hold(&self, operation: &str, planner: PlannerKind) -> Option<&Hold> {
+    pub fn hold(&self, operation: &str, planner: PlannerKind) -> Option<&HoldRow> {
         self.first_seeds().find(|hold| hold.operation == operation && hold.planner == planner)
     }
 
@@ -136,38 +123,5 @@ pub fn task(kind: OperationKind) -> &'static str {
         OperationKind::Cut => "cutting",
         OperationKind::Drill => "drilling",
         OperationKind::Wrench => "wrenching",
-    }
-}
-
-#[cfg(test)]
-mod testing {
-    use super::*;
-
-    /// A hold with these comforts; its plan is otherwise one that the scenarios use.
-    pub fn hold(operation: &str, planner: PlannerKind, seed: u64, muscular: f64, peripersonal_m: f64) -> Hold {
-        let mut plan: Plan = serde_json::from_str(include_str!("../../../scenarios/plans/cut-rim.json")).unwrap();
-        plan.comfort = Some(Comfort {
-            muscular: 2.0 * muscular,
-            muscular_regularised: muscular,
-            peripersonal_m,
-            peripersonal_scaled: Some(64.0 * peripersonal_m),
-            objective: muscular + 64.0 * peripersonal_m,
-            activations: [0.0; 7],
-            average: None,
-            rula: None,
-        });
-        Hold {
-            operation: operation.to_owned(),
-            kind: if operation.starts_with("cut") { OperationKind::Cut } else { OperationKind::Drill },
-            planner,
-            seed,
-            plan: Some(plan),
-            infeasible: None,
-            verdict: None,
-            load_factor_simulated: None,
-            ended_by: None,
-            plan_ms: 1.0,
-            simulate_ms: None,
-        }
     }
 }

@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use super::{
-    Hold, KINDS, Reproduction, Variant, claims,
+    claims,
+    evaluation::{HoldRow, KINDS, Reproduction, Variant, task},
     printed::{self, Printed},
-    table, task,
+    statistics, table,
 };
 use crate::{
     model::{
@@ -118,19 +119,21 @@ fn seeds(text: &mut String, reproduction: &Reproduction) {
             let draws = reproduction.holds.iter().filter(move |h| h.planner == PlannerKind::Random && h.kind == kind);
             draws.filter(move |hold| hold.seed == seed)
         };
-        let means = |figure: fn(&Hold) -> Option<f64>| -> Vec<f64> {
-            (1..=reproduction.random_seeds).filter_map(|seed| table::mean(of_seed(seed).filter_map(figure))).collect()
+        let means = |figure: fn(&HoldRow) -> Option<f64>| -> Vec<f64> {
+            (1..=reproduction.random_seeds)
+                .filter_map(|seed| statistics::mean(of_seed(seed).filter_map(figure)))
+                .collect()
         };
-        let muscular = means(Hold::muscular);
-        let peripersonal = means(Hold::peripersonal_scaled);
+        let muscular = means(HoldRow::muscular);
+        let peripersonal = means(HoldRow::peripersonal_scaled);
         for (name, means) in [("muscular", muscular), ("peripersonal", peripersonal)] {
-            let quantile = |share| figure(table::quantile(means.clone(), share), 2);
+            let quantile = |share| figure(statistics::quantile(means.clone(), share), 2);
             let _ = writeln!(
                 text,
                 "| {} | {name} | {} | {} | {} to {} |",
                 task(kind),
-                figure(table::mean(means.iter().copied()), 2),
-                figure(table::standard_deviation(&means), 2),
+                figure(statistics::mean(means.iter().copied()), 2),
+                figure(statistics::standard_deviation(&means), 2),
                 quantile(0.0),
                 quantile(1.0)
             );
@@ -162,7 +165,7 @@ fn physics(text: &mut String, reproduction: &Reproduction) {
     failures(text, reproduction.first_seeds());
 }
 
-fn physics_row(kind: OperationKind, planner: PlannerKind, holds: &[&Hold]) -> String {
+fn physics_row(kind: OperationKind, planner: PlannerKind, holds: &[&HoldRow]) -> String {
     let worst = |check| largest(holds.iter().filter_map(|hold| hold.value(check)));
     let stability = || holds.iter().filter_map(|hold| hold.plan.as_ref()?.stability.as_ref());
     let smallest = |values: Vec<f64>| largest(values.into_iter().map(|v| -v)).map(|v| -v);
@@ -187,7 +190,7 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 /// How good the predictions were: the simulated over the predicted.
 fn predictions(text: &mut String, reproduction: &Reproduction) {
-    let stability = |hold: &Hold| Some(hold.plan.as_ref()?.stability.as_ref()?.clone());
+    let stability = |hold: &HoldRow| Some(hold.plan.as_ref()?.stability.as_ref()?.clone());
     let ratios: [(&str, Vec<f64>); 3] = [
         (
             "deflection, simulated over predicted",
@@ -204,7 +207,7 @@ fn predictions(text: &mut String, reproduction: &Reproduction) {
     ];
     text.push_str("\n| over all holds | n | least | median | most |\n|---|---|---|---|---|\n");
     for (name, values) in ratios {
-        let quantile = |share| figure(table::quantile(values.clone(), share), 3);
+        let quantile = |share| figure(statistics::quantile(values.clone(), share), 3);
         let _ =
             writeln!(text, "| {name} | {} | {} | {} | {} |", values.len(), quantile(0.0), quantile(0.5), quantile(1.0));
     }
@@ -218,7 +221,7 @@ fn predictions(text: &mut String, reproduction: &Reproduction) {
     }
 }
 
-fn collect(reproduction: &Reproduction, ratio: impl Fn(&Hold) -> Option<f64>) -> Vec<f64> {
+fn collect(reproduction: &Reproduction, ratio: impl Fn(&HoldRow) -> Option<f64>) -> Vec<f64> {
     reproduction.first_seeds().filter_map(ratio).filter(|ratio| ratio.is_finite()).collect()
 }
 
@@ -236,7 +239,7 @@ fn best_case(text: &mut String, reproduction: &Reproduction) {
 }
 
 /// Every hold that did not stand, and why.
-fn failures<'a>(text: &mut String, holds: impl Iterator<Item = &'a Hold>) {
+fn failures<'a>(text: &mut String, holds: impl Iterator<Item = &'a HoldRow>) {
     let failed: Vec<_> = holds.filter(|hold| !claims::holds(hold)).collect();
     if failed.is_empty() {
         text.push_str("\nNo hold failed.\n");
@@ -252,12 +255,12 @@ fn failures<'a>(text: &mut String, holds: impl Iterator<Item = &'a Hold>) {
 }
 
 /// The name of a picture's file.
-pub fn picture_name(hold: &Hold) -> String {
+pub fn picture_name(hold: &HoldRow) -> String {
     format!("{}-{}.svg", hold.operation, hold.planner)
 }
 
 /// The text above a picture.
-pub fn picture_title(hold: &Hold) -> String {
+pub fn picture_title(hold: &HoldRow) -> String {
     format!(
         "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
         hold.operation,
@@ -315,14 +318,14 @@ fn sensitivity(text: &mut String, reproduction: &Reproduction) {
 
 /// What the mean of the person's answers is, and what it makes of the paper's ratios.
 fn mean_answers(text: &mut String, reproduction: &Reproduction) {
-    let is_rated_by_mean = |hold: &Hold| hold.comfort().is_some_and(|comfort| comfort.average.is_some());
+    let is_rated_by_mean = |hold: &HoldRow| hold.comfort().is_some_and(|comfort| comfort.average.is_some());
     let by_mean = |variant: &&Variant| variant.holds.iter().any(is_rated_by_mean);
     let Some(mean) = reproduction.sensitivity.iter().find(by_mean) else { return };
     text.push_str(
         "\nThe mean is that over all of the person's answers to a hold on a uniform grid, for the random planner too. The others search for \
          the best\nanswer as ever and rank the best few of the holds that they find by the mean, so a better mean may exist.\n",
     );
-    let muscular = |holds: &[Hold], kind, planner| {
+    let muscular = |holds: &[HoldRow], kind, planner| {
         table::rows(holds.iter()).iter().find(|row| row.kind == kind && row.planner == planner)?.muscular
     };
     let ratios = KINDS.into_iter().filter_map(|kind| {
@@ -343,7 +346,7 @@ fn mean_answers(text: &mut String, reproduction: &Reproduction) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{model::plan::MeanComfort, report::reproduce::testing::hold};
+    use crate::{model::plan::MeanComfort, reproduce::testing::hold};
 
     #[test]
     fn the_best_answer_of_comfort_is_put_beside_the_mean_of_random() {

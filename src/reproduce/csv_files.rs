@@ -1,6 +1,9 @@
 //! The CSV files: a row a fact, empty where there is none. Text is the same for equal runs.
 
-use super::{FIRST_SEED, Hold, Reproduction, table, task};
+use super::{
+    evaluation::{FIRST_SEED, HoldRow, Reproduction, task},
+    table,
+};
 use crate::model::{scenario::PlannerKind, verdict::CheckKind};
 
 /// Six digits behind the point: what two machines must agree on to have made the same table.
@@ -56,7 +59,7 @@ pub fn plans(reproduction: &Reproduction) -> String {
 
 /// `physics.csv` and `best_case.csv`: what became of each hold in simulation. `load_factor_simulated` is the largest multiple
 /// of the load that holds; empty where it was not looked for.
-pub fn physics<'a>(holds: impl Iterator<Item = &'a Hold>) -> String {
+pub fn physics<'a>(holds: impl Iterator<Item = &'a HoldRow>) -> String {
     let rows = holds.map(|hold| {
         let predicted_mm = hold.plan.as_ref().and_then(|plan| Some(plan.stability.as_ref()?.predicted_deflection_mm));
         vec![
@@ -117,7 +120,7 @@ pub fn sensitivity(reproduction: &Reproduction) -> String {
 
 /// `timing.csv`: how long planning and simulating took. Not the same in two runs.
 pub fn timing(reproduction: &Reproduction) -> String {
-    let of = |hold: &Hold| {
+    let of = |hold: &HoldRow| {
         vec![
             hold.operation.clone(),
             hold.planner.to_string(),

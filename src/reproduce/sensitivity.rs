@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::jobs::{self, Job, Work};
+use super::jobs::{self, Job, Stage};
 use crate::model::{
     frames::rotation_from_xyzw,
     operation::OperationKind,
@@ -10,19 +10,19 @@ use crate::model::{
 };
 
 /// An assumption that differs.
-pub struct VariantOf {
+pub struct Assumption {
     /// In words, without commas: a cell of `sensitivity.csv`.
     pub name: &'static str,
     /// Puts it into a scenario.
     pub change: fn(&mut Scenario),
 }
 
-impl VariantOf {
+impl Assumption {
     /// The plans of one operation under this assumption.
     pub fn jobs(&self, scenario: &Scenario, random_seeds: u64) -> Vec<Job> {
         let mut scenario = scenario.clone();
         (self.change)(&mut scenario);
-        let jobs = jobs::jobs_of(&scenario, random_seeds, Work::Plan).into_iter();
+        let jobs = jobs::jobs_of(&scenario, random_seeds, Stage::Plan).into_iter();
         jobs.map(|job| Job { variant: Some(self.name), ..job }).collect()
     }
 }
@@ -37,30 +37,30 @@ const LONGER_M: f64 = 0.05;
 const TILT_DEG: f64 = 30.0;
 
 /// All of them.
-pub const VARIANTS: [VariantOf; 10] = [
-    VariantOf {
+pub const VARIANTS: [Assumption; 10] = [
+    Assumption {
         name: "the mean of the person's answers in place of the best",
         change: |scenario| scenario.comfort.person = ResponseKind::Mean,
     },
-    VariantOf { name: "strength: 5th percentile", change: |scenario| scenario.human.percentile = 5.0 },
-    VariantOf { name: "strength: 95th percentile", change: |scenario| scenario.human.percentile = 95.0 },
-    VariantOf {
+    Assumption { name: "strength: 5th percentile", change: |scenario| scenario.human.percentile = 5.0 },
+    Assumption { name: "strength: 95th percentile", change: |scenario| scenario.human.percentile = 95.0 },
+    Assumption {
         name: "peripersonal weight 16 in place of 64",
         change: |scenario| scenario.comfort.weight_peripersonal = 16.0,
     },
-    VariantOf { name: "peripersonal weight 256", change: |scenario| scenario.comfort.weight_peripersonal = 256.0 },
-    VariantOf { name: "each comfort over its own optimum in equal shares", change: normalise },
-    VariantOf { name: "tool 5 cm longer", change: lengthen_tool },
-    VariantOf { name: "tool tilted by 30 degrees in the hand", change: tilt_tool },
-    VariantOf {
+    Assumption { name: "peripersonal weight 256", change: |scenario| scenario.comfort.weight_peripersonal = 256.0 },
+    Assumption { name: "each comfort over its own optimum in equal shares", change: normalise },
+    Assumption { name: "tool 5 cm longer", change: lengthen_tool },
+    Assumption { name: "tool tilted by 30 degrees in the hand", change: tilt_tool },
+    Assumption {
         name: "board 0.40 x 0.32 m in place of 0.50 x 0.40",
         change: |scenario| resize(scenario, [0.40, 0.32]),
     },
-    VariantOf { name: "board 0.60 x 0.48 m", change: |scenario| resize(scenario, [0.60, 0.48]) },
+    Assumption { name: "board 0.60 x 0.48 m", change: |scenario| resize(scenario, [0.60, 0.48]) },
 ];
 
 /// True for an operation that is looked at.
-pub fn looks_at(operation: &str) -> bool {
+pub fn includes(operation: &str) -> bool {
     OPERATIONS.contains(&operation)
 }
 
@@ -101,11 +101,11 @@ fn resize(scenario: &mut Scenario, [width_m, height_m]: [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::paper;
+    use crate::reproduce::paper;
 
     #[test]
     fn every_variant_changes_every_operation_that_is_looked_at() {
-        let operations: Vec<_> = paper::operations().into_iter().filter(|o| looks_at(&o.name)).collect();
+        let operations: Vec<_> = paper::operations().into_iter().filter(|o| includes(&o.name)).collect();
         assert_eq!(operations.len(), OPERATIONS.len());
         for operation in operations {
             let scenario = operation.load().unwrap().scenario;

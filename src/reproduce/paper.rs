@@ -6,8 +6,10 @@
 
 use std::{f64::consts::TAU, path::Path};
 
-use super::{InputError, LoadedScenario, load_text};
-use crate::model::operation::OperationKind;
+use crate::{
+    model::operation::OperationKind,
+    scenario::{InputError, LoadedScenario, load_text},
+};
 
 /// How many places of the circle are cut.
 pub const CUTS: usize = 16;
