@@ -21,9 +21,11 @@ use rerun::{
 };
 
 use super::{
-    RecordError, RecordingInput, TIMELINE,
-    chunks::Messages,
-    entity, palette,
+    entity::{TIMELINE, entity},
+    error::RecordError,
+    input::RecordingInput,
+    messages::Messages,
+    palette,
     plots::{FAILURE, JOINTS_SHOWN, LIMIT, LOAD, PLOTS, hardest_first, top},
     scene::POINTS,
 };

@@ -5,10 +5,12 @@ use nalgebra::{Point3, Vector3};
 use rerun::{Boxes3D, Color, EntityPath, Points3D};
 
 use super::{
-    RecordError, RecordingInput,
-    chunks::Messages,
-    entity, palette,
-    scene::{Frames, vec3},
+    entity::entity,
+    error::RecordError,
+    frames::{Frames, vec3},
+    input::RecordingInput,
+    messages::Messages,
+    palette,
 };
 use crate::model::{
     measures::{Event, EventKind},

@@ -4,7 +4,7 @@ use rerun::{
     Scalars, SeriesLines, SeriesPoints, StateChange, StateConfiguration, TextLog, TextLogLevel, components::MarkerShape,
 };
 
-use super::{RecordError, RecordingInput, chunks::Messages, entity, palette};
+use super::{entity::entity, error::RecordError, input::RecordingInput, messages::Messages, palette};
 use crate::model::{
     measures::{EventKind, JointMeasures, Measures, axis_top},
     trace::{Phase, Sample},

@@ -1,29 +1,17 @@
 //! The way back: what a recording says, read from the file.
 
-use std::{collections::BTreeMap, io::Cursor, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
-use rerun::{
-    ComponentDescriptor,
-    external::re_log_encoding::{DecoderApp, StreamHeader},
-    log::{Chunk, LogMsg},
-};
+use rerun::log::Chunk;
 
 use super::{
-    APPLICATION, RecordError, TIMELINE, entity,
+    decode::{chunks, document, json, texts, times_s},
+    error::RecordError,
     plots::{FAILURE, LIMIT, without_time},
-    rrd, stored,
+    stored,
     summary::{ABOUT, About},
 };
 use crate::model::{FORMAT, plan::Plan, scenario::Scenario, trace::Trace, verdict::Verdict};
-
-/// The first bytes of every rerun recording that this version reads.
-const MAGIC: &[u8] = b"RRF2";
-
-/// The minor version of rerun whose files are read: its releases change what the columns mean.
-const RERUN_MINOR: u8 = 36;
-
-/// The versions of rerun whose files are read, in words.
-const RERUN: &str = "0.36";
 
 /// What a recording says.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +70,7 @@ pub struct RecordedRun {
 pub fn read_run(path: &Path) -> Result<RecordedRun, RecordError> {
     read(path, |chunks| {
         let (scenario, plan) = stored::scenario_and_plan(chunks)?;
-        Ok(RecordedRun { scenario, plan, verdict: stored::json(chunks, "verdict")?, trace: stored::trace(chunks)? })
+        Ok(RecordedRun { scenario, plan, verdict: json(chunks, "verdict")?, trace: stored::trace(chunks)? })
     })
 }
 
@@ -119,7 +107,7 @@ fn check_format(chunks: &[Chunk]) -> Result<(), String> {
 }
 
 fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
-    let verdict = stored::json(chunks, "verdict")?;
+    let verdict = json(chunks, "verdict")?;
     let phases: Vec<RecordedPhase> = texts(chunks, "phases", &rerun::StateChange::descriptor_state())
         .map(|(start_s, name)| RecordedPhase { name, start_s })
         .collect();
@@ -132,64 +120,6 @@ fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
             .collect(),
         end_s: chunks.iter().flat_map(times_s).fold(0.0, f64::max),
         phases,
-    })
-}
-
-/// The chunks of the recording itself, without those of its blueprint.
-pub(super) fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
-    check_header(bytes)?;
-    if !rrd::is_complete(bytes) {
-        return Err("the recording was cut short".to_owned());
-    }
-    let (mut chunks, mut ours) = (Vec::new(), false);
-    for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
-        match message.map_err(|error| format!("found a damaged recording: {error}"))? {
-            LogMsg::SetStoreInfo(info) => ours |= info.info.application_id().as_str() == APPLICATION,
-            LogMsg::ArrowMsg(store, arrow) if store.is_recording() => {
-                chunks.push(Chunk::from_arrow_msg(&arrow).map_err(|error| format!("found damaged data: {error}"))?);
-            }
-            LogMsg::ArrowMsg(..) | LogMsg::BlueprintActivationCommand(_) => {}
-        }
-    }
-    if ours { Ok(chunks) } else { Err("found no recording of benchdog, expected one".to_owned()) }
-}
-
-/// The header says whether this is a rerun recording, and of which version.
-fn check_header(bytes: &[u8]) -> Result<(), String> {
-    let no_recording = "found no rerun recording, expected a file that starts with \"RRF2\"";
-    let header = bytes.get(..StreamHeader::ENCODED_SIZE_BYTES).ok_or(no_recording)?;
-    let (magic, [major, minor, patch, _]) = (&header[..4], [header[4], header[5], header[6], header[7]]);
-    let found = || format!("found a recording of rerun {major}.{minor}.{patch}, expected one of {RERUN}");
-    match magic {
-        MAGIC if (major, minor) == (0, RERUN_MINOR) => Ok(()),
-        MAGIC => Err(found()),
-        // RRF0, RRF1: files of rerun before 0.23.
-        [b'R', b'R', b'F', _] => Err(found()),
-        _ => Err(no_recording.to_owned()),
-    }
-}
-
-fn of<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'a Chunk> {
-    let path = entity(&[path]);
-    chunks.iter().filter(move |chunk| *chunk.entity_path() == path)
-}
-
-/// The text of a document.
-pub(super) fn document(chunks: &[Chunk], path: &str) -> Option<String> {
-    let component = rerun::TextDocument::descriptor_text().component;
-    let batch = |chunk: &Chunk| chunk.component_batch::<rerun::Text>(component, 0)?.ok()?.pop();
-    of(chunks, path).find_map(batch).map(|text| text.to_string())
-}
-
-/// Times and texts of a component.
-fn texts(chunks: &[Chunk], path: &str, descriptor: &ComponentDescriptor) -> impl Iterator<Item = (f64, String)> {
-    let component = descriptor.component;
-    of(chunks, path).flat_map(move |chunk| {
-        let row = move |(index, time_s): (usize, f64)| {
-            let text = chunk.component_batch::<rerun::Text>(component, index)?.ok()?.pop()?;
-            Some((time_s, text.to_string()))
-        };
-        times_s(chunk).into_iter().enumerate().filter_map(row)
     })
 }
 
@@ -225,10 +155,4 @@ fn peak(chunk: &Chunk, end_s: f64) -> Option<f64> {
         .filter(|(time_s, _)| *time_s < end_s)
         .filter_map(|(_, value)| value)
         .reduce(f64::max)
-}
-
-/// The times of a chunk's rows, s.
-fn times_s(chunk: &Chunk) -> Vec<f64> {
-    let column = chunk.timelines().get(&TIMELINE.into());
-    column.map_or(Vec::new(), |column| column.times_raw().iter().map(|&nanos| nanos as f64 / 1e9).collect())
 }

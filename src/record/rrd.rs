@@ -11,7 +11,7 @@ use rerun::{
     log::LogMsg,
 };
 
-use super::RecordError;
+use super::error::RecordError;
 
 /// The index of a file as it stands in the file.
 type FooterRecord = <RrdFooter as ToTransport>::Output;

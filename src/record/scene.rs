@@ -6,21 +6,26 @@ use rerun::{
     Transform3D, ViewCoordinates,
 };
 
-use super::{Capsule, RecordError, RecordingInput, chunks::Messages, crossings, entity, palette};
+use super::{
+    crossings,
+    entity::entity,
+    error::RecordError,
+    frames::{Frames, arm_indices, frames, quaternion, vec3},
+    input::{Capsule, RecordingInput},
+    messages::Messages,
+    palette,
+};
 use crate::{
     model::{
         frames::Pose,
         operation::{Operation, OperationKind},
         trace::Sample,
     },
-    robot::{ArmState, PlacedShape, Robot, Shape},
+    robot::{PlacedShape, Robot, Shape},
 };
 
 /// Length of a force's arrow, m/N: the 30 N of a grip are as long as a hand is wide.
 pub(super) const ARROW_M_PER_N: f64 = 0.004;
-
-/// Time between two pictures, s.
-const FRAME_S: f64 = 0.02;
 
 /// Thickness of the plate that marks a pad, m: to be seen, no property of the gripper.
 const PAD_PLATE_M: f64 = 0.004;
@@ -34,15 +39,6 @@ pub(super) const POINTS: &str = "points";
 /// Radius of the ring that marks a hole, m, and half the length of the line that marks a cut.
 const HOLE_RADIUS_M: f64 = 0.012;
 const HALF_CUT_M: f64 = 0.05;
-
-/// The samples that become pictures, and the poses of the robot's links in them.
-pub(super) struct Frames<'a> {
-    samples: Vec<&'a Sample>,
-    /// Their times, s.
-    pub times_s: Vec<f64>,
-    /// One entry a frame, in it one entry a link.
-    x_wl: Vec<Vec<Pose>>,
-}
 
 /// Logs the scene.
 pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
@@ -58,43 +54,6 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
         log_pads(messages, input, &frames, arm, robot_arm)?;
     }
     log_load(messages, &frames)
-}
-
-/// For each arm of the trace its index in the robot.
-fn arm_indices(input: &RecordingInput) -> Result<Vec<usize>, RecordError> {
-    let names = || input.robot.arms.iter().map(|arm| format!("\"{}\"", arm.name)).collect::<Vec<_>>().join(", ");
-    let index = |name: &String| {
-        let unknown = || RecordError::UnknownArm { found: name.clone(), expected: names() };
-        input.robot.arm_index(name).ok_or_else(unknown)
-    };
-    input.trace.arms.iter().map(|arm| index(&arm.name)).collect()
-}
-
-fn frames<'a>(input: &RecordingInput<'a>, arms: &[usize]) -> Frames<'a> {
-    let mut samples: Vec<&Sample> = Vec::new();
-    for sample in &input.trace.samples {
-        // Half a millisecond early counts: sums of steps are not exact.
-        if samples.last().is_none_or(|last| sample.time_s - last.time_s > FRAME_S - 5e-4) {
-            samples.push(sample);
-        }
-    }
-    let link_poses = |sample: &Sample| {
-        let states: Vec<ArmState> = arms
-            .iter()
-            .zip(&sample.arms)
-            .map(|(&arm, state)| ArmState {
-                arm,
-                q_rad: &state.q_rad,
-                finger_travel_m: std::array::from_fn(|finger| state.finger_m.get(finger).copied().unwrap_or(0.0)),
-            })
-            .collect();
-        input.robot.link_poses(&input.robot.positions(&states))
-    };
-    Frames {
-        times_s: samples.iter().map(|sample| sample.time_s).collect(),
-        x_wl: samples.iter().map(|sample| link_poses(sample)).collect(),
-        samples,
-    }
 }
 
 fn log_robot(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Result<(), RecordError> {
@@ -318,14 +277,4 @@ fn log_poses(
 
 fn transform(pose: &Pose) -> Transform3D {
     Transform3D::new().with_translation(vec3(&pose.translation.vector)).with_quaternion(quaternion(&pose.rotation))
-}
-
-/// rerun's numbers are single precision.
-pub(super) fn vec3(vector: &Vector3<f64>) -> [f32; 3] {
-    vector.map(|v| v as f32).into()
-}
-
-fn quaternion(rotation: &UnitQuaternion<f64>) -> rerun::Quaternion {
-    let [x, y, z, w] = rotation.coords.map(|v| v as f32).into();
-    rerun::Quaternion::from_xyzw([x, y, z, w])
 }

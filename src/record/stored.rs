@@ -15,9 +15,9 @@ use rerun::{
     },
     log::Chunk,
 };
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 
-use super::{RecordError, RecordingInput, chunks::Messages, entity, read};
+use super::{decode::json, entity::entity, error::RecordError, input::RecordingInput, messages::Messages};
 use crate::model::{
     frames::Pose,
     plan::Plan,
@@ -159,12 +159,6 @@ fn column(name: &'static str, rows: impl Iterator<Item = Vec<f64>>) -> Serialize
     let numbers = Float64Array::from_iter_values(rows.into_iter().flatten());
     let item = Arc::new(Field::new("item", DataType::Float64, true));
     SerializedComponentColumn::new(ListArray::new(item, offsets, Arc::new(numbers), None), descriptor(name))
-}
-
-/// A JSON document of a recording.
-pub(super) fn json<T: DeserializeOwned>(chunks: &[Chunk], path: &str) -> Result<T, String> {
-    let text = read::document(chunks, path).ok_or_else(|| format!("found no {path}, expected one"))?;
-    serde_json::from_str(&text).map_err(|error| format!("found a malformed {path}: {error}"))
 }
 
 /// The scenario and the plan of a recording.

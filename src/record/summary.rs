@@ -6,9 +6,10 @@ use rerun::TextDocument;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    RecordError, RecordingInput,
-    chunks::Messages,
-    entity,
+    entity::entity,
+    error::RecordError,
+    input::RecordingInput,
+    messages::Messages,
     scene::{ARROW_M_PER_N, operation_label},
 };
 use crate::model::{FORMAT, plan::Plan, verdict::Verdict};

@@ -10,7 +10,7 @@ use rerun::{
     time::TimeInt,
 };
 
-use super::{RecordError, TIMELINE};
+use super::{entity::TIMELINE, error::RecordError};
 
 /// Messages in the order in which they were logged.
 pub(super) struct Messages {
