@@ -1,33 +1,33 @@
-//! The three ways to hold a board for a circle, as tables for programs and readers.
+//! The strategies for a whole circle, as CSV and as console tables.
 
 use std::fmt::Write as _;
 
 use super::console::aligned;
 use crate::model::{frames::Pose, plan::Plan};
 
-/// A way by its name, with a plan for every point that it serves.
-pub type Way<'a> = (&'static str, &'a [Option<Plan>]);
+/// A strategy by name, with a plan for every point that it covers.
+pub type Strategy<'a> = (&'static str, &'a [Option<Plan>]);
 
-/// A pose on the way from one point to the next.
+/// One pose of the motion from one point to the next.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// The board's pose.
+    /// The board's pose in W.
     pub x_wo: Pose,
-    /// The joint angles of all arms, arm after arm, rad.
+    /// The joint angles of all arms, one arm after the other, rad.
     pub q_rad: Vec<f64>,
 }
 
-/// What a plan is worth: objective, regularised muscular and peripersonal comfort (m).
+/// Objective, regularised muscular comfort and peripersonal comfort (m) of a plan.
 fn comforts(plan: &Plan) -> Option<[f64; 3]> {
     plan.comfort.as_ref().map(|comfort| [comfort.objective, comfort.muscular_regularised, comfort.peripersonal_m])
 }
 
-/// A row a way and point; no figures where the way does not serve the point.
-pub fn csv(ways: &[Way<'_>]) -> String {
+/// One row per strategy and point; the figures are empty if the strategy does not cover the point.
+pub fn csv(strategies: &[Strategy<'_>]) -> String {
     let mut text = String::from(
         "way,point,angle_deg,served,objective,muscular_regularised,peripersonal_m,load_factor,compliant_load_factor\n",
     );
-    for (name, plans) in ways {
+    for (name, plans) in strategies {
         for (index, plan) in plans.iter().enumerate() {
             let angle_deg = 360.0 * index as f64 / plans.len() as f64;
             let served = plan.as_ref().and_then(|plan| Some((comforts(plan)?, plan.stability.as_ref()?)));
@@ -45,7 +45,7 @@ pub fn csv(ways: &[Way<'_>]) -> String {
     text
 }
 
-/// A row a step: which points it lies between, the board's pose in the world (m, unit quaternion with the scalar last) and
+/// One row per step: the points that it is between, the board's pose in the world (m, unit quaternion with the scalar last) and
 /// the joint angles, rad.
 pub fn motion_csv(joints: &[String], motions: &[Vec<Step>]) -> String {
     let mut text = String::from("from_point,to_point,step,x_m,y_m,z_m,qx,qy,qz,qw");
@@ -67,17 +67,17 @@ pub fn motion_csv(joints: &[String], motions: &[Vec<Step>]) -> String {
     text
 }
 
-/// A line a way: how many points it serves, its worst and its mean comfort, and the mean of what it keeps of the last way at
-/// the points that both serve.
-pub fn table(ways: &[Way<'_>]) -> String {
+/// One line per strategy: number of points that it covers, worst objective, mean objective and comforts, and the mean ratio of
+/// its objective to that of the last strategy, over the points that both cover.
+pub fn table(strategies: &[Strategy<'_>]) -> String {
     let header = ["way", "points", "worst", "mean", "muscular", "peripersonal m", "kept %"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for (name, plans) in ways {
+    for (name, plans) in strategies {
         let served: Vec<_> = plans.iter().flatten().filter_map(comforts).collect();
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let column = |number: usize| mean(&served.iter().map(|comforts| comforts[number]).collect::<Vec<_>>());
-        let told = |value: f64, digits| if value.is_finite() { format!("{value:.digits$}") } else { "-".to_owned() };
-        let reference = ways.last().map_or(&[][..], |(_, plans)| plans);
+        let cell = |value: f64, digits| if value.is_finite() { format!("{value:.digits$}") } else { "-".to_owned() };
+        let reference = strategies.last().map_or(&[][..], |(_, plans)| plans);
         let shares: Vec<_> = plans
             .iter()
             .zip(reference)
@@ -86,11 +86,11 @@ pub fn table(ways: &[Way<'_>]) -> String {
         rows.push(vec![
             (*name).to_owned(),
             format!("{}/{}", served.len(), plans.len()),
-            told(served.iter().map(|comforts| comforts[0]).fold(f64::INFINITY, f64::min), 2),
-            told(column(0), 2),
-            told(column(1), 2),
-            told(column(2), 3),
-            told(100.0 * mean(&shares), 1),
+            cell(served.iter().map(|comforts| comforts[0]).fold(f64::INFINITY, f64::min), 2),
+            cell(column(0), 2),
+            cell(column(1), 2),
+            cell(column(2), 3),
+            cell(100.0 * mean(&shares), 1),
         ]);
     }
     aligned(&rows, 1)
