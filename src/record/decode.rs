@@ -17,10 +17,10 @@ use super::{
 /// The first bytes of every rerun recording that this version reads.
 const MAGIC: &[u8] = b"RRF2";
 
-/// The minor version of rerun whose files are read: its releases change what the columns mean.
+/// The minor version of rerun whose files are read. Other versions have other columns.
 const RERUN_MINOR: u8 = 36;
 
-/// The versions of rerun whose files are read, in words.
+/// The same, for messages.
 const RERUN: &str = "0.36";
 
 /// The chunks of the recording itself, without those of its blueprint.
@@ -29,20 +29,20 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
     if !rrd::is_complete(bytes) {
         return Err("the recording was cut short".to_owned());
     }
-    let (mut chunks, mut ours) = (Vec::new(), false);
+    let (mut chunks, mut is_benchdog) = (Vec::new(), false);
     for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
         match message.map_err(|error| format!("found a damaged recording: {error}"))? {
-            LogMsg::SetStoreInfo(info) => ours |= info.info.application_id().as_str() == APPLICATION,
+            LogMsg::SetStoreInfo(info) => is_benchdog |= info.info.application_id().as_str() == APPLICATION,
             LogMsg::ArrowMsg(store, arrow) if store.is_recording() => {
                 chunks.push(Chunk::from_arrow_msg(&arrow).map_err(|error| format!("found damaged data: {error}"))?);
             }
             LogMsg::ArrowMsg(..) | LogMsg::BlueprintActivationCommand(_) => {}
         }
     }
-    if ours { Ok(chunks) } else { Err("found no recording of benchdog, expected one".to_owned()) }
+    if is_benchdog { Ok(chunks) } else { Err("found no recording of benchdog, expected one".to_owned()) }
 }
 
-/// The header says whether this is a rerun recording, and of which version.
+/// Checks by the header that this is a rerun recording of a supported version.
 fn check_header(bytes: &[u8]) -> Result<(), String> {
     let no_recording = "found no rerun recording, expected a file that starts with \"RRF2\"";
     let header = bytes.get(..StreamHeader::ENCODED_SIZE_BYTES).ok_or(no_recording)?;
@@ -57,7 +57,7 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-pub(super) fn of<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'a Chunk> {
+pub(super) fn of_entity<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'a Chunk> {
     let path = entity(&[path]);
     chunks.iter().filter(move |chunk| *chunk.entity_path() == path)
 }
@@ -66,17 +66,17 @@ pub(super) fn of<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'
 pub(super) fn document(chunks: &[Chunk], path: &str) -> Option<String> {
     let component = rerun::TextDocument::descriptor_text().component;
     let batch = |chunk: &Chunk| chunk.component_batch::<rerun::Text>(component, 0)?.ok()?.pop();
-    of(chunks, path).find_map(batch).map(|text| text.to_string())
+    of_entity(chunks, path).find_map(batch).map(|text| text.to_string())
 }
 
-/// Times and texts of a component.
+/// Times, s, and texts of a component.
 pub(super) fn texts(
     chunks: &[Chunk],
     path: &str,
     descriptor: &ComponentDescriptor,
 ) -> impl Iterator<Item = (f64, String)> {
     let component = descriptor.component;
-    of(chunks, path).flat_map(move |chunk| {
+    of_entity(chunks, path).flat_map(move |chunk| {
         let row = move |(index, time_s): (usize, f64)| {
             let text = chunk.component_batch::<rerun::Text>(component, index)?.ok()?.pop()?;
             Some((time_s, text.to_string()))
@@ -85,7 +85,7 @@ pub(super) fn texts(
     })
 }
 
-/// A JSON document of a recording.
+/// A JSON document, deserialised.
 pub(super) fn json<T: DeserializeOwned>(chunks: &[Chunk], path: &str) -> Result<T, String> {
     let text = document(chunks, path).ok_or_else(|| format!("found no {path}, expected one"))?;
     serde_json::from_str(&text).map_err(|error| format!("found a malformed {path}: {error}"))

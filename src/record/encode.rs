@@ -8,10 +8,10 @@ use super::{
 };
 use crate::model::verdict::Verdict;
 
-/// The bytes of a recording (`.rrd`) with the blueprint by which the viewer lays it out. Equal inputs give equal bytes.
+/// The bytes of a recording (`.rrd`) with the viewer's layout. Equal inputs give equal bytes.
 ///
 /// # Errors
-/// When the trace has an arm that the robot does not have.
+/// If the trace has an arm that the robot does not have.
 pub fn encode(input: &RecordingInput) -> Result<Vec<u8>, RecordError> {
     let id = recording_id(input.verdict);
     let mut recording = Messages::new(StoreId::new(StoreKind::Recording, APPLICATION, id.as_str()));
@@ -25,7 +25,7 @@ pub fn encode(input: &RecordingInput) -> Result<Vec<u8>, RecordError> {
     rrd::bytes(recording.into_messages().into_iter().chain(layout))
 }
 
-/// Fixed by the verdict: recordings of equal runs are the same recording to the viewer.
+/// The id depends on the verdict only, so the viewer treats recordings of equal runs as one.
 fn recording_id(verdict: &Verdict) -> String {
     let fingerprint = verdict.fingerprint.get(..16).unwrap_or(&verdict.fingerprint);
     format!("{}-{fingerprint}", verdict.name)

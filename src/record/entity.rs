@@ -5,10 +5,10 @@ use rerun::EntityPath;
 /// The name under which the viewer groups recordings.
 pub(super) const APPLICATION: &str = "benchdog";
 
-/// The timeline of all that changes: time since the start of the simulation.
+/// The timeline: time since the start of the simulation.
 pub(super) const TIMELINE: &str = "time";
 
-/// An entity's path from its parts, whatever characters they contain.
+/// An entity's path from its parts, which may contain any characters.
 pub(super) fn entity(parts: &[&str]) -> EntityPath {
     EntityPath::new(parts.iter().map(|&part| part.into()).collect())
 }

@@ -2,21 +2,21 @@
 
 use std::path::PathBuf;
 
-/// Why a recording could not be made or read.
+/// A recording cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// The trace and the robot do not belong together.
+    /// The trace has an arm that the robot does not have.
     #[error("found arm \"{found}\" in the trace, expected one of {expected}")]
     UnknownArm {
-        /// The arm of the trace.
+        /// The arm in the trace.
         found: String,
         /// The robot's arms.
         expected: String,
     },
-    /// The data could not be brought into rerun's format.
+    /// The data cannot be encoded.
     #[error("failed to encode the recording: {0}")]
     Encode(Box<dyn std::error::Error + Send + Sync>),
-    /// The file could not be read.
+    /// The file cannot be read.
     #[error("failed to read {}: {source}", path.display())]
     Read {
         /// The file.
@@ -24,7 +24,7 @@ pub enum RecordError {
         /// The cause.
         source: std::io::Error,
     },
-    /// The file is no recording of ours, or a damaged one.
+    /// The file is not a recording of Benchdog, or is damaged.
     #[error("failed to read {}: {problem}", path.display())]
     Invalid {
         /// The file.
@@ -35,7 +35,7 @@ pub enum RecordError {
 }
 
 impl RecordError {
-    /// True when a file is to blame and not what was to be recorded.
+    /// True if the cause is a file and not the recorded data.
     pub fn is_about_a_file(&self) -> bool {
         matches!(self, Self::Read { .. } | Self::Invalid { .. })
     }

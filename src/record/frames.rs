@@ -8,19 +8,20 @@ use crate::{
     robot::ArmState,
 };
 
-/// Time between two pictures, s.
+/// Time between two frames, s.
 const FRAME_S: f64 = 0.02;
 
-/// The samples that become pictures, and the poses of the robot's links in them.
+/// The samples that are shown, with the poses of the robot's links.
 pub(super) struct Frames<'a> {
+    /// The samples.
     pub samples: Vec<&'a Sample>,
     /// Their times, s.
     pub times_s: Vec<f64>,
-    /// One entry a frame, in it one entry a link.
+    /// Poses of the links, by frame and link.
     pub x_wl: Vec<Vec<Pose>>,
 }
 
-/// For each arm of the trace its index in the robot.
+/// The robot's index of each arm of the trace.
 pub(super) fn arm_indices(input: &RecordingInput) -> Result<Vec<usize>, RecordError> {
     let names = || input.robot.arms.iter().map(|arm| format!("\"{}\"", arm.name)).collect::<Vec<_>>().join(", ");
     let index = |name: &String| {
@@ -30,10 +31,11 @@ pub(super) fn arm_indices(input: &RecordingInput) -> Result<Vec<usize>, RecordEr
     input.trace.arms.iter().map(|arm| index(&arm.name)).collect()
 }
 
+/// One sample every 20 ms.
 pub(super) fn frames<'a>(input: &RecordingInput<'a>, arms: &[usize]) -> Frames<'a> {
     let mut samples: Vec<&Sample> = Vec::new();
     for sample in &input.trace.samples {
-        // Half a millisecond early counts: sums of steps are not exact.
+        // The tolerance of 0.5 ms allows for rounding in sums of steps.
         if samples.last().is_none_or(|last| sample.time_s - last.time_s > FRAME_S - 5e-4) {
             samples.push(sample);
         }
@@ -57,7 +59,7 @@ pub(super) fn frames<'a>(input: &RecordingInput<'a>, arms: &[usize]) -> Frames<'
     }
 }
 
-/// rerun's numbers are single precision.
+/// A vector in rerun's single precision.
 pub(super) fn vec3(vector: &Vector3<f64>) -> [f32; 3] {
     vector.map(|v| v as f32).into()
 }

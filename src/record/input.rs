@@ -13,7 +13,7 @@ use crate::{
     robot::Robot,
 };
 
-/// What a recording is made of.
+/// The data of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordingInput<'a> {
     /// The robot of the plan.
@@ -22,33 +22,33 @@ pub struct RecordingInput<'a> {
     pub scenario: &'a Scenario,
     /// The plan that was simulated.
     pub plan: &'a Plan,
-    /// What happened.
+    /// The trace of the simulation.
     pub trace: &'a Trace,
-    /// The judge's series.
+    /// The judge's time series.
     pub measures: &'a Measures,
     /// The judge's events.
     pub events: &'a [Event],
     /// The verdict.
     pub verdict: &'a Verdict,
-    /// The person in the posture of the plan; none when the plan has no person.
+    /// The person in the planned posture; `None` if the plan has no person.
     pub person: Option<&'a PersonShape>,
 }
 
-/// The person as a picture needs them. They stand still: no person is simulated.
+/// The person as drawn in the scene. The person does not move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PersonShape {
     /// The body's parts.
     pub capsules: Vec<Capsule>,
-    /// Middle of the palm that holds the tool, in W, m.
+    /// Centre of the palm that holds the tool, in W, m.
     pub palm_w: Point3<f64>,
-    /// The points of the body from which the distance to the robot is measured, in W, m.
+    /// The body points of the peripersonal metric, in W, m.
     pub points_w: Vec<Point3<f64>>,
 }
 
-/// A cylinder with round ends.
+/// A cylinder with hemispherical ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
-    /// Centres of the round ends, in W, m.
+    /// Centres of the hemispheres, in W, m.
     pub ends_w: [Point3<f64>; 2],
     /// Radius, m.
     pub radius_m: f64,

@@ -1,21 +1,20 @@
-//! The rerun recording of a run: what a reviewer opens months later to see the hold, its figures and its verdict.
+//! The rerun recording of a run: scene, plots, events and verdict for the viewer, and the whole trace.
 //!
-//! A recording never changes a verdict and never measures anything: it shows the trace and the judge's own series. The
-//! bytes are a function of the input alone. For this the messages are built here with counted ids, and not by rerun's
-//! `RecordingStream`, which draws ids from the clock and heeds environment variables.
+//! A recording shows the trace and the judge's time series; it computes no measures and never changes a verdict. Equal
+//! inputs give equal bytes. Therefore messages are built here with sequential ids, not by rerun's `RecordingStream`, which
+//! takes ids from the clock and reads environment variables.
 //!
-//! | entity | what it shows |
+//! | entity | content |
 //! |---|---|
 //! | `scene/...` | robot, board, operation, person, tool, pads and forces, in W |
-//! | `plots/...` | slip, rotation, deflection, torque ratios, each beside its limit; load factor |
-//! | `phases`, `events` | what happened when |
-//! | `summary` | the verdict and the plan for a reader |
-//! | `about`, `verdict` | the format's number and the verdict's JSON, for [`read_summary`] |
-//! | `scenario`, `plan`, `trace/...` | the run itself, for [`read_run`] |
+//! | `plots/...` | slip, rotation, deflection, torque ratios, each with its limit; load factor |
+//! | `phases`, `events` | phases of the simulation; limits crossed and other events |
+//! | `summary` | verdict and plan as Markdown |
+//! | `about`, `verdict` | format version and verdict as JSON, read by [`read_summary`] |
+//! | `scenario`, `plan`, `trace/...` | scenario, plan and trace, read by [`read_run`] |
 //!
-//! The moment at which a limit is first crossed is marked at the same time stamp in four places: as a warning in `events`,
-//! as a point on the series in `plots`, as a labelled point in the scene, and by the colour of the pads or the board
-//! that crossed it.
+//! The first crossing of a limit is marked at its time in four places: a warning in `events`, a point on the series in
+//! `plots`, a labelled point in the scene, and the colour of the pads or the board.
 
 mod blueprint;
 mod crossings;

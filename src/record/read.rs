@@ -1,4 +1,4 @@
-//! The way back: what a recording says, read from the file.
+//! Reads the verdict, or the whole run, from a recording.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -13,14 +13,14 @@ use super::{
 };
 use crate::model::{FORMAT, plan::Plan, scenario::Scenario, trace::Trace, verdict::Verdict};
 
-/// What a recording says.
+/// The verdict and the main figures of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedSummary {
-    /// The verdict, as it was recorded.
+    /// The recorded verdict.
     pub verdict: Verdict,
-    /// The largest value of every plotted series while the load acted.
+    /// The largest value of each series until the load was released.
     pub peaks: Peaks,
-    /// The parts of the simulation.
+    /// The phases of the simulation.
     pub phases: Vec<RecordedPhase>,
     /// Events: time, s, and text.
     pub events: Vec<(f64, String)>,
@@ -28,7 +28,7 @@ pub struct RecordedSummary {
     pub end_s: f64,
 }
 
-/// The largest values of the plotted series, from the reference to the end of the load.
+/// The largest values of the series, from the reference state until the load is released.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     /// Slip of each hand, mm.
@@ -37,33 +37,33 @@ pub struct Peaks {
     pub rotation_deg: BTreeMap<String, f64>,
     /// Deflection of the tool point, mm.
     pub deflection_mm: f64,
-    /// Torque over limit of each joint.
+    /// Torque divided by its limit, for each joint.
     pub torque_ratio: BTreeMap<String, f64>,
 }
 
-/// One part of the simulation.
+/// One phase of the simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedPhase {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its first sample, s.
+    /// Time of its first sample, s.
     pub start_s: f64,
 }
 
-/// The run that a recording holds, enough to judge it again.
+/// The run in a recording, sufficient to judge it again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedRun {
     /// The scenario under which the plan was simulated.
     pub scenario: Scenario,
     /// The plan.
     pub plan: Plan,
-    /// The verdict, as it was recorded.
+    /// The recorded verdict.
     pub verdict: Verdict,
-    /// What happened, bit by bit as the simulation had it.
+    /// The trace, equal to that of the simulation bit by bit.
     pub trace: Trace,
 }
 
-/// Reads the run that a recording of ours holds.
+/// Reads the run from a recording of Benchdog.
 ///
 /// # Errors
 /// As for [`read_summary`].
@@ -74,25 +74,26 @@ pub fn read_run(path: &Path) -> Result<RecordedRun, RecordError> {
     })
 }
 
-/// Reads what a recording of ours says.
+/// Reads the verdict and the main figures from a recording of Benchdog.
 ///
 /// # Errors
-/// When the file cannot be read, is no rerun recording, is one of another program, or was cut short.
+/// If the file cannot be read, is not a rerun recording, was written by another program or another version of the format,
+/// or is truncated.
 pub fn read_summary(path: &Path) -> Result<RecordedSummary, RecordError> {
     read(path, summary)
 }
 
-/// Reads a file, sees whether it is one of ours, and takes from it what is wanted.
-fn read<T>(path: &Path, take: impl FnOnce(&[Chunk]) -> Result<T, String>) -> Result<T, RecordError> {
+/// Reads a file, checks its format, and extracts data from it.
+fn read<T>(path: &Path, extract: impl FnOnce(&[Chunk]) -> Result<T, String>) -> Result<T, RecordError> {
     let bytes = std::fs::read(path).map_err(|source| RecordError::Read { path: path.to_owned(), source })?;
-    let taken = chunks(&bytes).and_then(|chunks| {
+    let extracted = chunks(&bytes).and_then(|chunks| {
         check_format(&chunks)?;
-        take(&chunks)
+        extract(&chunks)
     });
-    taken.map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
+    extracted.map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
 }
 
-/// The format's number is looked at before anything that may have another form in another format.
+/// Checks the format version, before any data whose form depends on it.
 fn check_format(chunks: &[Chunk]) -> Result<(), String> {
     let about = document(chunks, ABOUT).and_then(|json| serde_json::from_str::<About>(&json).ok());
     let own = env!("CARGO_PKG_VERSION");
@@ -102,7 +103,7 @@ fn check_format(chunks: &[Chunk]) -> Result<(), String> {
         Some(About { format, benchdog }) => {
             Err(format!("found a recording of format {format}, made by benchdog {benchdog}, {expected}"))
         }
-        None => Err(format!("found a recording that does not say its format, {expected}")),
+        None => Err(format!("found a recording without a format version, {expected}")),
     }
 }
 
@@ -123,7 +124,7 @@ fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
     })
 }
 
-/// The largest values of all series before `end_s`.
+/// The largest values of all series before the time `end_s`.
 fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
     let mut peaks = Peaks::default();
     for chunk in chunks {
@@ -145,7 +146,7 @@ fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
     peaks
 }
 
-/// The largest scalar of a chunk before `end_s`; none in a chunk without scalars.
+/// The largest scalar of a chunk before the time `end_s`; `None` in a chunk without scalars.
 fn peak(chunk: &Chunk, end_s: f64) -> Option<f64> {
     let component = rerun::Scalars::descriptor_scalars().component;
     let values = chunk.iter_slices::<f64>(component).map(|slice| slice.first().copied());
