@@ -1,4 +1,4 @@
-//! The CSV files: a row a fact, empty where there is none. Text is the same for equal runs.
+//! The CSV files. Missing figures are empty. Equal runs give equal text, except `timing.csv`.
 
 use super::{
     evaluation::{FIRST_SEED, HoldRow, Reproduction, task},
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::model::{scenario::PlannerKind, verdict::CheckKind};
 
-/// Six digits behind the point: what two machines must agree on to have made the same table.
+/// Six decimals, to which results of different machines must agree.
 pub(super) fn cell(value: Option<f64>) -> String {
     value.map(|value| format!("{value:.6}")).unwrap_or_default()
 }
@@ -21,7 +21,7 @@ fn lines(header: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
     text
 }
 
-/// `table1.csv`: the paper's table. The random planner's figures are over all of its seeds.
+/// `table1.csv`: the paper's Table I. The random planner's figures are means over all seeds.
 pub fn table1(reproduction: &Reproduction) -> String {
     let rows = table::rows(reproduction.holds.iter()).into_iter().map(|row| {
         vec![
@@ -40,7 +40,7 @@ pub fn table1(reproduction: &Reproduction) -> String {
     )
 }
 
-/// `plans.csv`: each hold that is simulated. `muscular` is the regularised comfort.
+/// `plans.csv`: the plans with the first seed. `muscular` is the regularised comfort.
 pub fn plans(reproduction: &Reproduction) -> String {
     let rows = reproduction.first_seeds().map(|hold| {
         let (comfort, stability) = (hold.comfort(), hold.plan.as_ref().and_then(|plan| plan.stability.as_ref()));
@@ -57,8 +57,8 @@ pub fn plans(reproduction: &Reproduction) -> String {
     lines("operation,planner,muscular,peripersonal_m,objective,load_factor,compliant_load_factor", rows)
 }
 
-/// `physics.csv` and `best_case.csv`: what became of each hold in simulation. `load_factor_simulated` is the largest multiple
-/// of the load that holds; empty where it was not looked for.
+/// `physics.csv` and `best_case.csv`: the simulated plans. `load_factor_simulated` is the largest load factor that holds;
+/// empty if it was not searched.
 pub fn physics<'a>(holds: impl Iterator<Item = &'a HoldRow>) -> String {
     let rows = holds.map(|hold| {
         let predicted_mm = hold.plan.as_ref().and_then(|plan| Some(plan.stability.as_ref()?.predicted_deflection_mm));
@@ -81,7 +81,7 @@ pub fn physics<'a>(holds: impl Iterator<Item = &'a HoldRow>) -> String {
     )
 }
 
-/// `random.csv`: every draw of the random planner.
+/// `random.csv`: every plan of the random planner.
 pub fn random(reproduction: &Reproduction) -> String {
     let draws = reproduction.holds.iter().filter(|hold| hold.planner == PlannerKind::Random).map(|hold| {
         let comfort = hold.comfort();
@@ -96,7 +96,7 @@ pub fn random(reproduction: &Reproduction) -> String {
     lines("operation,seed,muscular,muscular_printed,peripersonal_scaled", draws)
 }
 
-/// `sensitivity.csv`: the paper's table under each assumption.
+/// `sensitivity.csv`: Table I under each assumption.
 pub fn sensitivity(reproduction: &Reproduction) -> String {
     let rows = reproduction.sensitivity.iter().flat_map(|variant| {
         table::rows(variant.holds.iter()).into_iter().map(|row| {
@@ -118,7 +118,7 @@ pub fn sensitivity(reproduction: &Reproduction) -> String {
     )
 }
 
-/// `timing.csv`: how long planning and simulating took. Not the same in two runs.
+/// `timing.csv`: durations of planning and simulation. They differ between runs.
 pub fn timing(reproduction: &Reproduction) -> String {
     let of = |hold: &HoldRow| {
         vec![

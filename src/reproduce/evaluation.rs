@@ -1,4 +1,4 @@
-//! The rows that tables, pictures and conclusions are computed from.
+//! The results of the evaluation, from which tables, pictures and conclusions are computed.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,10 +12,10 @@ use crate::{
     },
 };
 
-/// The seed whose hold is simulated and drawn, and the only one of planners whose average over seeds is not asked for.
+/// The seed whose plans are simulated and drawn, and the only seed of all planners except the random one.
 pub const FIRST_SEED: u64 = 1;
 
-/// One hold: an operation, planned by one planner with one seed.
+/// The result for one operation, planner and seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldRow {
@@ -27,19 +27,19 @@ pub struct HoldRow {
     pub planner: PlannerKind,
     /// Its seed.
     pub seed: u64,
-    /// The plan; none when the planner found none.
+    /// The plan; `None` if the planner found none.
     pub plan: Option<Plan>,
     /// Why there is no plan.
     pub infeasible: Option<String>,
-    /// What became of it in simulation; none when it was not simulated.
+    /// The verdict of the simulation; `None` if it was not simulated.
     pub verdict: Option<Verdict>,
-    /// The largest multiple of the load that holds in simulation; none when it was not looked for.
+    /// The largest load factor that holds in simulation; `None` if it was not searched.
     pub load_factor_simulated: Option<f64>,
-    /// The verdict on a little more.
+    /// The verdict on the failing load just above it.
     pub ended_by: Option<VerdictKind>,
-    /// Time of the plan, ms.
+    /// Duration of planning, ms.
     pub plan_ms: f64,
-    /// Time of the simulation under the load, ms.
+    /// Duration of the simulation of the load, ms.
     pub simulate_ms: Option<f64>,
 }
 
@@ -49,14 +49,14 @@ impl HoldRow {
         self.plan.as_ref()?.comfort.as_ref()
     }
 
-    /// The regularised muscular comfort that the plan is rated by: the mean of the person's answers where it has one.
+    /// The regularised muscular comfort by which plans are compared: the mean over the person's responses if the plan has one,
+    /// else that of the best response.
     pub fn muscular(&self) -> Option<f64> {
         let comfort = self.comfort()?;
         Some(comfort.average.map_or(comfort.muscular_regularised, |average| average.muscular_regularised))
     }
 
-    /// As [`Self::muscular`], the peripersonal comfort as a sum over the points of the body, on the scale of the paper's
-    /// captions.
+    /// As [`Self::muscular`], for the peripersonal comfort as a sum over the body points, the scale of the paper's captions.
     pub fn peripersonal_scaled(&self) -> Option<f64> {
         let comfort = self.comfort()?;
         comfort.average.map_or(comfort.peripersonal_scaled, |average| Some(BODY_POINTS as f64 * average.peripersonal_m))
@@ -68,44 +68,44 @@ impl HoldRow {
     }
 }
 
-/// Holds planned under an assumption that differs from the default in one thing.
+/// Results under an assumption that differs from the default.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// What differs, in words.
+    /// The assumption.
     pub name: String,
-    /// The holds.
+    /// The results.
     pub holds: Vec<HoldRow>,
 }
 
-/// All that the report is made from.
+/// The results of a run.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
-    /// Every hold, operation by operation in the order of tables, in each planner by planner, seed by seed.
+    /// The results by operation, planner and seed, in the order of tables.
     pub holds: Vec<HoldRow>,
-    /// How many seeds the random planner had.
+    /// Number of seeds of the random planner.
     pub random_seeds: u64,
-    /// The comfort planner's holds when it asks for the paper's stability alone, which is a best case.
+    /// The comfort planner's results with the paper's stability constraint alone, which is a best case.
     pub best_case: Vec<HoldRow>,
-    /// The sensitivity analysis: first the default, then what differs from it; empty when it was left out.
+    /// The sensitivity analysis, starting with the default assumptions; empty if it was left out.
     pub sensitivity: Vec<Variant>,
-    /// The seeds of the random planner in the sensitivity analysis.
+    /// Number of seeds of the random planner in the sensitivity analysis.
     pub sensitivity_seeds: u64,
-    /// What this run left out, in words; none of a whole run.
+    /// What this run left out; `None` if nothing.
     pub left_out: Option<String>,
 }
 
 impl Reproduction {
-    /// The holds that are simulated and drawn: one an operation and planner.
+    /// The results with the first seed: one per operation and planner.
     pub fn first_seeds(&self) -> impl Iterator<Item = &HoldRow> {
         self.holds.iter().filter(|hold| hold.seed == FIRST_SEED)
     }
 
-    /// The hold of an operation by a planner.
+    /// The result of a planner for an operation, with the first seed.
     pub fn hold(&self, operation: &str, planner: PlannerKind) -> Option<&HoldRow> {
         self.first_seeds().find(|hold| hold.operation == operation && hold.planner == planner)
     }
 
-    /// The operation that is drawn: in the middle of the evaluation's, so that it is no border case.
+    /// The operation that is drawn: one from the middle of the circle or of the grid if there is a result, else the first.
     pub fn drawn(&self, kind: OperationKind) -> Option<&str> {
         let preferred = if kind == OperationKind::Cut { "cut-05" } else { "drill-5" };
         let mut of_kind = self.first_seeds().filter(|hold| hold.kind == kind);
@@ -117,7 +117,7 @@ impl Reproduction {
 /// The kinds of operation of the evaluation, in the order of the paper's table.
 pub const KINDS: [OperationKind; 2] = [OperationKind::Cut, OperationKind::Drill];
 
-/// The paper's word for the operations of a kind.
+/// The name of a kind of operation in the tables.
 pub fn task(kind: OperationKind) -> &'static str {
     match kind {
         OperationKind::Cut => "cutting",

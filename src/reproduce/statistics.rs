@@ -1,26 +1,26 @@
 //! Mean, standard deviation and quantiles of a sample.
 
-/// The mean; none of nothing.
+/// The mean; `None` of an empty sample.
 pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// The standard deviation of a sample, `sqrt(sum (x - mean)^2 / (n - 1))`; none of fewer than two.
+/// The standard deviation of a sample, `sqrt(sum (x - mean)^2 / (n - 1))`; `None` for fewer than two values.
 pub fn standard_deviation(values: &[f64]) -> Option<f64> {
     let mean = mean(values.iter().copied())?;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
 }
 
-/// The quantile at `share` from 0 to 1, between neighbours by linear interpolation; none of nothing.
+/// The quantile at `share` from 0 to 1, interpolated linearly; `None` of an empty sample.
 pub fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;
-    let place = share * last as f64;
-    let below = (place as usize).min(last);
+    let position = share * last as f64;
+    let below = (position as usize).min(last);
     let above = (below + 1).min(last);
-    Some(values[below] + (values[above] - values[below]) * (place - below as f64))
+    Some(values[below] + (values[above] - values[below]) * (position - below as f64))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The paper's Table I of any set of holds.
+//! The paper's Table I, for any set of results.
 
 use super::{
     evaluation::{HoldRow, KINDS},
@@ -6,31 +6,31 @@ use super::{
 };
 use crate::model::{operation::OperationKind, scenario::PlannerKind};
 
-/// One planner on one kind of operation. A figure is none where no hold has it.
+/// One planner and one kind of operation. A figure is `None` if no result has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Cut or drill.
     pub kind: OperationKind,
     /// The planner.
     pub planner: PlannerKind,
-    /// How many plans the averages are over.
+    /// Number of plans.
     pub plans: usize,
-    /// Mean of the candidates that the search for a plan looked at.
+    /// Mean number of candidates that a search evaluated.
     pub candidates: Option<f64>,
     /// Mean of the regularised muscular comfort, [`HoldRow::muscular`].
     pub muscular: Option<f64>,
-    /// Median of the postures' muscular comfort as printed in the paper: it has no bound, so a mean of it says nothing.
+    /// Median of the muscular comfort as printed in the paper, which is unbounded, so its mean has no meaning.
     pub muscular_printed_median: Option<f64>,
-    /// Mean of the peripersonal comfort, as a sum over the body's points.
+    /// Mean of the peripersonal comfort as a sum over the body points.
     pub peripersonal_scaled: Option<f64>,
-    /// `muscular` over that of the random planner.
+    /// `muscular` divided by that of the random planner.
     pub muscular_normalised: Option<f64>,
-    /// `peripersonal_scaled` over that of the random planner.
+    /// `peripersonal_scaled` divided by that of the random planner.
     pub peripersonal_normalised: Option<f64>,
 }
 
-/// The table of a set of holds: kind by kind, planner by planner; kinds without holds are left out. As in the paper the
-/// averages are normalised, not the single figures.
+/// The rows by kind of operation and planner; kinds without results are left out. As in the paper, the means are normalised,
+/// not the single figures.
 pub fn rows<'a>(holds: impl Iterator<Item = &'a HoldRow> + Clone) -> Vec<Row> {
     let mut rows = Vec::new();
     for kind in KINDS {
@@ -76,7 +76,7 @@ mod tests {
     use crate::{model::plan::MeanComfort, reproduce::testing::hold};
 
     #[test]
-    fn averages_are_normalised_by_the_random_planners() {
+    fn means_are_divided_by_those_of_the_random_planner() {
         use PlannerKind::{Comfort, Random};
         let holds = [
             hold("cut-01", Comfort, 1, 40.0, 0.5),
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_person_answers_by_a_mean_the_table_averages_it() {
+    fn the_table_uses_the_mean_response_if_there_is_one() {
         let mut holds =
             [hold("drill-1", PlannerKind::Comfort, 1, 40.0, 0.5), hold("drill-2", PlannerKind::Comfort, 1, 20.0, 0.75)];
         let comfort = holds[0].plan.as_mut().and_then(|plan| plan.comfort.as_mut()).unwrap();

@@ -7,7 +7,7 @@ use crate::model::{
     scenario::PlannerKind,
 };
 
-/// A hold with these comforts; its plan is otherwise one that the scenarios use.
+/// A result with these comforts and otherwise the plan of a scenario.
 pub fn hold(operation: &str, planner: PlannerKind, seed: u64, muscular: f64, peripersonal_m: f64) -> HoldRow {
     let mut plan: Plan = serde_json::from_str(include_str!("../../scenarios/plans/cut-rim.json")).unwrap();
     plan.comfort = Some(Comfort {
