@@ -80,7 +80,7 @@ impl<'a> JobRunner<'a> {
             robot,
             planners: Planners::default(),
             out: out.to_owned(),
-            executable: hex(&Sha256::digest(executable)),
+            executable: base16ct::lower::encode_string(&Sha256::digest(executable)),
             record,
         })
     }
@@ -124,7 +124,7 @@ impl<'a> JobRunner<'a> {
     /// SHA-256 of all that a result depends on: the executable, the scenario and the stage.
     fn fingerprint(&self, job: &Job) -> String {
         let inputs = serde_json::to_vec(&(&self.executable, &job.scenario, job.stage));
-        hex(&Sha256::digest(inputs.expect("a scenario has only string keys")))
+        base16ct::lower::encode_string(&Sha256::digest(inputs.expect("a scenario has only string keys")))
     }
 
     fn recording_path(&self, job: &Job) -> PathBuf {
@@ -207,8 +207,4 @@ impl<'a> JobRunner<'a> {
 fn read(path: &Path, fingerprint: &str) -> Option<HoldRow> {
     let cached: CachedResult = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
     (cached.fingerprint == fingerprint).then_some(cached.hold)
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
