@@ -1,8 +1,6 @@
 //! The strategies for a whole circle, as CSV and as console tables.
 
-use std::fmt::Write as _;
-
-use super::console::aligned;
+use super::{console::aligned, csv_text::csv_text};
 use crate::model::{frames::Pose, plan::Plan};
 
 /// A strategy by name, with a plan for every point that it covers.
@@ -24,47 +22,51 @@ fn comforts(plan: &Plan) -> Option<[f64; 3]> {
 
 /// One row per strategy and point; the figures are empty if the strategy does not cover the point.
 pub fn csv(strategies: &[Strategy<'_>]) -> String {
-    let mut text = String::from(
-        "way,point,angle_deg,served,objective,muscular_regularised,peripersonal_m,load_factor,compliant_load_factor\n",
-    );
-    for (name, plans) in strategies {
-        for (index, plan) in plans.iter().enumerate() {
+    let header = [
+        "way",
+        "point",
+        "angle_deg",
+        "served",
+        "objective",
+        "muscular_regularised",
+        "peripersonal_m",
+        "load_factor",
+        "compliant_load_factor",
+    ];
+    let rows = strategies.iter().flat_map(|(name, plans)| {
+        plans.iter().enumerate().map(|(index, plan)| {
             let angle_deg = 360.0 * index as f64 / plans.len() as f64;
-            let served = plan.as_ref().and_then(|plan| Some((comforts(plan)?, plan.stability.as_ref()?)));
-            let figures = served.map_or_else(
-                || "false,,,,,".to_owned(),
-                |([objective, muscular, peripersonal_m], stability)| {
-                    let [load, compliant] = [stability.load_factor, stability.compliant_load_factor];
-                    format!("true,{objective:.4},{muscular:.4},{peripersonal_m:.6},{load:.4},{compliant:.4}")
-                },
-            );
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{name},{},{angle_deg:.1},{figures}", index + 1);
-        }
-    }
-    text
+            let covered = plan.as_ref().and_then(|plan| Some((comforts(plan)?, plan.stability.as_ref()?)));
+            let figures =
+                covered.map_or_else(Default::default, |([objective, muscular, peripersonal_m], stability)| {
+                    [
+                        format!("{objective:.4}"),
+                        format!("{muscular:.4}"),
+                        format!("{peripersonal_m:.6}"),
+                        format!("{:.4}", stability.load_factor),
+                        format!("{:.4}", stability.compliant_load_factor),
+                    ]
+                });
+            let point = [(*name).to_owned(), (index + 1).to_string(), format!("{angle_deg:.1}")];
+            point.into_iter().chain([covered.is_some().to_string()]).chain(figures).collect()
+        })
+    });
+    csv_text(&header, rows)
 }
 
 /// One row per step: the points that it is between, the board's pose in the world (m, unit quaternion with the scalar last) and
 /// the joint angles, rad.
 pub fn motion_csv(joints: &[String], motions: &[Vec<Step>]) -> String {
-    let mut text = String::from("from_point,to_point,step,x_m,y_m,z_m,qx,qy,qz,qw");
-    for joint in joints {
-        let _ = write!(text, ",{joint}_rad");
-    }
-    text.push('\n');
-    for (index, motion) in motions.iter().enumerate() {
-        for (number, step) in motion.iter().enumerate() {
-            let _ = write!(text, "{},{},{number}", index + 1, index + 2);
-            let figures =
-                step.x_wo.translation.vector.iter().chain(step.x_wo.rotation.coords.iter()).chain(&step.q_rad);
-            for figure in figures {
-                let _ = write!(text, ",{figure:.6}");
-            }
-            text.push('\n');
-        }
-    }
-    text
+    let header = ["from_point", "to_point", "step", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"].map(str::to_owned);
+    let header: Vec<_> = header.into_iter().chain(joints.iter().map(|joint| format!("{joint}_rad"))).collect();
+    let rows = motions.iter().enumerate().flat_map(|(index, motion)| {
+        motion.iter().enumerate().map(move |(number, step)| {
+            let numbers = [index + 1, index + 2, number].map(|number| number.to_string());
+            let pose = step.x_wo.translation.vector.iter().chain(step.x_wo.rotation.coords.iter());
+            numbers.into_iter().chain(pose.chain(&step.q_rad).map(|figure| format!("{figure:.6}"))).collect()
+        })
+    });
+    csv_text(&header, rows)
 }
 
 /// One line per strategy: number of points that it covers, worst objective, mean objective and comforts, and the mean ratio of

@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::picture::{document, label, line};
+use super::{
+    csv_text::csv_text,
+    picture::{document, label, line},
+};
 use crate::comfort::curve::{Curve, CurvePoint, POINTS, Span};
 
 /// One way of standing: its name in the CSV, its legend, and the colour of its bars and their offset from the tick, px.
@@ -28,24 +31,29 @@ const SERIES: [Series; 2] = [
 
 /// The curve as CSV: one row per point and way of standing; the figures are empty if the person has no solution.
 pub fn csv(curve: &Curve) -> String {
-    let mut text = String::from(
-        "point,angle_deg,standing,reachable,worst_regularised,best_regularised,worst_printed,best_printed\n",
-    );
-    for (index, point) in curve.points.iter().enumerate() {
-        for series in &SERIES {
-            let figures = (series.span)(point).map_or_else(
-                || "false,,,,".to_owned(),
-                |Span { worst, best }| {
-                    let [a, b, c, d] = [worst.regularised, best.regularised, worst.printed, best.printed];
-                    format!("true,{a:.4},{b:.4},{c:.4},{d:.4}")
-                },
-            );
+    let header = [
+        "point",
+        "angle_deg",
+        "standing",
+        "reachable",
+        "worst_regularised",
+        "best_regularised",
+        "worst_printed",
+        "best_printed",
+    ];
+    let rows = curve.points.iter().enumerate().flat_map(|(index, point)| {
+        SERIES.iter().map(move |series| {
+            let span = (series.span)(point);
+            let figures = span.map_or_else(Default::default, |Span { worst, best }| {
+                [worst.regularised, best.regularised, worst.printed, best.printed]
+                    .map(|comfort| format!("{comfort:.4}"))
+            });
             let angle_deg = point.angle_rad.to_degrees();
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{},{angle_deg:.1},{},{figures}", index + 1, series.name);
-        }
-    }
-    text
+            let place = [(index + 1).to_string(), format!("{angle_deg:.1}"), series.name.to_owned()];
+            place.into_iter().chain([span.is_some().to_string()]).chain(figures).collect()
+        })
+    });
+    csv_text(&header, rows)
 }
 
 /// The edges of the plot's axes, px: left, right, top, bottom.

@@ -1,9 +1,8 @@
 //! A Pareto front as CSV, plot and console table.
 
-use std::fmt::Write as _;
-
 use super::{
     console::aligned,
+    csv_text::csv_text,
     picture::{circle, document, label, line, number, ticks},
 };
 
@@ -33,21 +32,19 @@ impl Row {
 
 /// The front as CSV: one row per plan, named like the plan's file.
 pub fn csv(rows: &[Row], optima: [f64; 2]) -> String {
-    let mut text =
-        String::from("plan,share_peripersonal,muscular_regularised,peripersonal_m,muscular_kept,peripersonal_kept\n");
-    for (index, row) in rows.iter().enumerate() {
-        let [muscular, peripersonal] = row.kept(optima);
-        // Writing to a string does not fail.
-        let _ = writeln!(
-            text,
-            "{},{:.4},{:.6},{:.6},{muscular:.4},{peripersonal:.4}",
+    let header =
+        ["plan", "share_peripersonal", "muscular_regularised", "peripersonal_m", "muscular_kept", "peripersonal_kept"];
+    let lines = rows.iter().enumerate().map(|(index, row)| {
+        let kept = row.kept(optima).map(|kept| format!("{kept:.4}"));
+        let figures = [
             row.name(index),
-            row.share,
-            row.muscular,
-            row.peripersonal_m
-        );
-    }
-    text
+            format!("{:.4}", row.share),
+            format!("{:.6}", row.muscular),
+            format!("{:.6}", row.peripersonal_m),
+        ];
+        figures.into_iter().chain(kept).collect()
+    });
+    csv_text(&header, lines)
 }
 
 /// The front for the console, with the comforts over their optima in per cent.

@@ -5,6 +5,7 @@
 
 pub mod circle;
 pub mod console;
+pub(crate) mod csv_text;
 pub mod curve;
 pub mod file;
 pub mod front;

@@ -4,21 +4,14 @@ use super::{
     evaluation::{FIRST_SEED, HoldRow, Reproduction, task},
     table,
 };
-use crate::model::{scenario::PlannerKind, verdict::CheckKind};
+use crate::{
+    model::{scenario::PlannerKind, verdict::CheckKind},
+    report::csv_text::csv_text,
+};
 
 /// Six decimals, to which results of different machines must agree.
 pub(super) fn cell(value: Option<f64>) -> String {
     value.map(|value| format!("{value:.6}")).unwrap_or_default()
-}
-
-/// Joins cells to lines. Names, planners and verdicts have no commas or quotes, so nothing is escaped.
-fn lines(header: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
-    let mut text = format!("{header}\n");
-    for row in rows {
-        text.push_str(&row.join(","));
-        text.push('\n');
-    }
-    text
 }
 
 /// `table1.csv`: the paper's Table I. The random planner's figures are means over all seeds.
@@ -34,8 +27,16 @@ pub fn table1(reproduction: &Reproduction) -> String {
             cell(row.peripersonal_normalised),
         ]
     });
-    lines(
-        "task,planner,muscular,muscular_printed_median,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+    csv_text(
+        &[
+            "task",
+            "planner",
+            "muscular",
+            "muscular_printed_median",
+            "peripersonal_scaled",
+            "muscular_normalised",
+            "peripersonal_normalised",
+        ],
         rows,
     )
 }
@@ -54,7 +55,10 @@ pub fn plans(reproduction: &Reproduction) -> String {
             cell(stability.map(|stability| stability.compliant_load_factor)),
         ]
     });
-    lines("operation,planner,muscular,peripersonal_m,objective,load_factor,compliant_load_factor", rows)
+    csv_text(
+        &["operation", "planner", "muscular", "peripersonal_m", "objective", "load_factor", "compliant_load_factor"],
+        rows,
+    )
 }
 
 /// `physics.csv` and `best_case.csv`: the simulated plans. `load_factor_simulated` is the largest load factor that holds;
@@ -74,9 +78,18 @@ pub fn physics<'a>(holds: impl Iterator<Item = &'a HoldRow>) -> String {
             cell(hold.load_factor_simulated),
         ]
     });
-    lines(
-        "operation,planner,verdict,slip_mm,slip_deg,deflection_mm,predicted_deflection_mm,torque_ratio,\
-         load_factor_simulated",
+    csv_text(
+        &[
+            "operation",
+            "planner",
+            "verdict",
+            "slip_mm",
+            "slip_deg",
+            "deflection_mm",
+            "predicted_deflection_mm",
+            "torque_ratio",
+            "load_factor_simulated",
+        ],
         rows,
     )
 }
@@ -93,7 +106,7 @@ pub fn random(reproduction: &Reproduction) -> String {
             cell(hold.peripersonal_scaled()),
         ]
     });
-    lines("operation,seed,muscular,muscular_printed,peripersonal_scaled", draws)
+    csv_text(&["operation", "seed", "muscular", "muscular_printed", "peripersonal_scaled"], draws)
 }
 
 /// `sensitivity.csv`: Table I under each assumption.
@@ -112,8 +125,17 @@ pub fn sensitivity(reproduction: &Reproduction) -> String {
             ]
         })
     });
-    lines(
-        "assumption,task,planner,plans,muscular,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+    csv_text(
+        &[
+            "assumption",
+            "task",
+            "planner",
+            "plans",
+            "muscular",
+            "peripersonal_scaled",
+            "muscular_normalised",
+            "peripersonal_normalised",
+        ],
         rows,
     )
 }
@@ -129,5 +151,5 @@ pub fn timing(reproduction: &Reproduction) -> String {
         ]
     };
     let rows = reproduction.holds.iter().filter(|hold| hold.seed == FIRST_SEED).map(of);
-    lines("operation,planner,plan_ms,simulate_ms", rows)
+    csv_text(&["operation", "planner", "plan_ms", "simulate_ms"], rows)
 }
