@@ -3,6 +3,8 @@
 
 use std::path::Path;
 
+use comfy_table::{CellAlignment, Table, presets};
+
 use super::{Outcome, Status, explanation, number_of};
 use crate::model::verdict::{Check, CheckKind, Verdict};
 
@@ -127,18 +129,11 @@ fn highest_torques(verdict: &Verdict) -> Option<String> {
 
 /// Rows as text with two spaces between columns: the first `left` columns are aligned left, the others right.
 pub(crate) fn aligned(rows: &[Vec<String>], left: usize) -> String {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
-    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
-    let mut text = String::new();
-    for row in rows {
-        let cell = |(column, cell): (usize, &String)| match column < left {
-            true => format!("{cell:<0$}", widths[column]),
-            false => format!("{cell:>0$}", widths[column]),
-        };
-        let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
-        text.push_str(cells.join("  ").trim_end());
-        text.push('\n');
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).add_rows(rows.iter().cloned());
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 2));
+        column.set_cell_alignment(if index < left { CellAlignment::Left } else { CellAlignment::Right });
     }
-    text
+    format!("{}\n", table.trim_fmt())
 }
