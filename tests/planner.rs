@@ -9,8 +9,9 @@ use benchdog::{
         scenario::{Budget, Optima, PlannerKind, Scenario, StabilityKind},
     },
     planner::{self, Outcome, Planner},
+    reproduce::paper,
     robot::Robot,
-    scenario::{self, paper},
+    scenario,
 };
 use rayon::prelude::*;
 
