@@ -1,9 +1,7 @@
 //! The working arm as a chain of seven joints: forward kinematics and the Jacobian.
 //!
-//! Always a right arm: a left-handed person is the mirror image, which [`Human`](super::Human) takes care of. This module
-//! knows nothing of strength, comfort, boards or robots.
-//!
-//! METHOD section 4, hanging at zero (S shoulder, U upper arm, F forearm, H hand):
+//! Always a right arm; [`Human`](super::Human) mirrors it for a left-handed person. Source: docs/method.md#41-arm-kinematics.
+//! At zero the arm hangs (S shoulder, U upper arm, F forearm, H hand):
 //!
 //! ```text
 //! X_SH = Ry(-q1) Rx(-q2) Rz(q3) . Tz(-L_u) . Ry(-q4) Rz(q5) . Tz(-L_f) . Rx(q6) Ry(q7)
@@ -37,7 +35,7 @@ pub struct Arm {
     pub limits_rad: [[f64; 2]; 7],
 }
 
-/// Where the parts of an arm are, in the body's frame B.
+/// Positions and orientations of the parts of an arm in the body's frame B.
 #[derive(Clone, Copy, Debug)]
 pub struct ArmFrames {
     /// Shoulder centre, m.
@@ -89,12 +87,12 @@ impl Arm {
         self.upper_arm_m + self.forearm_m
     }
 
-    /// True when every joint is inside its range.
+    /// True if every joint is within its range.
     pub fn within_limits(&self, q_rad: &ArmAngles) -> bool {
         q_rad.iter().zip(&self.limits_rad).all(|(q, [low, high])| (low..=high).contains(&q))
     }
 
-    /// Where the parts of the arm are.
+    /// Positions and orientations of the parts of the arm.
     pub fn frames(&self, q_rad: &ArmAngles) -> ArmFrames {
         let [q1, q2, q3, q4, q5, q6, q7] = *q_rad;
         let mut moving = Triad::of_body();
@@ -154,7 +152,7 @@ impl Arm {
     }
 }
 
-/// The axes of a frame that turns about its own axes, one after the other; cheaper than products of matrices.
+/// The axes of a frame that is rotated about its own axes in sequence; cheaper than matrix products.
 #[derive(Clone, Copy)]
 struct Triad {
     x: Vector3<f64>,
@@ -208,7 +206,7 @@ mod tests {
         worker(Hand::Right, OperationKind::Drill).arm().clone()
     }
 
-    /// The chain as METHOD section 4 prints it, factor by factor.
+    /// The chain of docs/method.md#41-arm-kinematics, factor by factor.
     fn printed_chain(arm: &Arm, q: &ArmAngles) -> Pose {
         let turn = |axis: Unit<Vector3<f64>>, angle: f64| {
             Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_axis_angle(&axis, angle))
@@ -222,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hand_is_where_the_printed_chain_puts_it() {
+    fn the_hand_pose_equals_the_product_of_the_chain() {
         let (arm, mut generator) = (arm(), generator(1));
         for _ in 0..1_000 {
             let q_rad = random_angles(&arm, &mut generator);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::{
-    RESIDUAL_TOLERANCE,
+    solution::RESIDUAL_TOLERANCE,
     trace::{Angles, Curve, Point, Tracer},
 };
 use crate::{model::frames::Pose, robot::chain::Chain};
@@ -16,7 +16,6 @@ use crate::{model::frames::Pose, robot::chain::Chain};
 pub struct Branch {
     chain: Chain,
     target: Pose,
-    free_joint: usize,
     samples: Vec<BranchSample>,
     closed: bool,
 }
@@ -30,15 +29,6 @@ pub struct BranchSample {
     pub tangent: [f64; 7],
     /// Length of the way from the start of the branch, along the chords between samples, rad.
     pub arc_rad: f64,
-}
-
-/// A stretch of a branch on which each value of the redundancy parameter has one solution.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// The redundancy parameter at its start and at its end, rad; the first may be the greater.
-    pub redundancy_rad: [f64; 2],
-    /// Its start and its end on the branch, rad.
-    pub arc_rad: [f64; 2],
 }
 
 impl Branch {
@@ -58,57 +48,8 @@ impl Branch {
         self.samples.last().map_or(0.0, |sample| sample.arc_rad)
     }
 
-    /// The branch in stretches on which the redundancy parameter goes one way.
-    pub fn intervals(&self) -> Vec<Interval> {
-        let mut intervals: Vec<Interval> = Vec::new();
-        let mut direction = 0.0;
-        for [from, to] in self.samples.array_windows() {
-            let [w_from, w_to] = [from.q_rad[self.free_joint], to.q_rad[self.free_joint]];
-            let onward = (w_to - w_from).signum();
-            match intervals.last_mut() {
-                Some(last) if onward == direction => {
-                    last.redundancy_rad[1] = w_to;
-                    last.arc_rad[1] = to.arc_rad;
-                }
-                _ => intervals.push(Interval { redundancy_rad: [w_from, w_to], arc_rad: [from.arc_rad, to.arc_rad] }),
-            }
-            direction = onward;
-        }
-        intervals
-    }
-
-    /// The solution at a place on the branch; none outside `0..=length_rad`, and where a singularity keeps the Newton
-    /// iteration from its tolerance.
-    pub fn at(&self, arc_rad: f64) -> Option<Vec<f64>> {
-        let number = self.segment(arc_rad)?;
-        let [from, to] = [&self.samples[number], &self.samples[number + 1]];
-        let share = (arc_rad - from.arc_rad) / (to.arc_rad - from.arc_rad);
-        let guess = Segment::between(from, to).point(share);
-        let settled = Tracer::new(&self.chain, &self.target)?.settled(guess.q, &guess.tangent, &guess.q)?;
-        Some(self.clamped(&settled.q))
-    }
-
-    /// The solutions of the branch at a value of the redundancy parameter, rad.
-    pub fn at_redundancy(&self, redundancy_rad: f64) -> Vec<Vec<f64>> {
-        let Some(tracer) = Tracer::new(&self.chain, &self.target) else { return Vec::new() };
-        let mut row = Angles::zeros();
-        row[self.free_joint] = 1.0;
-        let mut solutions: Vec<Vec<f64>> = Vec::new();
-        for [from, to] in self.samples.array_windows() {
-            for share in Segment::between(from, to).joint(self.free_joint).crossings(redundancy_rad) {
-                let mut q = Segment::between(from, to).point(share).q;
-                let guess = q;
-                q[self.free_joint] = redundancy_rad;
-                let near = |point: &Point| (point.q - guess).norm() < to.arc_rad - from.arc_rad;
-                let settled = tracer.settled(q, &row, &q).filter(near).map(|point| self.clamped(&point.q));
-                solutions.extend(settled.filter(|q_rad| !super::holds(&solutions, q_rad)));
-            }
-        }
-        solutions
-    }
-
     /// The place on the branch that is nearest to these angles, and the solution there; none for malformed angles.
-    pub fn nearest(&self, q_rad: &[f64]) -> Option<(f64, Vec<f64>)> {
+    fn nearest(&self, q_rad: &[f64]) -> Option<(f64, Vec<f64>)> {
         let wanted = Angles::from_row_slice(<&[f64; 7]>::try_from(q_rad).ok()?);
         let mut best = (f64::INFINITY, 0, 0.0);
         for (number, [from, to]) in self.samples.array_windows().enumerate() {
@@ -147,15 +88,6 @@ impl Branch {
         self.nearest(q_rad).is_some_and(|(_, found)| near(&found))
     }
 
-    /// The chord that a place is on.
-    fn segment(&self, arc_rad: f64) -> Option<usize> {
-        if !(0.0..=self.length_rad()).contains(&arc_rad) || self.samples.len() < 2 {
-            return None;
-        }
-        let after = self.samples.partition_point(|sample| sample.arc_rad <= arc_rad);
-        Some(after.clamp(1, self.samples.len() - 1) - 1)
-    }
-
     /// Angles within limits; what is beyond is rounding.
     fn clamped(&self, q: &Angles) -> Vec<f64> {
         let limits = self.chain.lower().iter().zip(self.chain.upper());
@@ -188,7 +120,7 @@ pub(super) fn branches_of(curve: &Curve, chain: &Chain, target: &Pose, free_join
             BranchSample { q_rad: point.q.into(), tangent: point.tangent.into(), arc_rad }
         });
         let samples = samples.collect();
-        Branch { chain: chain.clone(), target: *target, free_joint, samples, closed }
+        Branch { chain: chain.clone(), target: *target, samples, closed }
     };
     arcs.into_iter().map(branch).collect()
 }

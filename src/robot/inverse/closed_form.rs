@@ -22,21 +22,16 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::{
-    General, holds, is_finite,
+    general::General,
+    geometry::Geometry,
     slice::{Slice, Zero},
+    solution::{contains, is_finite},
     trace::Angles,
 };
 use crate::{model::frames::Pose, robot::chain::Chain};
-
-/// How far axes may be from normal and intersecting (1, m): quarter turns written with five decimals leave 4e-6. The
-/// polishing takes out what that does to the angles.
-const STRUCTURE_TOLERANCE: f64 = 1e-5;
-
-/// An offset of the shoulder below this leaves nothing to turn about, m.
-const MIN_SHOULDER_OFFSET_M: f64 = 1e-3;
 
 /// How far a closed-form angle may be beyond its limit before the polishing clamps it, rad: its own rounding.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
@@ -51,84 +46,13 @@ pub(super) const FREE_JOINT: usize = 5;
 #[derive(Clone, Debug)]
 pub struct ClosedForm {
     general: General,
-    /// The shoulder's frame in W: on the axis of S0 at the height of S1; z along S0, y along S1 at zero angles.
-    pub(super) x_wf: Pose,
-    /// The wrist's frame M in G: where W1 meets W2; z along W2, y along W1 at zero angles.
-    pub(super) x_gm: Pose,
-    /// A, m.
-    pub(super) shoulder_m: f64,
-    /// L1 and B, m.
-    pub(super) upper_arm_m: [f64; 2],
-    /// L2 and C, m.
-    pub(super) forearm_m: [f64; 2],
-    /// What a joint's angle is short of the angle in the formulas, rad.
-    pub(super) offset_rad: [f64; 7],
-}
-
-/// Axes and points of a chain at zero angles, W.
-struct ZeroPosture {
-    axes: [Vector3<f64>; 7],
-    origins: [Vector3<f64>; 7],
-}
-
-impl ZeroPosture {
-    fn new(chain: &Chain) -> Option<Self> {
-        let frames = chain.joint_frames(&vec![0.0; chain.dof()]);
-        let axes: [Vector3<f64>; 7] = chain.axes_w(&frames).try_into().ok()?;
-        let origins: Vec<Vector3<f64>> = frames.iter().map(|x_wj| x_wj.translation.vector).collect();
-        let normal = axes.windows(2).all(|pair| pair[0].dot(&pair[1]).abs() < STRUCTURE_TOLERANCE);
-        normal.then_some(Self { axes, origins: origins.try_into().ok()? })
-    }
-
-    /// Where two axes that are normal to each other meet; none when they pass each other.
-    fn meeting(&self, first: usize, second: usize) -> Option<Vector3<f64>> {
-        let (along_first, along_second) = (self.axes[first], self.axes[second]);
-        let between = self.origins[second] - self.origins[first];
-        let passing = between.dot(&along_first.cross(&along_second));
-        let on_first = self.origins[first] + along_first * between.dot(&along_first);
-        (passing.abs() < STRUCTURE_TOLERANCE).then_some(on_first)
-    }
+    geometry: Geometry,
 }
 
 impl ClosedForm {
-    /// The closed form for this chain, when it has the structure.
+    /// The closed form of a chain; `None` if the chain does not have the structure.
     pub fn new(chain: &Chain) -> Option<Self> {
-        let zero = ZeroPosture::new(chain)?;
-        let [z, a1, f, y, d, a, tool] = zero.axes;
-        let (shoulder, elbow, wrist) = (zero.meeting(1, 2)?, zero.meeting(3, 4)?, zero.meeting(5, 6)?);
-        let u = a1.cross(&z);
-        let x_e = y.cross(&f);
-        let x_f = a.cross(&d);
-        let from_base = shoulder - zero.origins[0];
-        let (upper_arm, forearm) = (elbow - shoulder, wrist - elbow);
-        let aside = [from_base.dot(&a1), upper_arm.dot(&y), forearm.dot(&a)];
-        let shoulder_m = from_base.dot(&u);
-        if aside.iter().any(|m| m.abs() > STRUCTURE_TOLERANCE) || shoulder_m.abs() < MIN_SHOULDER_OFFSET_M {
-            return None;
-        }
-        let down = |s1: f64| -u * s1.sin() - z * s1.cos();
-        let s1 = (-f.dot(&z)).atan2(f.dot(&u));
-        let e1 = d.dot(&x_e).atan2(d.dot(&f));
-        let across = x_e * e1.cos() - f * e1.sin();
-        let x_wf = frame(shoulder - u * shoulder_m, [u, a1, z]);
-        let x_wm = frame(wrist, [a.cross(&tool), a, tool]);
-        Some(Self {
-            general: General::new(chain),
-            x_wf,
-            x_gm: chain.gripper_pose(&[0.0; 7]).inverse() * x_wm,
-            shoulder_m,
-            upper_arm_m: [upper_arm.dot(&f), upper_arm.dot(&x_e)],
-            forearm_m: [forearm.dot(&d), forearm.dot(&x_f)],
-            offset_rad: [
-                0.0,
-                s1,
-                x_e.dot(&a1).atan2(x_e.dot(&down(s1))),
-                e1,
-                (-a.dot(&across)).atan2(a.dot(&y)),
-                tool.dot(&x_f).atan2(tool.dot(&d)),
-                0.0,
-            ],
-        })
+        Some(Self { general: General::new(chain), geometry: Geometry::new(chain)? })
     }
 
     /// The search for the same chain.
@@ -157,18 +81,18 @@ impl ClosedForm {
         if !is_finite(target) || !w1_rad.is_finite() {
             return Vec::new();
         }
-        let slice = Slice::new(self, target, w1_rad);
+        let slice = Slice::new(&self.geometry, target, w1_rad);
         let mut solutions: Vec<Vec<f64>> = Vec::new();
         for zero in slice.zeros(self.s0_range()) {
             let polished = self.angles(&slice, &zero).and_then(|q_rad| self.general.polished(target, q_rad));
-            solutions.extend(polished.filter(|q_rad| !holds(&solutions, q_rad)));
+            solutions.extend(polished.filter(|q_rad| !contains(&solutions, q_rad)));
         }
         solutions
     }
 
     /// The solutions with the joint W1 at `w1_rad`, whatever the limits of the others; good to about 1e-4 rad.
     pub(super) fn unlimited_slice(&self, target: &Pose, w1_rad: f64) -> Vec<Angles> {
-        let slice = Slice::new(self, target, w1_rad);
+        let slice = Slice::new(&self.geometry, target, w1_rad);
         let zeros = slice.zeros([-std::f64::consts::PI, std::f64::consts::PI]);
         zeros.iter().filter_map(|zero| self.unlimited_angles(&slice, zero)).collect()
     }
@@ -193,7 +117,7 @@ impl ClosedForm {
     /// The joint angles when S0, the wrist (W1 and W2), r, d and the elbow's axis y are known.
     fn angles_at(&self, slice: &Slice, s0: f64, [w1, w2]: [f64; 2], [r, d, y]: [&Vector3<f64>; 3]) -> Angles {
         let (u, a1) = (Vector3::new(s0.cos(), s0.sin(), 0.0), Vector3::new(-s0.sin(), s0.cos(), 0.0));
-        let [l1, b] = self.upper_arm_m;
+        let [l1, b] = self.geometry.upper_arm_m;
         let f = (r * l1 - y.cross(r) * b).normalize();
         let x_e = y.cross(&f);
         let s1 = (-f.z).atan2(f.dot(&u));
@@ -203,24 +127,25 @@ impl ClosedForm {
         let a = slice.x * w2.sin() + slice.y * w2.cos();
         let e0 = x_e.dot(&a1).atan2(x_e.dot(&down));
         let w0 = (-a.dot(&across)).atan2(a.dot(y));
-        Angles::from([s0, s1, e0, e1, w0, w1, w2]) - Angles::from(self.offset_rad)
+        Angles::from([s0, s1, e0, e1, w0, w1, w2]) - Angles::from(self.geometry.offset_rad)
     }
 
     /// Postures near the target in which the arm is stretched, r along d, when the target is that far. There the whole
     /// upper arm turns about r while W1 hardly moves, so that slices may miss it. `turns` postures for each way in which
     /// shoulder and wrist can point.
     pub(super) fn stretched(&self, target: &Pose, turns: usize) -> Vec<Angles> {
-        let frame = Slice::new(self, target, 0.0);
+        let frame = Slice::new(&self.geometry, target, 0.0);
         let wrist = frame.wrist();
-        let length_m = self.upper_arm_m[0].hypot(self.upper_arm_m[1]) + self.forearm_m[0].hypot(self.forearm_m[1]);
+        let length_m = self.geometry.upper_arm_m[0].hypot(self.geometry.upper_arm_m[1])
+            + self.geometry.forearm_m[0].hypot(self.geometry.forearm_m[1]);
         let mut postures = Vec::new();
         for s0 in [wrist.y.atan2(wrist.x), (-wrist.y).atan2(-wrist.x)] {
-            let to_wrist = wrist - Vector3::new(s0.cos(), s0.sin(), 0.0) * self.shoulder_m;
+            let to_wrist = wrist - Vector3::new(s0.cos(), s0.sin(), 0.0) * self.geometry.shoulder_m;
             if to_wrist.norm() < NEARLY_STRETCHED * length_m {
                 continue;
             }
             let d = to_wrist.normalize();
-            let r = d * self.upper_arm_m[0].hypot(self.upper_arm_m[1]);
+            let r = d * self.geometry.upper_arm_m[0].hypot(self.geometry.upper_arm_m[1]);
             let Some(a) = d.cross(&frame.z).try_normalize(f64::EPSILON) else { continue };
             for a in [a, -a] {
                 let wrist =
@@ -234,13 +159,6 @@ impl ClosedForm {
         }
         postures
     }
-}
-
-/// A frame of these axes.
-fn frame(origin: Vector3<f64>, axes: [Vector3<f64>; 3]) -> Pose {
-    // Axes that are normal only within the structure's tolerance need a proper rotation.
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&Matrix3::from_columns(&axes)));
-    Isometry3::from_parts(origin.into(), rotation)
 }
 
 /// The angle plus whole turns that lies within the limits, if there is one, rad.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::{RESIDUAL_TOLERANCE, Solution, holds, is_finite};
+use super::solution::{RESIDUAL_TOLERANCE, Solution, contains, is_finite};
 use crate::{model::frames::Pose, robot::chain::Chain};
 
 /// Where the iteration stops: a tenth of what is promised.
@@ -133,7 +133,7 @@ impl General {
                 Solution::NotFound { .. } => continue,
                 Solution::OutOfReach { .. } | Solution::Malformed => break,
             };
-            if !holds(&solutions, &q_rad) {
+            if !contains(&solutions, &q_rad) {
                 solutions.push(q_rad);
             }
         }

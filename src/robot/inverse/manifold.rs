@@ -4,10 +4,9 @@
 use std::f64::consts::TAU;
 
 use super::{
-    ClosedForm,
     branch::{Branch, Segment, branches_of},
-    closed_form::FREE_JOINT,
-    is_finite,
+    closed_form::{ClosedForm, FREE_JOINT},
+    solution::is_finite,
     trace::{Angles, Curve, Tracer},
 };
 use crate::model::frames::Pose;

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::closed_form::ClosedForm;
+use super::geometry::Geometry;
 use crate::model::frames::Pose;
 
 /// Samples over the range of S0 that look for windows in which the upper arm's length can be had.
@@ -29,7 +29,7 @@ const ELBOW_SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// A target with one angle of W1, in the shoulder's frame.
 pub(super) struct Slice<'a> {
-    arm: &'a ClosedForm,
+    arm: &'a Geometry,
     /// W1 as in the formulas, rad.
     pub w1: f64,
     /// The wrist frame's axes.
@@ -117,7 +117,7 @@ impl Window {
 }
 
 impl<'a> Slice<'a> {
-    pub fn new(arm: &'a ClosedForm, target: &Pose, w1_rad: f64) -> Self {
+    pub fn new(arm: &'a Geometry, target: &Pose, w1_rad: f64) -> Self {
         let x_fm = arm.x_wf.inverse() * target * arm.x_gm;
         let axes = x_fm.rotation.to_rotation_matrix();
         let column = |number: usize| axes.matrix().column(number).into_owned();

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Const, LU, Matrix6, SMatrix, SVector, Vector6};
 
-use super::{RESIDUAL_TOLERANCE, is_finite};
+use super::solution::{RESIDUAL_TOLERANCE, is_finite};
 use crate::{model::frames::Pose, robot::chain::Chain};
 
 /// Joint angles, or their rates, of an arm that has one joint more than a pose has numbers.
