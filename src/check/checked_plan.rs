@@ -98,17 +98,20 @@ impl<'a> CheckedPlan<'a> {
         CollisionModel::new(self.robot).first_violation(&scene).map(|violation| violation.describe(self.robot))
     }
 
-    /// Flaws by the tolerance of the planner's own plans: the grippers, the tool, and where the person stands.
+    /// Flaws by the tolerances of the planner's own plans: the grippers, the tool, where the person stands, and all joint
+    /// limits, which such a plan keeps exactly.
     #[must_use]
     pub fn inexact(&self) -> Vec<Flaw> {
         let mut flaws = Vec::new();
         for (arm, checked) in self.arms.iter().enumerate() {
+            check_limits(self.robot, checked.index, arm, checked.hold, 0.0, &mut flaws);
             let ([off_m, off_rad], name) = (checked.off, checked.hold.name.clone());
             if !EXACT.allows(checked.off) {
                 flaws.push(Flaw::Hand { arm, name, off_m, off_rad });
             }
         }
         let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return flaws };
+        check_person_limits(human, posture, 0.0, &mut flaws);
         let tool = posture.x_wb * human.tool_pose_b(&posture.q_rad);
         let off = deviation(&tool, &(self.plan.object.x_wo * self.plan.operation.x_ot));
         if !EXACT.allows(off) {
@@ -199,10 +202,15 @@ fn check_joints(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, flaws: 
     if found != expected {
         return flaws.push(Flaw::AngleCount { arm, found, expected });
     }
-    for (joint, (&of_robot, &found_rad)) in joints.iter().zip(&hold.q_rad).enumerate() {
+    check_limits(robot, index, arm, hold, LIMIT_RAD, flaws);
+}
+
+/// The limits of an arm's joints.
+fn check_limits(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, tolerance_rad: f64, flaws: &mut Vec<Flaw>) {
+    for (joint, (&of_robot, &found_rad)) in robot.arms[index].joints.iter().zip(&hold.q_rad).enumerate() {
         let of_robot = &robot.joints[of_robot];
         let limits_rad = [of_robot.lower, of_robot.upper];
-        if !within(found_rad, limits_rad) {
+        if !within(found_rad, limits_rad, tolerance_rad) {
             flaws.push(Flaw::Angle { arm, joint, name: of_robot.name.clone(), found_rad, limits_rad });
         }
     }
@@ -214,15 +222,20 @@ fn check_person(posture: &HumanPosture, tool: &Tool, flaws: &mut Vec<Flaw>) -> O
         flaws.push(Flaw::PersonPose);
     }
     let human = Human::new(&posture.person(), tool).map_err(|error| flaws.push(Flaw::Person(error))).ok()?;
-    for (joint, (&found_rad, limits_rad)) in posture.q_rad.iter().zip(human.arm().limits_rad).enumerate() {
-        if !within(found_rad, limits_rad) {
-            flaws.push(Flaw::PersonAngle { joint, found_rad, limits_rad });
-        }
-    }
+    check_person_limits(&human, posture, LIMIT_RAD, flaws);
     Some(human)
 }
 
-/// True if an angle is within its limits; false if it is not a number.
-fn within(q_rad: f64, [low_rad, high_rad]: [f64; 2]) -> bool {
-    q_rad >= low_rad - LIMIT_RAD && q_rad <= high_rad + LIMIT_RAD
+/// The limits of the joints of the person's working arm.
+fn check_person_limits(human: &Human, posture: &HumanPosture, tolerance_rad: f64, flaws: &mut Vec<Flaw>) {
+    for (joint, (&found_rad, limits_rad)) in posture.q_rad.iter().zip(human.arm().limits_rad).enumerate() {
+        if !within(found_rad, limits_rad, tolerance_rad) {
+            flaws.push(Flaw::PersonAngle { joint, found_rad, limits_rad });
+        }
+    }
+}
+
+/// True if an angle exceeds its limits by no more than the tolerance; false if it is not a number.
+fn within(q_rad: f64, [low_rad, high_rad]: [f64; 2], tolerance_rad: f64) -> bool {
+    q_rad >= low_rad - tolerance_rad && q_rad <= high_rad + tolerance_rad
 }

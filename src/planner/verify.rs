@@ -77,7 +77,7 @@ fn verify_comfort(
     }
     for (key, stated, computed) in figures {
         let scale = stated.abs().max(computed.abs()).max(1.0);
-        if (stated - computed).abs() > FIGURE_TOLERANCE * scale {
+        if !agrees(stated, computed, FIGURE_TOLERANCE * scale) {
             flaws.push(Flaw::Figure { key, stated, computed });
         }
     }
@@ -127,9 +127,26 @@ fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut 
         ("stability.load_factor", stated.load_factor, found.load_factor),
         ("stability.predicted_deflection_mm", stated.predicted_deflection_mm, found.predicted_deflection_mm),
     ] {
-        let differs = (stated - computed).abs() > SOLVER_TOLERANCE * computed.max(1.0);
-        if differs || stated.is_nan() {
+        if !agrees(stated, computed, SOLVER_TOLERANCE * computed.max(1.0)) {
             flaws.push(Flaw::Figure { key, stated, computed });
+        }
+    }
+}
+
+/// True if a stated figure is the recomputed one within a tolerance; false if one of them is not a number.
+fn agrees(stated: f64, computed: f64, tolerance: f64) -> bool {
+    (stated - computed).abs() <= tolerance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::agrees;
+
+    #[test]
+    fn a_figure_that_is_not_a_finite_number_never_agrees() {
+        assert!(agrees(1.0, 1.0 + 1e-9, 1e-6) && !agrees(1.0, 1.1, 1e-6));
+        for [stated, computed] in [[f64::NAN, 1.0], [1.0, f64::NAN], [f64::INFINITY; 2], [f64::NAN; 2]] {
+            assert!(!agrees(stated, computed, 1e-6), "{stated} {computed}");
         }
     }
 }
