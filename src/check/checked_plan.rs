@@ -107,7 +107,7 @@ impl<'a> CheckedPlan<'a> {
             check_limits(self.robot, checked.index, arm, checked.hold, 0.0, &mut flaws);
             let ([off_m, off_rad], name) = (checked.off, checked.hold.name.clone());
             if !EXACT.allows(checked.off) {
-                flaws.push(Flaw::Hand { arm, name, off_m, off_rad });
+                flaws.push(Flaw::Hand { arm, name, off_m, off_rad, tolerance: EXACT });
             }
         }
         let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return flaws };
@@ -115,12 +115,12 @@ impl<'a> CheckedPlan<'a> {
         let tool = posture.x_wb * human.tool_pose_b(&posture.q_rad);
         let off = deviation(&tool, &(self.plan.object.x_wo * self.plan.operation.x_ot));
         if !EXACT.allows(off) {
-            flaws.push(Flaw::Tool { off_m: off[0], off_rad: off[1] });
+            flaws.push(Flaw::Tool { off_m: off[0], off_rad: off[1], tolerance: EXACT });
         }
         let off_m = (posture.x_wb.translation.z - self.robot.floor_z_m).abs();
         let off_rad = (posture.x_wb.rotation * Vector3::z()).angle(&Vector3::z());
         if !EXACT.allows([off_m, off_rad]) {
-            flaws.push(Flaw::Standing { off_m, off_rad });
+            flaws.push(Flaw::Standing { off_m, off_rad, tolerance: EXACT });
         }
         flaws
     }
@@ -186,7 +186,7 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
     let chain = Chain::new(robot, index, gripper.travel_for_gap_m(0, thickness_m));
     let off = deviation(&chain.gripper_pose(&hold.q_rad), &(plan.object.x_wo * hold.x_og));
     if !GIVEN.allows(off) {
-        flaws.push(Flaw::Hand { arm, name, off_m: off[0], off_rad: off[1] });
+        flaws.push(Flaw::Hand { arm, name, off_m: off[0], off_rad: off[1], tolerance: GIVEN });
     }
     Some(CheckedArm { index, hold, chain, off })
 }
