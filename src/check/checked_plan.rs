@@ -135,7 +135,7 @@ fn deviation(a: &Pose, b: &Pose) -> [f64; 2] {
 fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
     let object = &plan.object;
     for (axis, &found_m) in object.size_m.iter().enumerate() {
-        if !(BOARD_SIDE_M[0]..=BOARD_SIDE_M[1]).contains(&found_m) {
+        if !is_board_side(found_m) {
             flaws.push(Flaw::BoardSide { axis, found_m, range_m: BOARD_SIDE_M });
         }
     }
@@ -148,10 +148,16 @@ fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
     }
     let found_m: [f64; 3] = plan.operation.x_ot.translation.vector.into();
     let half_sides_m = object.size_m.map(|side_m| side_m / 2.0);
-    let on_board = found_m.iter().zip(half_sides_m).all(|(p_m, half_m)| p_m.abs() - half_m <= ON_BOARD_M);
-    if !on_board {
+    let is_on_board = found_m.iter().zip(half_sides_m).all(|(p_m, half_m)| p_m.abs() - half_m <= ON_BOARD_M);
+    // Of a board without size only the size is at fault.
+    if object.size_m.iter().all(|&side_m| is_board_side(side_m)) && !is_on_board {
         flaws.push(Flaw::ToolPoint { found_m, half_sides_m });
     }
+}
+
+/// True if a length is in the range of a board's sides; false if it is not a number.
+fn is_board_side(side_m: f64) -> bool {
+    (BOARD_SIDE_M[0]..=BOARD_SIDE_M[1]).contains(&side_m)
 }
 
 /// One arm; `None` if it cannot be checked any further.
@@ -167,20 +173,22 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
         flaws.push(Flaw::ArmTwice { arm, found: hold.name.clone() });
     }
     check_joints(robot, index, arm, hold, flaws);
+    let across = [hold.x_og.translation.vector.z.abs(), (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
+    if !GIVEN.allows(across) {
+        flaws.push(Flaw::FingersAcross { arm, off_m: across[0], off_rad: across[1] });
+    }
+    // Wrong angles or a wrong grasp put the gripper elsewhere: one fault, one flaw.
+    let is_comparable = flaws.len() == before;
     let gripper = &robot.arms[index].gripper;
     let (name, found_n, max_n) = (hold.name.clone(), hold.grip_force_n, gripper.max_force_n);
     if !(found_n > 0.0 && found_n <= max_n) {
         flaws.push(Flaw::GripForce { arm, name: name.clone(), found_n, max_n });
     }
     let (thickness_m, opening_m) = (plan.object.size_m[2], gripper.opening_m);
-    if !(opening_m[0]..=opening_m[1]).contains(&thickness_m) {
+    if is_board_side(thickness_m) && !(opening_m[0]..=opening_m[1]).contains(&thickness_m) {
         flaws.push(Flaw::Thickness { name: name.clone(), found_m: thickness_m, opening_m });
     }
-    let across = [hold.x_og.translation.vector.z.abs(), (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
-    if !GIVEN.allows(across) {
-        flaws.push(Flaw::FingersAcross { arm, off_m: across[0], off_rad: across[1] });
-    }
-    if flaws.len() > before {
+    if !is_comparable {
         return None;
     }
     let chain = Chain::new(robot, index, gripper.travel_for_gap_m(0, thickness_m));

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::tolerances::{GIVEN, PoseTolerance};
+use super::tolerances::{GIVEN, ON_BOARD_M, PoseTolerance};
 use crate::human::HumanError;
 
 /// One fault of a plan: its key, what was found and what was expected.
@@ -231,7 +231,7 @@ impl Flaw {
             Self::BoardMass { found_kg } => found_kg.to_string(),
             Self::Wrench => "a wrench that is not finite".into(),
             Self::ToolPoint { found_m: [x, y, z], half_sides_m } => {
-                if z.abs() > half_sides_m[2] {
+                if is_off(*z, half_sides_m[2]) {
                     format!("z = {z}")
                 } else {
                     format!("[{x}, {y}]")
@@ -280,7 +280,7 @@ impl Flaw {
             Self::BoardMass { .. } => "a positive number (kg)".into(),
             Self::Wrench => "finite numbers (N, N m)".into(),
             Self::ToolPoint { found_m, half_sides_m: [x, y, z] } => {
-                if found_m[2].abs() > *z {
+                if is_off(found_m[2], *z) {
                     format!("a point on the board: |z| <= {z} m")
                 } else {
                     format!("a point on the board: |x| <= {x} m, |y| <= {y} m")
@@ -323,13 +323,18 @@ impl Flaw {
     }
 }
 
+/// True if a coordinate of the tool point is off the board; true if it is not a number.
+fn is_off(p_m: f64, half_side_m: f64) -> bool {
+    p_m.is_nan() || p_m.abs() - half_side_m > ON_BOARD_M
+}
+
 impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: found {}, expected {}", self.key(), self.found(), self.expected())
     }
 }
 
-/// All faults of a plan, at least one, in the order of the plan's keys.
+/// All faults of a plan, at least one: those of board and operation, then those of each arm, then those of the person.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaws {
     first: Flaw,

@@ -55,10 +55,10 @@ pub const EXACT: PoseTolerance = PoseTolerance { position_m: 1e-6, rotation_rad:
 pub(super) const LIMIT_RAD: f64 = 1e-6;
 
 /// Largest distance of the tool point outside the board, m: rounding of written numbers.
-pub(super) const ON_BOARD_M: f64 = 1e-9;
+pub const ON_BOARD_M: f64 = 1e-9;
 
 /// Range of a board's sides, m: no material is thinner, no pair of arms holds more.
-pub(super) const BOARD_SIDE_M: [f64; 2] = [0.001, 5.0];
+pub const BOARD_SIDE_M: [f64; 2] = [0.001, 5.0];
 
 /// Largest relative difference of a stated figure from the recomputed one: rounding of another order of operations.
 pub const FIGURE_TOLERANCE: f64 = 1e-6;
