@@ -31,7 +31,7 @@ fn a_good_plan_has_no_flaw() {
     assert_eq!(flaws(|_| ()), []);
     let (plan, robot) = load();
     let checked = CheckedPlan::new(&robot, &plan, &default_tool(plan.operation.kind)).unwrap();
-    assert_eq!(checked.arms.len(), 2);
+    assert_eq!(checked.arms().len(), 2);
     assert_eq!(checked.first_contact(), None);
 }
 

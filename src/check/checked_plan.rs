@@ -19,17 +19,20 @@ use crate::{
 
 /// A plan without flaws, with what follows from it by kinematics.
 pub struct CheckedPlan<'a> {
-    /// The robot.
-    pub robot: &'a Robot,
-    /// The plan.
-    pub plan: &'a Plan,
-    /// The arms that hold, in the order of the plan.
-    pub arms: Vec<CheckedArm<'a>>,
-    /// The person with the tool; `None` if the plan has no person.
-    pub human: Option<Human>,
-    /// Poses of all links, W.
-    pub link_poses: Vec<Pose>,
+    robot: &'a Robot,
+    plan: &'a Plan,
+    arms: Vec<CheckedArm<'a>>,
+    person: Option<CheckedPerson<'a>>,
+    link_poses: Vec<Pose>,
     holding: Vec<usize>,
+}
+
+/// The person of a plan.
+pub struct CheckedPerson<'a> {
+    /// Pose and joint angles.
+    pub posture: &'a HumanPosture,
+    /// The person with the tool.
+    pub human: Human,
 }
 
 /// An arm that holds the board.
@@ -56,7 +59,7 @@ impl<'a> CheckedPlan<'a> {
         if plan.arms.is_empty() {
             flaws.push(Flaw::NoArm);
         }
-        let human = plan.human.as_ref().and_then(|posture| check_person(posture, tool, &mut flaws));
+        let person = plan.human.as_ref().and_then(|posture| check_person(posture, tool, &mut flaws));
         match Flaws::of(flaws) {
             Some(flaws) => Err(flaws),
             None => Ok(Self {
@@ -65,9 +68,39 @@ impl<'a> CheckedPlan<'a> {
                 robot,
                 plan,
                 arms,
-                human,
+                person,
             }),
         }
+    }
+
+    /// The robot.
+    #[must_use]
+    pub fn robot(&self) -> &'a Robot {
+        self.robot
+    }
+
+    /// The plan.
+    #[must_use]
+    pub fn plan(&self) -> &'a Plan {
+        self.plan
+    }
+
+    /// The arms that hold, in the order of the plan.
+    #[must_use]
+    pub fn arms(&self) -> &[CheckedArm<'a>] {
+        &self.arms
+    }
+
+    /// The person; `None` if the plan has none.
+    #[must_use]
+    pub fn person(&self) -> Option<&CheckedPerson<'a>> {
+        self.person.as_ref()
+    }
+
+    /// Poses of all links, W.
+    #[must_use]
+    pub fn link_poses(&self) -> &[Pose] {
+        &self.link_poses
     }
 
     /// The collision scene of robot and board without the person.
@@ -86,7 +119,7 @@ impl<'a> CheckedPlan<'a> {
     /// The capsules of the person, W; empty without a person.
     #[must_use]
     pub fn person_parts(&self) -> Vec<PersonPart> {
-        let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return Vec::new() };
+        let Some(CheckedPerson { posture, human }) = &self.person else { return Vec::new() };
         human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from).to_vec()
     }
 
@@ -110,7 +143,7 @@ impl<'a> CheckedPlan<'a> {
                 flaws.push(Flaw::Hand { arm, name, off_m, off_rad, tolerance: EXACT });
             }
         }
-        let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return flaws };
+        let Some(CheckedPerson { posture, human }) = &self.person else { return flaws };
         check_person_limits(human, posture, 0.0, &mut flaws);
         let tool = posture.x_wb * human.tool_pose_b(&posture.q_rad);
         let off = deviation(&tool, &(self.plan.object.x_wo * self.plan.operation.x_ot));
@@ -225,13 +258,13 @@ fn check_limits(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, toleran
 }
 
 /// The person; `None` if the person or the tool is invalid.
-fn check_person(posture: &HumanPosture, tool: &Tool, flaws: &mut Vec<Flaw>) -> Option<Human> {
+fn check_person<'a>(posture: &'a HumanPosture, tool: &Tool, flaws: &mut Vec<Flaw>) -> Option<CheckedPerson<'a>> {
     if !posture.x_wb.translation.vector.iter().all(|x| x.is_finite()) {
         flaws.push(Flaw::PersonPose);
     }
     let human = Human::new(&posture.person(), tool).map_err(|error| flaws.push(Flaw::Person(error))).ok()?;
     check_person_limits(&human, posture, LIMIT_RAD, flaws);
-    Some(human)
+    Some(CheckedPerson { posture, human })
 }
 
 /// The limits of the joints of the person's working arm.

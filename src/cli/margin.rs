@@ -80,7 +80,7 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, C
     let predicted = predicted(checked, scenario).ok().flatten();
     let expected = scenario.expect.verdict;
     let empty = Margin {
-        name: checked.plan.name.clone(),
+        name: checked.plan().name.clone(),
         load_factor: 0.0,
         fails_at: Some(0.0),
         ended_by: VerdictKind::Touches,

@@ -5,12 +5,12 @@
 //! collision model and stability program are those of the search; its way of choosing and placing is not.
 
 use crate::{
-    check::{CheckedPlan, FIGURE_TOLERANCE, Flaw},
+    check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
     collision::CollisionModel,
     comfort,
     human::Human,
     model::{
-        plan::{Comfort, HumanPosture, MeanComfort, Plan},
+        plan::{Comfort, MeanComfort, Plan},
         scenario::{ResponseKind, Scenario, StabilityKind},
     },
     robot::Robot,
@@ -31,28 +31,27 @@ pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Vec<Flaw> {
     };
     let mut flaws = checked.inexact();
     verify_stability(&checked, scenario, &mut flaws);
-    match (&plan.human, &checked.human, &plan.comfort) {
-        (Some(posture), Some(human), Some(stated)) => {
-            verify_comfort(&checked, posture, human, stated, scenario, &mut flaws);
+    match (checked.person(), &plan.comfort) {
+        (Some(person), Some(stated)) => {
+            verify_comfort(&checked, person, stated, scenario, &mut flaws);
             flaws.extend(checked.first_contact().map(Flaw::Contact));
         }
-        (None, ..) | (_, None, _) => flaws.push(Flaw::Missing { key: "human" }),
-        (.., None) => flaws.push(Flaw::Missing { key: "comfort" }),
+        (None, _) => flaws.push(Flaw::Missing { key: "human" }),
+        (_, None) => flaws.push(Flaw::Missing { key: "comfort" }),
     }
     flaws
 }
 
 fn verify_comfort(
     checked: &CheckedPlan<'_>,
-    posture: &HumanPosture,
-    human: &Human,
+    CheckedPerson { posture, human }: &CheckedPerson<'_>,
     stated: &Comfort,
     scenario: &Scenario,
     flaws: &mut Vec<Flaw>,
 ) {
-    let plan = checked.plan;
+    let plan = checked.plan();
     let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
-    let points_w = comfort::robot_points_w(checked.robot, &checked.link_poses);
+    let points_w = comfort::robot_points_w(checked.robot(), checked.link_poses());
     let mut found = comfort::of_posture(human, &scenario.comfort, &points_w, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
     if strongest > 1.0 {
@@ -92,17 +91,17 @@ fn mean_response(
 ) -> Option<MeanComfort> {
     comfort::average(&comfort::Hold {
         human,
-        collision: &CollisionModel::new(checked.robot),
+        collision: &CollisionModel::new(checked.robot()),
         settings: scenario.comfort,
-        operation: checked.plan.operation,
-        floor_z_m: checked.robot.floor_z_m,
+        operation: checked.plan().operation,
+        floor_z_m: checked.robot().floor_z_m,
         robot_points_w,
         scene: checked.scene(),
     })
 }
 
 fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut Vec<Flaw>) {
-    let Some(stated) = &checked.plan.stability else { return flaws.push(Flaw::Missing { key: "stability" }) };
+    let Some(stated) = &checked.plan().stability else { return flaws.push(Flaw::Missing { key: "stability" }) };
     let found = ContactModel::of_plan(checked, scenario.grip.friction)
         .and_then(|model| StabilityWorkspace::new().predict(&model, &scenario.limits));
     let found = match found {

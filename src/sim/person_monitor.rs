@@ -41,12 +41,12 @@ pub(super) struct PersonMonitor<'a> {
 impl<'a> PersonMonitor<'a> {
     /// The person of a plan; `None` if the plan has none.
     pub fn of(checked: &CheckedPlan<'a>, conditions: &Conditions) -> Option<Self> {
-        checked.human.as_ref()?;
+        checked.person()?;
         Some(Self {
-            robot: checked.robot,
-            model: CollisionModel::new(checked.robot),
-            person: StandingPerson::new(&checked.person_parts(), checked.plan.object.size_m),
-            arms: checked.arms.iter().map(|arm| arm.index).collect(),
+            robot: checked.robot(),
+            model: CollisionModel::new(checked.robot()),
+            person: StandingPerson::new(&checked.person_parts(), checked.plan().object.size_m),
+            arms: checked.arms().iter().map(|arm| arm.index).collect(),
             every: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             distance_m: f64::INFINITY,
             touch: None,
