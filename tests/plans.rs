@@ -232,6 +232,23 @@ fn a_circle_is_covered_by_one_grasp_and_by_a_sequence_with_one_grasp() {
     motions_are_clear(&found, first.object.size_m);
 }
 
+/// The limit of evaluations applies to each of the three searches of a circle.
+#[test]
+fn no_search_of_a_circle_evaluates_more_than_allowed() {
+    const LIMIT: u64 = 60;
+    let mut scenario = fast("cut-rim");
+    scenario.planner.evaluations = Some(LIMIT);
+    let plans = found(PLANNER.search(&scenario).circle().unwrap());
+    let most = |plans: &path::PlansByPoint| {
+        plans.iter().flatten().map(|plan| plan.planner.unwrap().evaluations).max().unwrap_or(0)
+    };
+    // The two searches without regrasping share a count.
+    assert!(most(&plans.continuous.hold) <= 2 * LIMIT, "{}", most(&plans.continuous.hold));
+    assert!(most(&plans.continuous.sequence) <= 2 * LIMIT, "{}", most(&plans.continuous.sequence));
+    assert!(most(&plans.separate) <= LIMIT, "{}", most(&plans.separate));
+    assert!(plans.continuous.hold.iter().any(Option::is_some), "60 evaluations find some coverage");
+}
+
 /// Every step of every motion within joint limits, on the grasps, free of collisions, short, and from plan to plan.
 fn motions_are_clear(found: &path::Continuous, size_m: [f64; 3]) {
     let collision = CollisionModel::new(&ROBOT);

@@ -224,7 +224,7 @@ fn an_interrupted_run_ends_cleanly_with_what_is_done() {
     std::io::Read::read_to_string(&mut stderr, &mut told).unwrap();
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("interrupted: the scenarios at work are finished and reported"), "{told}");
+    assert!(told.contains("interrupted: the scenarios in progress are finished and reported"), "{told}");
 
     let summary = json(folder.path().join("out/summary.json"));
     assert_eq!(summary["interrupted"], true);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compare what two benchdog binaries compute, bit for bit.
 
-    tools/compare_binaries.py OLD NEW [--only PATTERN] [--keep DIR] [--reuse-old DIR]
+    tools/compare_binaries.py OLD NEW [--only PATTERN] [--keep DIR] [--reuse-old DIR] [--reuse-new DIR]
                               [--scenarios DIR] [--ignore KEY] [--jobs N] [--results A B]
 
 A refactoring must not change a number. This script runs both binaries on the same input and compares their files:
@@ -24,7 +24,8 @@ is a sentence, only the numbers in it are compared, in any order. `--ignore KEY`
 `--only PATTERN` takes one of the names above, or a pattern of scenario names such as 'cut-0*' (may be given several
 times). `--keep DIR` keeps the scenario files, the outputs (DIR/old, DIR/new) and the console output of every command.
 `--reuse-old DIR` takes scenario files and the old binary's outputs from a folder that an earlier run kept; what is
-missing there is run. `--keep` may name the same folder. The new binary always runs.
+missing there is run. `--reuse-new DIR` does the same for the new binary's outputs: to compare again with another
+`--ignore`.
 
 The exit code is 0 if nothing differs, 1 if anything does, 2 if a command could not be run.
 """
@@ -324,6 +325,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--only", action="append", default=[], metavar="PATTERN")
     parser.add_argument("--keep", type=Path, metavar="DIR")
     parser.add_argument("--reuse-old", type=Path, metavar="DIR")
+    parser.add_argument("--reuse-new", type=Path, metavar="DIR")
     parser.add_argument("--scenarios", type=Path, default=REPOSITORY / "scenarios", metavar="DIR")
     parser.add_argument("--ignore", action="append", default=[], metavar="KEY")
     parser.add_argument("--jobs", type=int, metavar="N", help="scenarios at once; all cores unless given")
@@ -339,13 +341,13 @@ def main() -> int:
         keep = (args.keep or Path(temporary)).resolve()
         # Both binaries read the same scenario files: a file may name another one.
         base = args.reuse_old.resolve() if args.reuse_old else keep
-        old, new = base / "old", keep / "new"
+        old, new = base / "old", (args.reuse_new.resolve() if args.reuse_new else keep) / "new"
         for job in jobs(base, args.scenarios.resolve(), args.only, args.jobs):
-            if args.reuse_old and ran(job, old):
-                print(f"{job.name}: the old outputs in {old} are used again")
-            else:
-                run(args.old.resolve(), job, old)
-            run(args.new.resolve(), job, new)
+            for reuse, binary, out in [(args.reuse_old, args.old, old), (args.reuse_new, args.new, new)]:
+                if reuse and ran(job, out):
+                    print(f"{job.name}: the outputs in {out} are used again")
+                else:
+                    run(binary.resolve(), job, out)
             for name in [f"{job.output}/{Path(file).stem}" for file in job.scenarios] or [job.output]:
                 compare_output(comparison, name, old / name, new / name)
     if args.results:

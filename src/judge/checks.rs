@@ -1,4 +1,4 @@
-//! The checks: each finds its worst value and the first moment at which its limit was crossed.
+//! The checks: each finds its worst value and the first sample at which its limit is crossed.
 
 use std::cmp::Ordering;
 
@@ -11,23 +11,23 @@ use crate::model::{
     verdict::{Check, CheckKind},
 };
 
-/// Below this share of the grip force a pad counts as open (METHOD section 8).
+/// A pad counts as open below this share of the grip force (docs/method.md#86-contact).
 const OPEN_SHARE: f64 = 0.05;
 
-/// How long a pad may be open, ms (METHOD section 8).
+/// Limit of the time that a pad is open, ms (docs/method.md#86-contact).
 const OPEN_LIMIT_MS: f64 = 30.0;
 
-/// How long the board may be without any contact, ms: not at all (METHOD section 8).
+/// Limit of the time without any contact, ms (docs/method.md#86-contact).
 const CONTACT_LOST_LIMIT_MS: f64 = 0.0;
 
-/// How far robot and board may reach into the person, mm: not at all.
+/// Limit of the overlap of robot and board with the person, mm (docs/method.md#87-person-overlap).
 const PERSON_OVERLAP_LIMIT_MM: f64 = 0.0;
 
-/// Slip at which the board counts as dropped, mm (METHOD section 8).
+/// Slip above which the board counts as dropped, mm (docs/method.md#86-contact).
 const DROP_MM: f64 = 50.0;
 
-/// Which check names the verdict when two cross at the same sample: the loss of the board first, then what happens at
-/// the contacts, then what follows from it.
+/// The order of checks that are crossed at the same sample; the first one determines the verdict: loss of the board,
+/// then the contacts, then consequences.
 const PRECEDENCE: [CheckKind; 9] = [
     CheckKind::Drop,
     CheckKind::ContactLost,
@@ -40,27 +40,27 @@ const PRECEDENCE: [CheckKind; 9] = [
     CheckKind::Creep,
 ];
 
-/// A check and, when it failed, its first crossing.
+/// A check and its first crossing, if it failed.
 pub(super) struct Finding {
     /// Value, limit and margin.
     pub check: Check,
-    /// When the limit was crossed first.
+    /// The first crossing of the limit.
     pub crossing: Option<Crossing>,
 }
 
-/// The first moment at which a limit was crossed.
+/// The first sample at which a limit is crossed.
 pub(super) struct Crossing {
     /// Index into the judged samples.
     pub sample: usize,
-    /// What crossed it: a hand, a pad or a joint; empty for the board.
+    /// The hand, pad or joint that crossed it; empty for the board.
     pub what: String,
 }
 
-/// One measured series under a limit.
+/// A measured series that a limit applies to.
 struct Series {
     /// The hand, pad or joint; empty for the board.
     what: String,
-    /// One entry a judged sample.
+    /// One value for each judged sample.
     values: Vec<f64>,
 }
 
@@ -70,16 +70,16 @@ impl Series {
     }
 }
 
-/// Every check, in the order of tables. `judged` are the samples from the reference to the end of the load, and
-/// `measures` begins at the same sample. Creep is left out when the hold is too short to have a
-/// slope, or its load does not stay the same: a hand that follows the load does not creep. So it is where the hold was cut
-/// short, `to_the_end` being false: the second half of it is not known.
+/// Every check, in the order of tables. `judged` are the samples from the reference to the end of the load; `measures`
+/// starts at the same sample. Creep is left out if the hold phase is too short for a slope, if its load is not constant
+/// (a hand that follows the load does not creep), or if `is_complete` is false (the second half of the hold phase is
+/// not known).
 pub(super) fn findings(
     trace: &Trace,
     judged: &[Sample],
     measures: &Measures,
     limits: &Limits,
-    to_the_end: bool,
+    is_complete: bool,
 ) -> Vec<Finding> {
     let count = judged.len();
     let hand = |kind, limit, series: fn(&HandMeasures) -> &[f64]| {
@@ -93,7 +93,7 @@ pub(super) fn findings(
         hand(CheckKind::SlipRotation, limits.slip_deg, |hand| &hand.slip_deg),
         sampled(CheckKind::Deflection, limits.deflection_mm, vec![deflection]),
     ];
-    findings.extend(if to_the_end { creep(trace, judged, limits.creep_mm_s) } else { None });
+    findings.extend(if is_complete { creep(trace, judged, limits.creep_mm_s) } else { None });
     findings.extend([
         sampled(CheckKind::TorqueRatio, limits.torque_ratio, measures.joints.iter().map(joint).collect()),
         sampled(CheckKind::PadOpen, OPEN_LIMIT_MS, pad_open_series(trace, judged)),
@@ -104,7 +104,8 @@ pub(super) fn findings(
     findings
 }
 
-/// The finding that names the verdict: the earliest crossing; of two at the same sample, the first in [`PRECEDENCE`].
+/// The finding that determines the verdict: the earliest crossing; of two at the same sample, the first in
+/// [`PRECEDENCE`].
 pub(super) fn first_failure(findings: &[Finding]) -> Option<(&Finding, &Crossing)> {
     let rank = |kind| PRECEDENCE.iter().position(|&other| other == kind);
     findings
@@ -113,7 +114,7 @@ pub(super) fn first_failure(findings: &[Finding]) -> Option<(&Finding, &Crossing
         .min_by_key(|(finding, crossing)| (crossing.sample, rank(finding.check.name)))
 }
 
-/// For each pad, how long it has been open at each sample, ms.
+/// For each pad the time for which it has been open at each sample, ms.
 fn pad_open_series(trace: &Trace, judged: &[Sample]) -> Vec<Series> {
     let pad_series = |arm: usize, pad: usize| {
         let least_force_n = OPEN_SHARE * trace.arms[arm].grip_force_n;
@@ -128,12 +129,12 @@ fn pad_open_series(trace: &Trace, judged: &[Sample]) -> Vec<Series> {
         .collect()
 }
 
-/// How long no pad of any hand has touched the board at each sample, ms.
+/// The time without contact of any pad at each sample, ms.
 fn contact_lost_series(judged: &[Sample]) -> Series {
     Series { what: String::new(), values: duration_ms(judged, |sample| !sample.has_contact()) }
 }
 
-/// How deep robot or board reach into the person; none when nobody stands there.
+/// The overlap of robot or board with the person; `None` if the plan has no person.
 fn person_overlap(trace: &Trace, judged: &[Sample]) -> Option<Finding> {
     let overlaps_mm: Vec<f64> = judged.iter().map(|s| s.person_distance_m.map(|m| -1e3 * m)).collect::<Option<_>>()?;
     let deepest = overlaps_mm.iter().copied().reduce(f64::max)?;
@@ -144,9 +145,9 @@ fn person_overlap(trace: &Trace, judged: &[Sample]) -> Option<Finding> {
     Some(Finding { check: check(CheckKind::PersonOverlap, deepest, PERSON_OVERLAP_LIMIT_MM), crossing })
 }
 
-/// How long a condition has lasted at each sample, ms: 0 where it does not hold. A sample's forces are those of the
-/// step that led to it, so its own step counts; the first sample's step lies before the judged span, yet a hold that
-/// begins in the condition must not count as free of it, so the step after it stands in.
+/// The time for which a condition has been true at each sample, ms; 0 where it is false. A sample's forces are those of
+/// the step before it, so that step counts. The step before the first sample is not judged; the length of the next one
+/// is used, so that a condition that is true from the start counts.
 fn duration_ms(judged: &[Sample], condition: impl Fn(&Sample) -> bool) -> Vec<f64> {
     let step_before_s = |index: usize| match index {
         0 => judged.get(1).map_or(0.0, |next| next.time_s - judged[0].time_s),
@@ -155,7 +156,7 @@ fn duration_ms(judged: &[Sample], condition: impl Fn(&Sample) -> bool) -> Vec<f6
     let mut lasted_s = 0.0;
     let lasted = |(index, sample)| {
         lasted_s = if condition(sample) { lasted_s + step_before_s(index) } else { 0.0 };
-        // To the microsecond, so that fifteen steps of 2 ms are 30 ms and not one rounding more.
+        // Rounded to the microsecond, so that fifteen steps of 2 ms are exactly 30 ms.
         (lasted_s * 1e6_f64).round() / 1e3
     };
     judged.iter().enumerate().map(lasted).collect()
@@ -174,8 +175,8 @@ fn sampled(kind: CheckKind, limit: f64, series: Vec<Series>) -> Finding {
     Finding { check: check(kind, worst, limit), crossing }
 }
 
-/// Creep: the least-squares slope of each hand's position on the board over the second half of the hold, mm/s. It is
-/// known, and so crosses its limit, at the hold's last sample.
+/// Creep (docs/method.md#84-creep): the least-squares slope of each hand's position on the board over the second half
+/// of the hold phase, mm/s. It is known, and crosses its limit, at the last sample of the hold phase.
 fn creep(trace: &Trace, judged: &[Sample], limit: f64) -> Option<Finding> {
     let hold_start = judged.iter().position(|sample| sample.phase == Phase::Hold)?;
     let middle_s = (judged[hold_start].time_s + judged[judged.len() - 1].time_s) / 2.0;
@@ -194,7 +195,7 @@ fn creep(trace: &Trace, judged: &[Sample], limit: f64) -> Option<Finding> {
 /// Least-squares slope over time: `sum (t - mean t) v / sum (t - mean t)^2`.
 fn slope(samples: &[Sample], value: impl Fn(&Sample) -> Vector3<f64>) -> Vector3<f64> {
     let mean_s = samples.iter().map(|sample| sample.time_s).sum::<f64>() / samples.len() as f64;
-    // Measured from the first value: a position of decimetres would drown a creep of nanometres in rounding.
+    // Relative to the first value: otherwise rounding of a position of decimetres hides a creep of nanometres.
     let start = value(&samples[0]);
     let (mut numerator, mut denominator) = (Vector3::zeros(), 0.0);
     for sample in samples {
@@ -205,7 +206,7 @@ fn slope(samples: &[Sample], value: impl Fn(&Sample) -> Vector3<f64>) -> Vector3
     numerator / denominator
 }
 
-/// A value at its limit keeps it; one that cannot be compared does not.
+/// A value equal to its limit does not cross it; NaN does.
 fn is_crossed(value: f64, limit: f64) -> bool {
     value.partial_cmp(&limit).is_none_or(Ordering::is_gt)
 }

@@ -1,4 +1,4 @@
-//! What a reader of a recording wants to jump to: the phases and the first crossing of each limit.
+//! Events for the reader of a recording: the phases and the first crossing of each limit.
 
 use nalgebra::Point3;
 
@@ -9,7 +9,7 @@ use crate::model::{
     verdict::CheckKind,
 };
 
-/// Phases and crossings, in the order of time, and the end of a trace that broke down after the crossing that decided.
+/// Phases and crossings in the order of time, and the end of a trace that broke down after the deciding crossing.
 pub(super) fn events(
     trace: &Trace,
     believed: &[Sample],
@@ -30,14 +30,14 @@ pub(super) fn events_without_verdict(trace: &Trace, reason: &str) -> Vec<Event> 
     in_order(events)
 }
 
-/// The last that is known.
+/// The end of a trace that broke down.
 fn end(samples: &[Sample], text: String) -> Event {
     let time_s = samples.last().map_or(0.0, |sample| sample.time_s);
     Event { time_s, kind: EventKind::BrokeDown, text, what: String::new() }
 }
 
 fn in_order(mut events: Vec<Event>) -> Vec<Event> {
-    // Stable: a phase goes before the limits that were crossed at its first sample.
+    // A stable sort: a phase comes before limits crossed at its first sample.
     events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
     events
 }
@@ -61,7 +61,7 @@ fn phase_events(trace: &Trace, samples: &[Sample]) -> Vec<Event> {
         .collect()
 }
 
-/// How far the tool point moved under gravity until this sample, mm.
+/// Displacement of the tool tip under gravity until this sample, mm.
 fn sag_mm(trace: &Trace, sample: &Sample) -> f64 {
     let tool_point_w = |sample: &Sample| sample.x_wo * Point3::from(trace.p_ot_m);
     trace.samples.first().map_or(0.0, |first| 1e3 * (tool_point_w(sample) - tool_point_w(first)).norm())

@@ -1,47 +1,48 @@
-//! How much load a hold stands: the smallest multiple of its load at which it does not hold, and by what it fails.
+//! The failing load: the smallest multiple of the load at which a grasp fails in simulation, and how it fails
+//! (docs/method.md#89-failing-load).
 //!
-//! Found by bisection over whole simulations, which the caller provides. A slow ramp of one simulation would be cheaper,
-//! but it would answer another question: creep, the swing after the ramp and the time under the whole load are part of
-//! a verdict, so the load that a ramp reaches before a limit is crossed is no load that the hold stands. With bisection
-//! the answer is one that `simulate` gives too.
+//!
+//! Bisection over whole simulations, which the caller runs. One simulation with a slow ramp would be cheaper but would
+//! measure something else: creep, the swing after the ramp and the time under the full load are part of a verdict, so a
+//! grasp may fail at a load that it passes on a ramp. The result of bisection is reproduced by `simulate`.
 
-use super::Judgement;
+use super::judgement::Judgement;
 use crate::model::verdict::VerdictKind;
 
-/// The largest factor that is tried, as in the stability program.
-pub const MAX_SIMULATED_FACTOR: f64 = 100.0;
+/// The largest factor tried, as in the load program of the statics.
+const MAX_SIMULATED_FACTOR: f64 = 100.0;
 
-/// The smallest factor that is tried before the load is taken away altogether.
+/// The smallest positive factor tried; below it comes 0.
 const MIN_FACTOR: f64 = 1.0 / 64.0;
 
-/// How wide the bracket of the answer is in the end, relative to the answer.
+/// Final width of the bracket, relative to the failing load.
 const RELATIVE_WIDTH: f64 = 1e-3;
 
-/// How much load a hold stands.
+/// The result of the search for the failing load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailingLoad {
-    /// The largest factor that was found to hold; 0 when none did.
+    /// The largest factor at which the grasp holds; 0 if there is none.
     pub holds_at: f64,
-    /// The smallest factor that was found not to hold, at most 0.1 % more; none when the hold stands
-    /// [`MAX_SIMULATED_FACTOR`]. It is 0 when the hold fails without any load.
+    /// The smallest factor at which it fails, at most 0.1 % more; `None` if it holds 100 times the load, 0 if it fails
+    /// without a load.
     pub fails_at: Option<f64>,
-    /// What the judge said there; at `holds_at` when nothing fails.
+    /// The judgement there, or at `holds_at` if it does not fail.
     pub judgement: Judgement,
-    /// How many simulations it took.
+    /// The number of simulations.
     pub simulations: usize,
 }
 
-/// Finds the load at which a hold fails: `judged` simulates it under a multiple of its load and judges it. The search
-/// begins at `guess`, such as a predicted load factor, doubles or halves until the failing load is bracketed and halves
-/// the bracket until it is 0.1 % wide. A load that allows no verdict counts as one that does not hold.
+/// Finds the failing load. `judged` simulates the plan under a multiple of its load and judges it. The search starts at
+/// `guess`, such as a predicted load factor, moves with growing strides until the failing load is bracketed and bisects
+/// the bracket to 0.1 %. A factor without a verdict counts as a failure.
 ///
-/// Holds are taken to fail at every load beyond the first that they fail at; between the loads tried nothing is known.
+/// It is assumed that a grasp fails at every load above the failing load.
 ///
 /// # Errors
 /// The first error of `judged`.
 pub fn failing_load<E>(guess: f64, mut judged: impl FnMut(f64) -> Result<Judgement, E>) -> Result<FailingLoad, E> {
     let start = if guess.is_finite() { guess.clamp(MIN_FACTOR, MAX_SIMULATED_FACTOR) } else { 1.0 };
-    // A prediction is good to a few per cent, so the first bracket around it is narrow.
+    // A prediction is accurate to a few per cent, so the first stride is short.
     let mut stride = 1.1;
     let (mut factor, mut simulations) = (start, 0);
     let (mut holds_at, mut failing): (Option<f64>, Option<(f64, Judgement)>) = (None, None);
@@ -67,7 +68,7 @@ pub fn failing_load<E>(guess: f64, mut judged: impl FnMut(f64) -> Result<Judgeme
     }
 }
 
-/// The factor to try after some were found to hold and to fail; none when the answer is known.
+/// The next factor to try; `None` if the failing load is found.
 fn next_factor(holds_at: Option<f64>, fails_at: Option<f64>, stride: f64) -> Option<f64> {
     match (holds_at, fails_at) {
         (Some(low), Some(high)) => (high - low > RELATIVE_WIDTH * high).then_some((low + high) / 2.0),
@@ -81,32 +82,22 @@ fn next_factor(holds_at: Option<f64>, fails_at: Option<f64>, stride: f64) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        judge::judge,
-        model::{scenario::Limits, trace::Trace},
-    };
 
-    /// A hold that stands every load below `limit`, and how often it was asked.
+    /// The failing load of a grasp that holds below `limit`.
     fn search(guess: f64, limit: f64) -> FailingLoad {
-        let empty = Trace {
-            arms: Vec::new(),
-            p_ot_m: nalgebra::Vector3::zeros(),
-            samples: Vec::new(),
-            broke_down: None,
-            person_touch: None,
-        };
-        let limits = Limits {
-            slip_mm: 1.0,
-            slip_deg: 2.0,
-            deflection_mm: 5.0,
-            creep_mm_s: 0.1,
-            torque_ratio: 1.0,
-            load_factor: 1.0,
+        let judgement = |verdict| Judgement {
+            verdict,
+            checks: Vec::new(),
+            self_checks: Vec::new(),
+            first_failure: None,
+            peak_torque_ratio: std::collections::BTreeMap::new(),
+            reason: None,
+            fingerprint: String::new(),
+            events: Vec::new(),
+            measures: crate::model::measures::Measures::default(),
         };
         let verdict = |factor| if factor < limit { VerdictKind::Holds } else { VerdictKind::Slips };
-        let judged = |factor: f64| {
-            Ok::<_, std::convert::Infallible>(Judgement { verdict: verdict(factor), ..judge(&empty, &limits) })
-        };
+        let judged = |factor: f64| Ok::<_, std::convert::Infallible>(judgement(verdict(factor)));
         let Ok(found) = failing_load(guess, judged);
         found
     }
@@ -122,18 +113,18 @@ mod tests {
                 assert_eq!(found.judgement.verdict, VerdictKind::Slips);
             }
         }
-        // Four to bracket a prediction that is 5 % off, eight to halve 15 % down to 0.1 %.
+        // Four to bracket a prediction that is 5 % off, eight to bisect 15 % to 0.1 %.
         assert!(search(1.3, 1.36).simulations <= 12);
     }
 
     #[test]
-    fn what_never_fails_and_what_never_holds_end() {
+    fn the_search_ends_if_the_grasp_never_fails_or_never_holds() {
         let never_fails = search(1.0, f64::INFINITY);
         assert_eq!((never_fails.holds_at, never_fails.fails_at), (MAX_SIMULATED_FACTOR, None));
         assert_eq!(never_fails.judgement.verdict, VerdictKind::Holds);
         let never_holds = search(1.0, -1.0);
         assert_eq!((never_holds.holds_at, never_holds.fails_at), (0.0, Some(0.0)));
-        // Between no load at all and a sixty-fourth of it the answer is a bracket from zero.
+        // Between 0 and 1/64 the bracket starts at zero.
         assert!(search(1.0, 1e-6).holds_at < 1e-6);
     }
 }

@@ -1,4 +1,4 @@
-//! The trace as a sequence of numbers: its fingerprint, and whether all of them are finite.
+//! The fingerprint of a trace, and whether its numbers are finite.
 
 use sha2::{Digest, Sha256};
 
@@ -9,10 +9,9 @@ use crate::model::{
 };
 
 /// SHA-256 of the trace's numbers, in lowercase hexadecimal: the little-endian bits of every f64 in the order of the
-/// fields, the phase as its place in time (0 to 3), the person's distance where the plan has a person, the tool point where it
-/// has left its start. Names are no part of it,
-/// nor are the self-checks, which only repeat what the rest implies. Equal fingerprints mean simulations that
-/// agree bit by bit.
+/// fields, the phase as a number (0 to 3), the person's distance if the plan has a person, and the tool point if it has
+/// moved. Names are not part of it, nor are the self-checks, which follow from the rest. Equal fingerprints mean
+/// simulations that agree bit for bit.
 pub fn fingerprint(trace: &Trace) -> String {
     let mut hasher = Sha256::new();
     visit_constants(trace, &mut |value| hasher.update(value.to_le_bytes()));
@@ -25,14 +24,14 @@ pub fn fingerprint(trace: &Trace) -> String {
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// True when the numbers that stay the same during the simulation are finite.
+/// True if the constants of the trace are finite.
 pub(super) fn constants_are_finite(trace: &Trace) -> bool {
     let mut finite = true;
     visit_constants(trace, &mut |value| finite &= value.is_finite());
     finite
 }
 
-/// True when every number of the sample is finite.
+/// True if every number of the sample is finite.
 pub(super) fn sample_is_finite(sample: &Sample) -> bool {
     let mut finite = true;
     visit_sample(sample, &mut |value| finite &= value.is_finite());

@@ -6,9 +6,10 @@ use crate::model::{
     trace::{Sample, Trace},
 };
 
-/// Slip, deflection and torque ratios (METHOD section 8) of samples of a trace, the first of which is the reference:
+/// Slip, deflection and torque ratios of the samples of a trace, relative to the first one
+/// (docs/method.md#81-reference-state):
 ///
-/// - slip of a hand: `|p_OC(t) - p_OC(ref)|` and the angle of `R_OC(ref)' R_OC(t)`, C between the hand's pads;
+/// - slip of a hand: `|p_OC(t) - p_OC(ref)|` and the angle of `R_OC(ref)' R_OC(t)`, C at the centre between its pads;
 /// - deflection: `|X_WO(t) p_OT - X_WO(ref) p_OT|`, T the tool point at that time;
 /// - torque ratio of a joint: `|tau_demanded| / tau_max`.
 pub(super) fn measures(trace: &Trace, samples: &[Sample]) -> Measures {

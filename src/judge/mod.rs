@@ -1,12 +1,14 @@
-//! The judge: a trace against its limits (METHOD section 8).
+//! The judge: compares a trace with its limits (docs/method.md#8-judgement).
 //!
-//! A pure function. It must never know how a trace was made, what a planner predicted or what the author expects: a
-//! verdict that depended on any of these would prove nothing.
+//!
+//! A pure function of trace and limits. It must not depend on how the trace was made, on the planner's prediction or on
+//! the expected verdict.
 
 mod checks;
 mod events;
 mod failing_load;
 mod fingerprint;
+mod judgement;
 mod measure;
 mod self_checks;
 #[cfg(test)]
@@ -14,77 +16,26 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-pub use failing_load::{FailingLoad, MAX_SIMULATED_FACTOR, failing_load};
+pub use failing_load::{FailingLoad, failing_load};
 pub use fingerprint::fingerprint;
+pub use judgement::Judgement;
 
 use crate::model::{
-    FORMAT,
-    measures::{Event, Measures},
+    measures::Measures,
     scenario::Limits,
-    trace::{Phase, Sample, Trace},
-    verdict::{Check, Failure, Verdict, VerdictKind},
+    trace::{ArmTrace, Phase, Sample, Trace},
+    verdict::{Check, Failure, VerdictKind},
 };
 
-/// What the judge says about a trace.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Judgement {
-    /// What became of the hold.
-    pub verdict: VerdictKind,
-    /// Every limit, with what was found; empty without a verdict.
-    pub checks: Vec<Check>,
-    /// What the simulation made of the laws of mechanics; empty when the trace is malformed.
-    pub self_checks: Vec<Check>,
-    /// The first limit that was crossed.
-    pub first_failure: Option<Failure>,
-    /// Largest torque over limit of each joint, from the reference to the end of the load.
-    pub peak_torque_ratio: BTreeMap<String, f64>,
-    /// Why there is no verdict, in words.
-    pub reason: Option<String>,
-    /// SHA-256 of the trace.
-    pub fingerprint: String,
-    /// Phases and crossed limits, in the order of time.
-    pub events: Vec<Event>,
-    /// The series behind the checks; empty when the trace is malformed.
-    pub measures: Measures,
-}
-
-impl Judgement {
-    /// The verdict's file form, with what the judge itself must not know.
-    pub fn to_verdict(
-        &self,
-        name: &str,
-        expected: VerdictKind,
-        seed: u64,
-        versions: BTreeMap<String, String>,
-    ) -> Verdict {
-        Verdict {
-            format: FORMAT,
-            name: name.to_owned(),
-            verdict: self.verdict,
-            expected,
-            met: self.verdict == expected && self.verdict != VerdictKind::NoVerdict,
-            checks: self.checks.clone(),
-            self_checks: self.self_checks.clone(),
-            first_failure: self.first_failure.clone(),
-            peak_torque_ratio: self.peak_torque_ratio.clone(),
-            reason: self.reason.clone(),
-            versions,
-            seed,
-            fingerprint: self.fingerprint.clone(),
-        }
-    }
-}
-
-/// Judges a simulated hold.
+/// Judges a trace.
 ///
-/// The reference is the last sample of settling; a board lost before that drops. What is judged reaches from there to the end of the load; the release
-/// is not. A value at its limit keeps it. The earliest crossing names the verdict; of several at the same sample, the
-/// loss of the board goes before the contacts (pad, slip, rotation), and these before torque, deflection, the person
-/// and creep.
+/// The reference is the last sample of settling (docs/method.md#81-reference-state); a board lost before that drops.
+/// The samples from there to the end of the load are judged, those of the release are not. A value equal to its limit
+/// passes. The earliest crossing determines the verdict; of several at the same sample the loss of the board comes
+/// first, then the contacts (pad, slip, rotation), then torque, deflection, the person and creep.
 ///
-/// A trace that breaks down is judged as far as it can be believed: a limit that was crossed before names the verdict, for
-/// nothing that comes later could take it back. Without such a crossing there is no verdict: what the rest
-/// of the load would have done is not known.
+/// A trace that breaks down is judged up to its last valid sample. If a limit was crossed before, it determines the
+/// verdict. Otherwise there is no verdict, as the effect of the rest of the load is unknown.
 pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     if let Some(reason) = malformed(trace) {
         return no_verdict(trace, Measures::default(), Vec::new(), reason);
@@ -121,16 +72,16 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     }
 }
 
-/// The part of a trace that can be believed.
+/// The valid part of a trace.
 struct ValidPart<'a> {
-    /// The samples, up to the last good one; never none.
+    /// The samples up to the last valid one; at least one.
     samples: &'a [Sample],
-    /// Why there are no more although the load went on, in words; none when the trace ran to its end.
+    /// Why the trace ends early; `None` if it is complete.
     ends_because: Option<String>,
 }
 
-/// The samples before the first number that is not finite, all of them when there is none; a simulation that broke down
-/// has left out what came after. A trace whose very first sample is none is left to [`malformed`].
+/// The samples before the first number that is not finite. The trace of a simulation that broke down ends there
+/// already. [`malformed`] handles a trace with an invalid first sample.
 fn valid_part(trace: &Trace) -> ValidPart<'_> {
     match trace.samples.iter().position(|sample| !fingerprint::sample_is_finite(sample)) {
         Some(bad) => ValidPart { samples: &trace.samples[..bad], ends_because: Some(not_finite(&trace.samples[bad])) },
@@ -142,8 +93,8 @@ fn not_finite(sample: &Sample) -> String {
     format!("found a number that is not finite in the sample at {} s", sample.time_s)
 }
 
-/// Index of the reference: the last sample of settling, or the first of a trace that never settled. A board that is lost
-/// while settling never meets the load: then it is the first sample in which no pad touches any more.
+/// Index of the reference: the last sample of settling, or the first of a trace that never settled. If the board is
+/// lost while settling, and the load never acts, it is the first sample after the last contact.
 fn reference(samples: &[Sample]) -> usize {
     let settled = samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0);
     if samples.iter().any(|sample| sample.phase.is_loaded()) {
@@ -153,8 +104,8 @@ fn reference(samples: &[Sample]) -> usize {
     settled.min(last_touch)
 }
 
-/// The samples from the reference to the end of the load; to the end of the trace when the board was lost before the
-/// load; none when the load never acted for another reason.
+/// The samples from the reference to the end of the load; to the end of the trace if the board was lost before the
+/// load; empty if the load never acted for another reason.
 fn judged(samples: &[Sample], reference: usize) -> &[Sample] {
     let end = samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
     let lost = !samples[reference].has_contact();
@@ -167,7 +118,7 @@ fn peak_torque_ratio(measures: &Measures, count: usize) -> BTreeMap<String, f64>
     measures.joints.iter().map(|joint| (joint.name.clone(), peak(&joint.torque_ratio))).collect()
 }
 
-/// Why a trace cannot be measured: nothing in it, arms of different shapes, or nothing to measure from.
+/// Why a trace is malformed: it is empty, its samples have different shapes, or its first sample is not finite.
 fn malformed(trace: &Trace) -> Option<String> {
     let Some(first) = trace.samples.first() else {
         return Some(trace.broke_down.clone().unwrap_or_else(|| "the trace is empty".to_owned()));
@@ -186,13 +137,13 @@ fn malformed(trace: &Trace) -> Option<String> {
     (!fingerprint::sample_is_finite(first)).then(|| not_finite(first))
 }
 
-/// Why a well-formed trace allows no verdict whatever its limits; `ends_because` says why it was cut short, if so.
+/// Why a well-formed trace allows no verdict at any limits. `ends_because` says why it ends early, if it does.
 fn no_verdict_reason(trace: &Trace, judged: &[Sample], ends_because: Option<&str>) -> Option<String> {
     if !fingerprint::constants_are_finite(trace) {
         return Some("found a limit or a tool point that is not finite".to_owned());
     }
-    let powerless = |arm: &crate::model::trace::ArmTrace| arm.effort_nm.iter().any(|&effort_nm| effort_nm <= 0.0);
-    if let Some(arm) = trace.arms.iter().find(|arm| powerless(arm)) {
+    let lacks_torque = |arm: &ArmTrace| arm.effort_nm.iter().any(|&effort_nm| effort_nm <= 0.0);
+    if let Some(arm) = trace.arms.iter().find(|arm| lacks_torque(arm)) {
         return Some(format!("found a joint of the {} arm without torque, expected positive limits", arm.name));
     }
     if judged.is_empty() {

@@ -1,4 +1,5 @@
-//! Whether the simulation itself can be believed: a state that leaves the laws of mechanics allows no verdict.
+//! Self-checks of the simulation: there is no verdict if it violates the laws of mechanics
+//! (docs/method.md#75-self-checks).
 
 use std::fmt::Write as _;
 
@@ -8,24 +9,23 @@ use crate::model::{
     verdict::{Check, CheckKind},
 };
 
-/// How deep pads may sink into the board, mm. Holds show 0.05 mm, when a board is first gripped; the softest contacts that a
-/// scenario may ask for sink in by 0.4 mm where 30 N press the foam board.
+/// Limit of the pads' penetration into the board, mm. Typical: 0.05 mm when a board is first gripped; 0.4 mm under 30 N
+/// on the foam board with the softest contacts that a scenario may set.
 const PENETRATION_LIMIT_MM: f64 = 2.0;
 
-/// By how much the energy that contacts and integration brought in may ever rise, J. Holds show 0.002 J, what contacts store
-/// and give back; half a joule would throw the foam board at 2 m/s.
+/// Limit of the rise of the energy from contacts and integration, J. Typical: 0.002 J, which contacts store and return;
+/// half a joule would throw the foam board at 2 m/s.
 const ENERGY_LIMIT_J: f64 = 0.5;
 
-/// How far the travels of coupled fingers may differ, mm. Holds show 0.001 mm.
+/// Limit of the difference between the travels of coupled fingers, mm. Typical: 0.001 mm.
 const COUPLING_LIMIT_MM: f64 = 1.0;
 
-/// What the board's momentum may leave unexplained, N. Holds show 1e-5 N at rest, 0.006 N with a long lever that still
-/// swings.
+/// Limit of the residual of the board's momentum balance, N. Typical: 1e-5 N at rest, 0.006 N with a long lever that
+/// still swings.
 const FORCE_LIMIT_N: f64 = 1.0;
 
-/// Penetration, created energy and the fingers' coupling up to the moment that decided the verdict, and the board's
-/// momentum at the end of settling, and of a hold that a release follows, until then. What a board does that was torn out of its
-/// hands decides nothing.
+/// Penetration, created energy and finger coupling up to the sample that decides the verdict, and the momentum balance
+/// at the end of settling and of a hold that is followed by a release. Samples without contact are left out.
 pub(super) fn self_checks(decisive: &[Sample]) -> Vec<Check> {
     let largest = |of: fn(&Sample) -> f64| decisive.iter().map(of).fold(0.0, worse);
     let ends = |phase| decisive.windows(2).filter(move |pair| pair[0].phase == phase && pair[1].phase != phase);
@@ -40,7 +40,7 @@ pub(super) fn self_checks(decisive: &[Sample]) -> Vec<Check> {
     ]
 }
 
-/// The larger of two; what is not a number is larger than all that are, and stays a number for files.
+/// The larger of two; a NaN gives the largest finite number, which files can store.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::MAX } else { a.max(b) }
 }
@@ -54,7 +54,7 @@ fn created_j(samples: &[Sample]) -> f64 {
     })
 }
 
-/// Why a trace with these checks cannot be believed, if so.
+/// Why the simulation is invalid by these checks; `None` if it is valid.
 pub(super) fn failed_self_checks(self_checks: &[Check]) -> Option<String> {
     let mut reason = String::new();
     for check in self_checks.iter().filter(|check| !check.passed) {

@@ -1,4 +1,4 @@
-//! Synthetic traces: every limit crossed on its own, kept exactly, and in competition.
+//! Synthetic traces: each limit crossed alone, met exactly, and together with others.
 
 use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
@@ -19,7 +19,7 @@ const HOLD: usize = 100;
 const RELEASE: usize = 50;
 const GRIP_N: f64 = 30.0;
 
-/// Any axis and angle, so that no test depends on frames that happen to be aligned.
+/// A general pose, so that no test depends on aligned frames.
 fn crooked() -> Pose {
     Isometry3::new(Vector3::new(0.5, -0.1, 0.3), Vector3::new(0.3, -0.7, 1.1))
 }
@@ -42,7 +42,7 @@ const REFERENCE: usize = SETTLE - 1;
 /// Index of the last judged sample in [`still`].
 const LAST_JUDGED: usize = SETTLE + RAMP + HOLD - 1;
 
-/// A hold in which nothing moves: two arms of two joints and two pads.
+/// A trace without motion: two arms of two joints and two pads.
 fn still() -> Trace {
     let arm = |name: &str| ArmTrace {
         name: name.into(),
@@ -84,7 +84,7 @@ fn still() -> Trace {
     }
 }
 
-/// A still hold with `change` applied to every sample from `from` on.
+/// A trace without motion, with `change` applied to every sample from `from` on.
 fn changed(from: usize, change: impl Fn(&mut Sample)) -> Trace {
     let mut trace = still();
     trace.samples[from..].iter_mut().for_each(change);
@@ -104,7 +104,7 @@ fn value(judgement: &Judgement, kind: CheckKind) -> f64 {
     judgement.checks.iter().find(|check| check.name == kind).unwrap().value
 }
 
-/// The verdict, and the index of the sample at which it fell.
+/// The verdict and the sample that decided it.
 fn outcome(trace: &Trace) -> (VerdictKind, Option<usize>) {
     let judgement = judge(trace, &limits());
     let failure = judgement.first_failure;
@@ -130,11 +130,11 @@ fn each_failure_is_named_after_its_own_limit() {
     assert_eq!(outcome(&changed(at, |s| s.x_wo.translation.vector.z -= 5.1e-3)), (VerdictKind::Deflects, Some(at)));
     assert_eq!(outcome(&changed(at, |s| s.arms[1].torque_demanded_nm[1] = -15.1)), (VerdictKind::Saturates, Some(at)));
     assert_eq!(outcome(&changed(at, |s| slide(s, 0, 50.1))), (VerdictKind::Drops, Some(at)));
-    // Fifteen steps of 2 ms are allowed; the sixteenth is one too many.
+    // Fifteen steps of 2 ms are allowed; the sixteenth is not.
     assert_eq!(outcome(&changed(at, |s| s.arms[0].pads[1].normal_force_n = 1.4)), (VerdictKind::Opens, Some(at + 15)));
 }
 
-/// A still hold beside a person, with the distance to them from a sample on.
+/// A trace without motion beside a person, with this distance from a sample on.
 fn beside_a_person(from: usize, distance_m: f64) -> Trace {
     let mut trace = still();
     for (index, sample) in trace.samples.iter_mut().enumerate() {
@@ -155,7 +155,7 @@ fn a_person_who_is_reached_is_touched() {
     let told = "the board and the person's Head overlap: past 0 mm at load factor 0.61";
     assert!(touched.events.iter().any(|event| event.text == told), "{:?}", touched.events);
 
-    // Skin on wood is no overlap, and a plan without a person has no such check: never a pass of nothing.
+    // Contact without penetration is no overlap. A plan without a person has no such check.
     let apart = judge(&beside_a_person(at, 0.0), &limits());
     assert_eq!((apart.verdict, value(&apart, CheckKind::PersonOverlap)), (VerdictKind::Holds, 0.0));
     let clear = judge(&beside_a_person(at, 0.032), &limits());
@@ -187,7 +187,7 @@ fn a_board_lost_while_settling_drops_though_the_load_never_acted() {
     // The simulation ends soon after a loss.
     trace.samples.truncate(SETTLE - 5);
     assert_eq!(outcome(&trace), (VerdictKind::Drops, Some(lost_at)));
-    // The first sample without a touch, and all after it: fifteen steps of 2 ms.
+    // The first sample without contact and all after it: fifteen steps of 2 ms.
     let judgement = judge(&trace, &limits());
     let lost = judgement.checks.iter().find(|check| check.name == CheckKind::ContactLost).unwrap();
     assert_eq!(lost.value, 30.0);
@@ -204,7 +204,7 @@ fn a_trace_that_ends_while_settling_with_the_board_held_gives_no_verdict() {
 fn a_value_at_its_limit_passes() {
     let limits = Limits { slip_mm: 0.25, deflection_mm: 4.0, torque_ratio: 0.5, ..limits() };
     let mut trace = still();
-    // Powers of two: exact in binary, so that the value is the limit and not one rounding off.
+    // Powers of two are exact in binary, so the value equals the limit.
     for sample in &mut trace.samples {
         sample.x_wo = Pose::identity();
         sample.p_ot_m = Vector3::zeros();
@@ -277,7 +277,7 @@ fn settling_and_release_are_not_judged() {
     assert_eq!(judgement.peak_torque_ratio["left_s0"], 0.2);
 }
 
-/// A slide of constant rate: slip grows linearly from the middle of the hold on.
+/// A slide at constant rate from the middle of the hold phase on.
 fn creeping(rate_mm_s: f64) -> Trace {
     let mut trace = still();
     let middle = SETTLE + RAMP + HOLD / 2;
@@ -291,12 +291,11 @@ fn creeping(rate_mm_s: f64) -> Trace {
 fn creep_is_the_rate_in_the_second_half_of_the_hold() {
     let judgement = judge(&creeping(0.25), &limits());
     assert_eq!(judgement.verdict, VerdictKind::Creeps);
-    // Positions of half a metre are good to 1e-16 m; over the tenth of a second of the half hold the rate is good to
-    // 1e-12 mm/s.
+    // Positions of half a metre are accurate to 1e-16 m; over a tenth of a second the rate is accurate to 1e-12 mm/s.
     assert!((value(&judgement, CheckKind::Creep) - 0.25).abs() < 1e-11);
     assert_eq!(outcome(&creeping(0.25)).1, Some(LAST_JUDGED));
 
-    // A hand that slides early and then stands still does not creep.
+    // A hand that slides early and then stops does not creep.
     let early = changed(SETTLE + RAMP + 5, |s| slide(s, 0, 0.9));
     assert_eq!(value(&judge(&early, &limits()), CheckKind::Creep), 0.0);
     assert_eq!(judge(&early, &limits()).verdict, VerdictKind::Holds);
@@ -345,7 +344,7 @@ fn broken_traces_give_no_verdict_and_a_reason() {
     assert_eq!(reason(&weak), "found a joint of the right arm without torque, expected positive limits");
 }
 
-/// A hold that is slid past its limit in the ramp and breaks down in the hold.
+/// A trace with too much slip in the ramp that breaks down in the hold phase.
 fn broken_after_a_slip() -> Trace {
     let mut trace = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
     trace.samples.truncate(SETTLE + RAMP + 20);
@@ -357,7 +356,7 @@ fn a_limit_crossed_before_the_breakdown_names_the_verdict() {
     let judgement = judge(&broken_after_a_slip(), &limits());
     assert_eq!((judgement.verdict, judgement.reason), (VerdictKind::Slips, None));
     assert_eq!(judgement.first_failure.unwrap().time_s, (SETTLE + 59) as f64 * STEP_S);
-    // What the second half of a hold would have been is not known.
+    // The second half of the hold phase is unknown.
     assert!(judgement.checks.iter().all(|check| check.name != CheckKind::Creep));
     let last = judgement.events.last().unwrap();
     assert_eq!(last.kind, EventKind::BrokeDown);
@@ -365,9 +364,9 @@ fn a_limit_crossed_before_the_breakdown_names_the_verdict() {
 }
 
 #[test]
-fn a_breakdown_without_a_crossing_has_no_verdict_whatever_was_kept_until_then() {
+fn a_breakdown_without_a_crossing_has_no_verdict() {
     let trace = broken_after_a_slip();
-    // The same trace under a limit that it kept: it holds as far as it goes, which is no hold.
+    // The same trace under a limit that it keeps until it breaks down.
     let judgement = judge(&trace, &Limits { slip_mm: 2.0, ..limits() });
     assert_eq!(judgement.verdict, VerdictKind::NoVerdict);
     assert_eq!(judgement.reason.unwrap(), "the joint speeds have blown up");
@@ -375,7 +374,7 @@ fn a_breakdown_without_a_crossing_has_no_verdict_whatever_was_kept_until_then() 
 }
 
 #[test]
-fn a_crossing_that_the_self_checks_do_not_bear_out_is_none() {
+fn a_crossing_with_failed_self_checks_has_no_verdict() {
     let mut trace = broken_after_a_slip();
     trace.samples[SETTLE + 40].self_check.contact_energy_j = 0.6;
     let judgement = judge(&trace, &limits());
@@ -384,7 +383,7 @@ fn a_crossing_that_the_self_checks_do_not_bear_out_is_none() {
 }
 
 #[test]
-fn a_number_that_is_not_finite_ends_what_can_be_believed() {
+fn a_number_that_is_not_finite_ends_the_valid_part() {
     let mut slid = changed(SETTLE + 59, |s| slide(s, 1, 1.5));
     slid.samples[SETTLE + RAMP].arms[0].x_oc.translation.vector.x = f64::NAN;
     let judgement = judge(&slid, &limits());
@@ -423,7 +422,7 @@ fn events_are_the_phases_and_the_first_crossings_in_order() {
 }
 
 #[test]
-fn equal_traces_and_only_they_share_a_fingerprint() {
+fn only_equal_traces_have_equal_fingerprints() {
     assert_eq!(fingerprint(&still()), fingerprint(&still()));
     assert_eq!(fingerprint(&still()).len(), 64);
     let one_bit = changed(LAST_JUDGED, |s| s.load_factor = 1.0 + f64::EPSILON);
@@ -433,7 +432,7 @@ fn equal_traces_and_only_they_share_a_fingerprint() {
 }
 
 proptest! {
-    /// Where the world's or the board's frame lies is a choice, and no figure may depend on it.
+    /// The choice of the world frame must not change any value.
     #[test]
     fn figures_do_not_depend_on_the_world_frame(
         shift in prop::array::uniform3(-2.0..2.0_f64), turn_by in prop::array::uniform3(-3.0..3.0_f64),
@@ -449,12 +448,12 @@ proptest! {
         moved.samples.iter_mut().for_each(|s| s.x_wo = x_vw * s.x_wo);
         let (here, there) = (judge(&trace, &limits()), judge(&moved, &limits()));
         for (a, b) in here.checks.iter().zip(&there.checks) {
-            // Positions of metres, rounded at 1e-15 m, are subtracted: 1e-11 mm leaves a factor of ten.
+            // Positions of metres, rounded to 1e-15 m, are subtracted: 1e-11 mm leaves a factor of ten.
             prop_assert!((a.value - b.value).abs() < 1e-11);
         }
         prop_assert!((value(&here, CheckKind::Deflection) - sag_mm).abs() < 1e-11);
         prop_assert!((value(&here, CheckKind::Slip) - slip_mm).abs() < 1e-11);
-        // The angle is twice an arc tangent of numbers near 1: good to 1e-15 rad, or 1e-13 degrees.
+        // The angle is twice an arc tangent of numbers near 1: accurate to 1e-15 rad, or 1e-13 degrees.
         prop_assert!((value(&here, CheckKind::SlipRotation) - slip_deg).abs() < 1e-12);
     }
 }
@@ -464,7 +463,7 @@ fn self_value(judgement: &Judgement, kind: CheckKind) -> f64 {
 }
 
 #[test]
-fn a_simulation_that_leaves_the_laws_of_mechanics_has_no_verdict() {
+fn a_simulation_that_violates_mechanics_has_no_verdict() {
     type Spoil = fn(&mut StepCheck);
     let spoils: [(CheckKind, Spoil); 4] = [
         (CheckKind::Penetration, |check| check.penetration_m = 3e-3),
@@ -486,7 +485,7 @@ fn a_simulation_that_leaves_the_laws_of_mechanics_has_no_verdict() {
 fn friction_takes_energy_and_only_a_rise_counts() {
     let mut trace = still();
     for (index, sample) in trace.samples.iter_mut().enumerate() {
-        // Down by ten joules, then up by a tenth of one.
+        // Down by 10 J, then up by 0.1 J.
         sample.self_check.contact_energy_j = if index < SETTLE { -10.0 } else { -9.9 };
     }
     let judgement = judge(&trace, &limits());
@@ -495,7 +494,7 @@ fn friction_takes_energy_and_only_a_rise_counts() {
 }
 
 #[test]
-fn what_happens_after_the_failure_does_not_take_the_verdict_back() {
+fn samples_after_the_failure_do_not_change_the_verdict() {
     let mut trace = changed(SETTLE + 1, |sample| slide(sample, 0, 2.0));
     for sample in &mut trace.samples[SETTLE + 3..] {
         sample.self_check.penetration_m = 0.01;

@@ -21,6 +21,7 @@ pub mod path;
 #[allow(clippy::module_inception)]
 mod planner;
 mod problem;
+pub mod qp;
 mod random;
 mod refine;
 mod screen;

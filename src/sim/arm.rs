@@ -1,12 +1,13 @@
-//! One arm of the scene: a servo in every joint, a gripper at the end.
+//! One arm of the scene: a servo in each joint, a gripper at the end.
 
 use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, RigidBodyHandle};
 
 use super::{
-    Conditions, SimError,
     balance::{JointState, drive_work_j, mechanical_energy_j},
     bodies::ArmBodies,
     body_chain::{BodyChain, ChainLink},
+    conditions::Conditions,
+    error::SimError,
     gripper::SimGripper,
     pad::PadContact,
     pad_shape::{GraspingHand, PadLoading},
@@ -21,31 +22,31 @@ use crate::{
     robot::{Arm, Chain, Robot},
 };
 
-/// A servo, where it acts, and where its spring rests in this step.
+/// A joint with its servo and the rest angle of its spring in this step.
 struct DrivenJoint {
     servo: Servo,
     place: ChainLink,
     rest_rad: f64,
-    /// The joint before this step.
+    /// State of the joint before this step.
     before: JointState,
 }
 
 /// An arm of the scene.
 pub(super) struct SimArm {
-    /// Any of the arm's joints: the way to its multibody.
+    /// A handle of the arm's multibody: one of its joints.
     multibody: MultibodyJointHandle,
     joints: Vec<DrivenJoint>,
-    /// Every body that moves.
+    /// All moving bodies.
     bodies: Vec<RigidBodyHandle>,
-    /// What it holds with.
+    /// The gripper.
     pub gripper: SimGripper,
 }
 
 impl SimArm {
-    /// Builds an arm that stands still at `hold.q_rad` with its pads on the object's faces.
+    /// Builds an arm at rest at `hold.q_rad` with its pads on the object's faces.
     ///
     /// # Errors
-    /// [`SimError::Massless`] when a part that moves has no mass.
+    /// [`SimError::Massless`] if a moving body has no mass.
     pub fn new(
         world: &mut PhysicsWorld,
         robot: &Robot,
@@ -82,7 +83,7 @@ impl SimArm {
         Ok(Self { multibody, joints, bodies, gripper })
     }
 
-    /// Lets every servo react to the state before a step.
+    /// Sets the rest angle of every servo from the state before a step.
     pub fn drive(&mut self, world: &mut PhysicsWorld, timestep_s: f64) {
         let Some((multibody, _)) = world.multibody_joints.get_mut(self.multibody) else { return };
         for joint in &mut self.joints {
@@ -94,14 +95,14 @@ impl SimArm {
         self.gripper.store_state(multibody);
     }
 
-    /// Kinetic energy and weight's potential of the arm, J.
+    /// Kinetic and gravitational energy of the arm, J.
     pub fn energy_j(&self, world: &PhysicsWorld) -> f64 {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return f64::NAN };
         let bodies: f64 = self.bodies.iter().map(|&body| mechanical_energy_j(&world.bodies[body])).sum();
         bodies + self.gripper.drive_energy_j(multibody)
     }
 
-    /// Work that the servos and the fingers' drives did in the last step, J.
+    /// Work of the servos and the finger drives in the last step, J.
     pub fn work_j(&self, world: &PhysicsWorld) -> f64 {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return f64::NAN };
         let servos = self.joints.iter().map(|joint| {
@@ -112,13 +113,13 @@ impl SimArm {
         servos.sum::<f64>() + self.gripper.work_j(multibody)
     }
 
-    /// True when no joint is faster than `limit_rad_s`; a speed that is not a number is.
+    /// True if no joint is faster than `limit_rad_s`; false for a NaN speed.
     pub fn is_slower_than(&self, world: &PhysicsWorld, limit_rad_s: f64) -> bool {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return false };
         self.joints.iter().all(|joint| joint.place.velocity(multibody).abs() <= limit_rad_s)
     }
 
-    /// Writes the joints' part of the state after a step.
+    /// Writes the state of the joints after a step.
     pub fn observe_joints(&self, world: &PhysicsWorld, sample: &mut ArmSample) {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return };
         for (k, DrivenJoint { servo, place, rest_rad, .. }) in self.joints.iter().enumerate() {
@@ -133,7 +134,7 @@ impl SimArm {
     }
 }
 
-/// Moves a chain from position zero to these joint positions, its bodies and pads with it.
+/// Moves a chain, with its bodies and pads, from zero to these joint positions.
 fn set_joint_positions<'a>(
     world: &'a mut PhysicsWorld,
     handle: MultibodyJointHandle,
@@ -161,19 +162,19 @@ fn driven_joints(
         .enumerate()
         .map(|(k, &place)| {
             let servo = Servo {
-                wanted_rad: hold.q_rad[k],
+                commanded_rad: hold.q_rad[k],
                 feed_forward_nm: weight_nm[k],
                 stiffness_nm_rad: arm.stiffness_nm_rad[k] * stiffness_scale,
                 damping_nm_s_rad: arm.damping_nm_s_rad[k],
                 effort_nm: arm.effort_nm[k],
             };
-            let before = JointState { position: servo.wanted_rad, velocity: 0.0 };
-            DrivenJoint { servo, place, rest_rad: servo.rest_rad(servo.wanted_rad, 0.0, 0.0), before }
+            let before = JointState { position: servo.commanded_rad, velocity: 0.0 };
+            DrivenJoint { servo, place, rest_rad: servo.rest_rad(servo.commanded_rad, 0.0, 0.0), before }
         })
         .collect()
 }
 
-/// The joint torques with which the robot's model holds the arm's own weight, N m.
+/// Joint torques that hold the arm's own weight by the robot's model, N m.
 pub(super) fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
     if q_rad.is_empty() {
         return Vec::new();

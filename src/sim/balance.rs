@@ -1,7 +1,7 @@
-//! The simulation's own balance: what the engine makes of momentum and energy, kept beside it step by step.
+//! Balance of momentum and energy, computed beside the engine in every step (docs/method.md#75-self-checks).
 //!
-//! They look at the engine from outside, at poses, velocities and forces alone, so that a solver that goes wrong cannot
-//! hide it. They must never change what is simulated.
+//! It uses only poses, velocities and forces of the engine, so it detects errors of the engine's solver. It must not
+//! change the simulation.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::{PhysicsWorld, RigidBody, RigidBodyHandle};
@@ -9,7 +9,7 @@ use rapier3d_f64::prelude::{PhysicsWorld, RigidBody, RigidBodyHandle};
 use super::convert;
 use crate::model::{GRAVITY_W, frames::Pose, wrench::Wrench};
 
-/// A joint before a step, to account for the work that its drive does in the step.
+/// State of a joint, for the work of its drive.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct JointState {
     /// Position, rad or m.
@@ -18,34 +18,34 @@ pub(super) struct JointState {
     pub velocity: f64,
 }
 
-/// Work of a drive between two states, J: the mean of its effort `stiffness (rest - q) - damping q'` at both, times the
-/// way between them.
+/// Work of a drive between two states, J: the mean of its effort `stiffness (rest - q) - damping q'` times the
+/// displacement (trapezoid rule).
 pub(super) fn drive_work_j(stiffness: f64, damping: f64, rest: f64, states: [JointState; 2]) -> f64 {
     let [before, after] =
         states.map(|JointState { position, velocity }| stiffness * (rest - position) - damping * velocity);
     (before + after) / 2.0 * (states[1].position - states[0].position)
 }
 
-/// Kinetic energy and weight's potential of a body, J.
+/// Kinetic and gravitational energy of a body, J.
 pub(super) fn mechanical_energy_j(body: &RigidBody) -> f64 {
     body.kinetic_energy() - body.mass() * GRAVITY_W.dot(&convert::from_engine_vector(body.center_of_mass()))
 }
 
-/// The board before a step, and the energy of the scene until then.
+/// State of the board and energy of the scene before a step.
 pub(super) struct Balance {
     board: RigidBodyHandle,
     x_wo: Pose,
     com_w: Vector3<f64>,
     velocity_m_s: Vector3<f64>,
     energy_j: f64,
-    /// Tool's wrench on the board about its centre of mass, world axes, in the step.
+    /// The tool's wrench on the board in the step, about its centre of mass, world axes.
     tool_w: Wrench,
-    /// What contacts and integration brought in, J.
+    /// Energy added by contacts and integration so far, J.
     pub contact_energy_j: f64,
 }
 
 impl Balance {
-    /// Opens the books on a scene with this energy.
+    /// The balance of a scene that starts with this energy.
     pub fn new(world: &PhysicsWorld, board: RigidBodyHandle, energy_j: f64) -> Self {
         let body = &world.bodies[board];
         Self {
@@ -59,7 +59,7 @@ impl Balance {
         }
     }
 
-    /// Before a step: the tool's wrench in it, about a point, world axes.
+    /// Records the state before a step and the tool's wrench in it, about a point, world axes.
     pub fn begin_step(&mut self, world: &PhysicsWorld, tool_w: &Wrench, p_wt_m: &Vector3<f64>) {
         let body = &world.bodies[self.board];
         self.x_wo = convert::from_engine_pose(body.position());
@@ -68,7 +68,7 @@ impl Balance {
         self.tool_w = tool_w.about(&(p_wt_m - self.com_w));
     }
 
-    /// After a step: the scene's energy now, and the work that servos and fingers did in the step.
+    /// Updates the balance after a step, from the scene's energy and the work of servos and fingers in the step.
     pub fn end_step(&mut self, world: &PhysicsWorld, energy_j: f64, drives_j: f64) {
         let body = &world.bodies[self.board];
         let moved_m = convert::from_engine_vector(body.center_of_mass()) - self.com_w;
@@ -79,7 +79,7 @@ impl Balance {
         self.energy_j = energy_j;
     }
 
-    /// What the board's change of momentum in the last step leaves unexplained by these forces of the pads, N.
+    /// Residual of the board's momentum balance in the last step with these pad forces, N.
     pub fn force_residual_n(&self, world: &PhysicsWorld, pads_w_n: &Vector3<f64>) -> f64 {
         let body = &world.bodies[self.board];
         let change_n = (convert::from_engine_vector(body.linvel()) - self.velocity_m_s)

@@ -1,4 +1,4 @@
-//! The moving bodies of one arm: the links of a [`Robot`] with everything that does not move between them merged.
+//! The moving bodies of one arm: links of a [`Robot`] without a moving joint between them are merged.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -7,19 +7,19 @@ use crate::{
     robot::{Arm, Link, Robot},
 };
 
-/// A link that moves with one joint of the arm or gripper, and all links fixed to it.
+/// A link that one joint of the arm or gripper moves, with all links fixed to it.
 pub(super) struct MovingBody {
     /// The joint that moves it, an index into [`Robot::joints`].
     pub joint: usize,
-    /// The body that the joint hangs on, an index into [`ArmBodies::bodies`]; none for the world.
+    /// The parent body, an index into [`ArmBodies::bodies`]; `None` for the world.
     pub parent: Option<usize>,
     /// Pose of the joint's frame in the parent body, or in W.
     pub x_pj: Pose,
-    /// Mass and its distribution in the frame of the joint's child link.
+    /// Mass properties in the frame of the joint's child link.
     pub mass: CompositeInertia,
 }
 
-/// Mass, centre of mass and inertia of several links together.
+/// Mass, centre of mass and inertia of several links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CompositeInertia {
     /// Mass, kg.
@@ -37,7 +37,7 @@ impl CompositeInertia {
         inertia_b: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     };
 
-    /// This and a link at `x_bl`, by the parallel axis theorem.
+    /// Adds a link at `x_bl`, by the parallel axis theorem.
     fn with_link(&self, link: &Link, x_bl: &Pose) -> Self {
         let mass_kg = self.mass_kg + link.mass_kg;
         if mass_kg == 0.0 {
@@ -60,10 +60,10 @@ fn steiner(mass_kg: f64, r: &Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() * r.norm_squared() - r * r.transpose()) * mass_kg
 }
 
-/// Where a link sits: in a moving body, or in the world.
+/// A link's pose in its moving body, or in the world.
 #[derive(Clone, Copy)]
 pub(super) struct LinkPlacement {
-    /// An index into [`ArmBodies::bodies`]; none for the world.
+    /// An index into [`ArmBodies::bodies`]; `None` for the world.
     pub body: Option<usize>,
     /// Pose of the link in that body, or in W.
     pub x_bl: Pose,
@@ -80,8 +80,8 @@ pub(super) struct ArmBodies {
 }
 
 impl ArmBodies {
-    /// Merges the robot's links into the bodies that this arm moves. Joints that are no part of the arm stay at zero,
-    /// or at the limit next to it.
+    /// Merges the robot's links into the bodies that this arm moves. Other joints stay at zero, or at the nearest
+    /// limit.
     pub fn new(robot: &Robot, arm: &Arm) -> Self {
         let moving: Vec<usize> =
             arm.joints.iter().copied().chain(arm.gripper.fingers.iter().map(|finger| finger.joint)).collect();
@@ -134,15 +134,15 @@ mod tests {
 
     #[test]
     fn two_halves_make_a_whole() {
-        // A box 0.4 m long, cut in two; the halves' frames are turned and off their centres of mass.
+        // A box 0.4 m long, cut in two; the halves' frames are rotated and offset from their centres of mass.
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
         let x_bl = |x: f64| Isometry3::from_parts(Vector3::new(x, 0.0, 0.0).into(), turn);
-        // Turned by a quarter about z, the half's long side lies along y_L, and x_B is -y_L.
+        // Rotated by 90 degrees about z, the half's long side is along y_L, and x_B is -y_L.
         let half = box_link(1.5, [0.1, 0.2, 0.3], Vector3::new(0.0, -0.05, 0.0));
         let merged = CompositeInertia::ZERO.with_link(&half, &x_bl(-0.15)).with_link(&half, &x_bl(0.05));
         let whole = box_link(3.0, [0.4, 0.1, 0.3], Vector3::zeros());
         assert_eq!(merged.mass_kg, 3.0);
-        // Rounding of products of numbers below one.
+        // Rounding of products of numbers below 1.
         assert!(merged.com_b.norm() < 1e-15, "{}", merged.com_b);
         assert!((merged.inertia_b - whole.inertia_l).norm() < 1e-15, "{}", merged.inertia_b);
     }

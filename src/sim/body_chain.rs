@@ -1,4 +1,4 @@
-//! A chain of bodies in the engine: the moving bodies of an arm on a fixed root, one joint each.
+//! An arm's moving bodies in the engine: a chain on a fixed root with one joint a body.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::{
@@ -6,7 +6,7 @@ use rapier3d_f64::prelude::{
     PhysicsWorld, RigidBodyBuilder, RigidBodyHandle,
 };
 
-use super::{SimError, bodies::MovingBody, convert};
+use super::{bodies::MovingBody, convert, error::SimError};
 use crate::robot::{JointKind, Robot};
 
 /// A moving body in the engine and the joint that moves it.
@@ -14,13 +14,13 @@ use crate::robot::{JointKind, Robot};
 pub(super) struct ChainLink {
     /// The body.
     pub body: RigidBodyHandle,
-    /// Its joint: the way to the multibody.
+    /// Its joint, which is also a handle of the multibody.
     pub joint: MultibodyJointHandle,
     /// The body's link in the multibody.
     pub link: usize,
-    /// The joint's place in the multibody's velocities, damping and displacements.
+    /// Index of the joint in the multibody's velocities, damping and displacements.
     pub dof: usize,
-    /// The joint's axis among the engine's six.
+    /// The joint's axis, one of the engine's six.
     pub axis: JointAxis,
 }
 
@@ -35,14 +35,14 @@ impl ChainLink {
         multibody.generalized_velocity()[self.dof]
     }
 
-    /// A spring in the joint, which the engine integrates implicitly: `stiffness (rest - position)`.
+    /// Sets the joint's spring `stiffness (rest - position)`, which the engine integrates implicitly.
     pub fn set_spring(&self, multibody: &mut Multibody, stiffness: f64, rest: f64) {
         if let Some(link) = multibody.link_mut(self.link) {
             link.joint.set_spring(self.axis as usize, stiffness, rest);
         }
     }
 
-    /// Limits of the joint's position.
+    /// Sets limits of the joint's position.
     pub fn set_limits(&self, multibody: &mut Multibody, limits: [f64; 2]) {
         if let Some(link) = multibody.link_mut(self.link) {
             link.joint.data.set_limits(self.axis, limits);
@@ -52,17 +52,17 @@ impl ChainLink {
 
 /// The bodies of an arm in the engine.
 pub(super) struct BodyChain {
-    /// The world end.
+    /// The fixed root.
     root: RigidBodyHandle,
-    /// In the order of the moving bodies.
+    /// One a moving body, in their order.
     pub links: Vec<ChainLink>,
 }
 
 impl BodyChain {
-    /// Inserts a fixed root and the bodies, every joint at position zero and without damping.
+    /// Inserts a fixed root and the bodies, each joint at zero and without damping.
     ///
     /// # Errors
-    /// [`SimError::Massless`] when a body has no mass: the engine could not move it.
+    /// [`SimError::Massless`] if a body has no mass: the engine cannot move it.
     pub fn insert(world: &mut PhysicsWorld, robot: &Robot, moving: &[MovingBody]) -> Result<Self, SimError> {
         let mut chain =
             Self { root: world.bodies.insert(RigidBodyBuilder::fixed()), links: Vec::with_capacity(moving.len()) };
@@ -72,9 +72,10 @@ impl BodyChain {
         }
         let PhysicsWorld { bodies, multibody_joints, .. } = world;
         if let Some((multibody, _)) = chain.links.first().and_then(|first| multibody_joints.get_mut(first.joint)) {
-            // Only now does the engine know that the root is fixed, and so where every joint's coordinates lie.
+            // Only now does the engine know that the root is fixed, which determines the indices of the joints'
+            // coordinates.
             multibody.forward_kinematics(bodies, true);
-            // The engine would give every revolute joint a damping of 0.1.
+            // The engine's default damping of a revolute joint is 0.1.
             multibody.damping_mut().fill(0.0);
             multibody.set_self_contacts_enabled(false);
             for place in &mut chain.links {
@@ -84,13 +85,13 @@ impl BodyChain {
         Ok(chain)
     }
 
-    /// The body in the engine of a moving body, or of the world end.
+    /// The engine's body of a moving body, or the root for `None`.
     pub fn body(&self, moving: Option<usize>) -> RigidBodyHandle {
         moving.map_or(self.root, |body| self.links[body].body)
     }
 }
 
-/// One body with its mass, and its joint.
+/// Inserts one body with its mass and its joint.
 fn insert_body(
     world: &mut PhysicsWorld,
     robot: &Robot,
@@ -109,7 +110,7 @@ fn insert_body(
     );
     let builder = RigidBodyBuilder::dynamic().additional_mass_properties(properties).can_sleep(false);
     let body = world.bodies.insert(builder);
-    // Until this the engine reports no mass, and the torque that should hold the arm's weight would come out as zero.
+    // Before this call the engine reports zero mass.
     world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
 
     let (data, axis) = engine_joint(joint.kind, &joint.axis_j, moving);
@@ -118,14 +119,14 @@ fn insert_body(
     Ok(ChainLink { body, joint: handle, link, dof: 0, axis })
 }
 
-/// The engine's joints move along or about their own x, so both frames are turned to bring x onto the axis.
+/// The engine's joints move along or about their own x, so both frames are rotated to align x with the axis.
 fn engine_joint(kind: JointKind, axis_j: &Vector3<f64>, moving: &MovingBody) -> (GenericJoint, JointAxis) {
     let turn = UnitQuaternion::rotation_between(&Vector3::x(), axis_j)
         .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
     let x_ja = Isometry3::from_parts(Vector3::zeros().into(), turn);
     let (locked, axis) = match kind {
         JointKind::Prismatic => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
-        // A fixed joint never becomes a moving body.
+        // A fixed joint has no moving body.
         JointKind::Revolute | JointKind::Fixed => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
     };
     let data = GenericJointBuilder::new(locked)

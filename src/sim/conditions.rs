@@ -1,33 +1,33 @@
-//! What a hold is simulated under: everything that is no part of the plan.
+//! The conditions of a simulation: everything that is not part of the plan.
 
-use super::SimError;
+use super::error::SimError;
 use crate::model::{
     load::{Load, Uncertainty},
     scenario::{Scenario, SimulationSettings},
 };
 
-/// What a hold is simulated under.
+/// The conditions of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
-    /// Coulomb coefficient between pads and board, as the plan counts on it.
+    /// Coulomb coefficient between pads and board that the plan assumes.
     pub friction: f64,
     /// Phases and time step.
     pub settings: SimulationSettings,
     /// The tool's wrench over time.
     pub load: Load,
-    /// By which factor that wrench is scaled as a whole.
+    /// Factor of that wrench.
     pub load_scale: f64,
-    /// How far the simulation departs from what the plan counts on.
+    /// Deviations of the simulation from what the plan assumes.
     pub uncertainty: Uncertainty,
 }
 
 impl Conditions {
-    /// A ramp of the operation's wrench, and nothing that the plan does not count on.
+    /// A ramp of the operation's wrench, without deviations from the plan.
     pub fn new(friction: f64, settings: SimulationSettings) -> Self {
         Self { friction, settings, load: Load::default(), load_scale: 1.0, uncertainty: Uncertainty::default() }
     }
 
-    /// What a scenario asks for.
+    /// The conditions of a scenario.
     pub fn of(scenario: &Scenario) -> Self {
         Self {
             friction: scenario.grip.friction,
@@ -39,17 +39,18 @@ impl Conditions {
     }
 
     /// The same with the load scaled by a factor.
+    #[must_use]
     pub fn scaled(&self, load_scale: f64) -> Self {
         Self { load_scale, ..self.clone() }
     }
 
-    /// Friction of the simulation.
+    /// Friction coefficient in the simulation.
     pub(super) fn real_friction(&self) -> f64 {
         self.friction * self.uncertainty.friction_scale
     }
 
     /// # Errors
-    /// [`SimError::Settings`] when the friction is negative, or the load's or a departure's factor makes no sense.
+    /// [`SimError::Settings`] if the friction is negative, or a factor of the load or of an uncertainty is invalid.
     pub(super) fn check(&self) -> Result<(), SimError> {
         let Uncertainty { friction_scale, grip_force_scale, contact_stiffness_scale, joint_stiffness_scale } =
             self.uncertainty;

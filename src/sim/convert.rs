@@ -1,4 +1,4 @@
-//! Conversions at the convert to rapier, whose math types are glam's; ours are nalgebra's. Nothing else converts.
+//! Conversions between nalgebra's types and rapier's, which are glam's. No other file of this module converts.
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use rapier3d_f64::math::{Matrix, Pose as EnginePose, Rotation, Vector};
@@ -30,7 +30,7 @@ pub(super) fn from_engine_vector(v: Vector) -> Vector3<f64> {
     Vector3::new(v.x, v.y, v.z)
 }
 
-/// A pose from rapier. Its quaternion drifts from unit length by rounding alone, so it is normalised.
+/// A pose from rapier. Rounding lets its quaternion drift from unit length, so it is normalised.
 pub(super) fn from_engine_pose(pose: &EnginePose) -> Pose {
     let r = pose.rotation;
     Isometry3::from_parts(

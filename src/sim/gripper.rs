@@ -1,4 +1,4 @@
-//! A parallel gripper in the engine: two coupled fingers, pushed with a constant force, and their pads.
+//! A parallel gripper in the engine: two coupled fingers under a constant force, and their pads.
 
 use nalgebra::{Isometry3, Translation3};
 use rapier3d_f64::prelude::{Multibody, MultibodyDofCoupling, PhysicsWorld, RigidBodyHandle};
@@ -15,12 +15,11 @@ use crate::{
     robot::{Arm, Finger, Gripper, Robot},
 };
 
-/// Damping of each finger, N s/m (assumed): a finger comes to rest within milliseconds, far faster than an arm.
+/// Damping of each finger, N s/m (assumed): a finger settles within milliseconds, much faster than an arm.
 pub(super) const FINGER_DAMPING_N_S_M: f64 = 50.0;
 
-/// Stiffness, N/m, of the spring that stands for the constant force on a finger: so soft that over a whole travel of
-/// 20 mm the force changes by less than a thousandth of 30 N. It acts in the joint, so it pulls the palm exactly as
-/// hard as it pushes the finger.
+/// Stiffness, N/m, of the spring that models the constant force on a finger: over a travel of 20 mm the force changes
+/// by less than a thousandth of 30 N. It acts in the joint, so the palm feels the reaction.
 const PUSH_STIFFNESS_N_M: f64 = 1.0;
 
 /// A finger of the gripper.
@@ -29,9 +28,9 @@ struct SimFinger {
     finger: Finger,
     /// Limits of the joint position, m.
     limits_m: [f64; 2],
-    /// Where the spring rests that pushes it, m.
+    /// Rest position of the spring that pushes it, m.
     rest_m: f64,
-    /// The joint before this step.
+    /// State of the joint before this step.
     before: JointState,
 }
 
@@ -44,16 +43,16 @@ impl SimFinger {
 /// A gripper of the scene.
 pub(super) struct SimGripper {
     fingers: [SimFinger; 2],
-    /// The finger on the +y_G side first.
+    /// The pad on the +y_G side first.
     pub pads: [SimPad; 2],
-    /// The body that carries G.
+    /// The body that contains G.
     hand: RigidBodyHandle,
-    /// The frame with the axes of G at the centre between the pads, in that body.
+    /// Frame C, with the axes of G at the centre between the pads, in that body.
     x_bc: Pose,
 }
 
 impl SimGripper {
-    /// Puts pads on the fingers of an arm.
+    /// Adds pads to the fingers of an arm.
     pub fn new(
         world: &mut PhysicsWorld,
         robot: &Robot,
@@ -96,13 +95,13 @@ impl SimGripper {
         [0, 1].map(|k| gripper.fingers[k].joint_position_m(gripper.travel_for_gap_m(k, gap_m)))
     }
 
-    /// Couples the fingers, so that both open by the same travel, and pushes each with `force_n` towards the other, a
-    /// force that is exact at `positions_m`.
+    /// Couples the fingers, so that both open by the same travel, and pushes each towards the other with `force_n`,
+    /// which is exact at `positions_m`.
     ///
-    /// A geared drive adds its own inertia to each finger; no figure is known, and no state of rest depends on it.
-    /// The solver, which goes from contact to contact, converges when the masses on both sides of them are alike:
-    /// measured, a bare finger of 30 g shakes a board of more than 0.3 kg out of its grip, and a drive of 0.3 to 20
-    /// times the board's mass holds every board still. So the caller gives the board's mass.
+    /// A geared drive adds its own inertia to each finger; its value is not known, and no state of rest depends on it.
+    /// The engine's iterative contact solver converges if the masses on both sides of a contact are similar: measured,
+    /// a bare finger of 30 g shakes a board of more than 0.3 kg out of its grip, and a drive of 0.3 to 20 times the
+    /// board's mass holds every board still. So the caller passes the board's mass.
     pub fn close(&mut self, multibody: &mut Multibody, force_n: f64, positions_m: [f64; 2], drive_inertia_kg: f64) {
         let [first, second] = &self.fingers;
         let coeff = first.finger.opening_sign * second.finger.opening_sign;
@@ -116,7 +115,7 @@ impl SimGripper {
             coeff,
             offset: second.finger.closed_m - coeff * first.finger.closed_m,
         });
-        // The coupling hands the first finger's limits on to the second.
+        // The coupling applies the first finger's limits to the second.
         first.place.set_limits(multibody, first.limits_m);
         for (SimFinger { place, finger, rest_m, .. }, position_m) in self.fingers.iter_mut().zip(positions_m) {
             *rest_m = position_m - finger.opening_sign * force_n / PUSH_STIFFNESS_N_M;
@@ -126,14 +125,14 @@ impl SimGripper {
         }
     }
 
-    /// Keeps the fingers' state before a step.
+    /// Stores the fingers' state before a step.
     pub fn store_state(&mut self, multibody: &Multibody) {
         for finger in &mut self.fingers {
             finger.before = finger.state(multibody);
         }
     }
 
-    /// Work of the fingers' drives in the last step, J.
+    /// Work of the finger drives in the last step, J.
     pub fn work_j(&self, multibody: &Multibody) -> f64 {
         let work_j = |finger: &SimFinger| {
             let states = [finger.before, finger.state(multibody)];
@@ -142,7 +141,7 @@ impl SimGripper {
         self.fingers.iter().map(work_j).sum()
     }
 
-    /// Kinetic energy of the drives' own inertia, J.
+    /// Kinetic energy of the drives' inertia, J.
     pub fn drive_energy_j(&self, multibody: &Multibody) -> f64 {
         let energy_j = |finger: &SimFinger| {
             let velocity_m_s = finger.place.velocity(multibody);
@@ -156,7 +155,7 @@ impl SimGripper {
         self.fingers.each_ref().map(|f| f.finger.opening_sign * (f.place.position(multibody) - f.finger.closed_m))
     }
 
-    /// Pose of the frame with the axes of G at the centre between the pads, in the world.
+    /// X_WC, C with the axes of G at the centre between the pads.
     pub fn x_wc(&self, world: &PhysicsWorld) -> Pose {
         convert::from_engine_pose(world.bodies[self.hand].position()) * self.x_bc
     }

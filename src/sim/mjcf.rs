@@ -1,19 +1,20 @@
-//! The scene as MJCF, the file format of MuJoCo, so that others can check a verdict in an engine that is not ours.
+//! Export of the scene as MJCF, the file format of MuJoCo, to check a verdict in another engine.
 //!
-//! The same bodies, joints, servo gains, grip forces, pads and board as in the scene, from the same data. The load is
-//! data too: MuJoCo does not act on `<custom>` fields, whoever simulates the file lays the wrench on the board's site
-//! `tool`. It must never contain what only the engine here needs.
+//! Bodies, joints, servo gains, grip forces, pads and board are those of the scene, from the same data. The load is
+//! data too: MuJoCo does not interpret `<custom>` fields, so the user of the file applies the wrench at the board's
+//! site `tool`. The file must not contain anything that only rapier needs.
 //!
-//! Checked by hand in MuJoCo 3: in `scenarios/plans/cut-rim.json` the tool point gives way by 5.39 mm there and by 5.31 mm
-//! here. MuJoCo's contacts are far softer, so the faces lie farther behind the cores, and pads that tilt rock by as much: the
-//! quickstart's drill, which tilts them, gives way by 6.2 mm there and by 3.9 mm here and by the statics.
+//! Checked by hand in MuJoCo 3: in `scenarios/plans/cut-rim.json` the tool tip deflects by 5.39 mm there and by 5.31 mm
+//! here. MuJoCo's contacts are much softer, so the faces are farther behind the cores, and pads that tilt rock by that
+//! much: under the quickstart's drill, which tilts them, the tip deflects by 6.2 mm there and by 3.9 mm here and in the
+//! statics.
 //!
-//! What the file says beyond MJCF:
+//! Contents beyond the model:
 //! - the key frame `planned` holds the planned state; its controls are the servos' rest angles `q + tau_ff / K`, the
 //!   torque that holds the arm's own weight fed forward, and the grip forces;
-//! - `tool_timestep_s`, `tool_wrench_o` (six numbers a step: N and N m about the tool point in O axes) and `tool_point_o`
-//!   (three a step: m) are the load over time; the text `tool_frame` says whether its direction turns with the `board` or
-//!   stays in the `world`.
+//! - `tool_timestep_s`, `tool_wrench_o` (six numbers a step: N and N m about the tool point in O axes) and
+//!   `tool_point_o` (three a step: m) are the load over time; the text `tool_frame` says whether its direction turns
+//!   with the `board` or stays in the `world`.
 
 use std::io;
 
@@ -21,12 +22,14 @@ use nalgebra::{Translation3, Vector3};
 use quick_xml::Writer;
 
 use super::{
-    Conditions, SimError, ToolLoad,
     arm::weight_torque_nm,
     bodies::{ArmBodies, MovingBody},
+    conditions::Conditions,
+    error::SimError,
     gripper::FINGER_DAMPING_N_S_M,
     pad::x_gp,
     pad_shape::{GraspingHand, PadLoading, PadPart, Solid, pad_parts},
+    tool_load::ToolLoad,
 };
 use crate::{
     check::{CheckedArm, CheckedPlan},
@@ -39,16 +42,16 @@ use crate::{
     robot::{Arm, Finger, JointKind, Robot},
 };
 
-/// Contacts as stiff as MuJoCo takes them at a time step of 2 ms.
+/// The stiffest contacts that MuJoCo allows at a time step of 2 ms.
 const CONTACT: [(&str, &str); 2] = [("solref", "0.004 1"), ("solimp", "0.99 0.999 0.0001")];
 
-/// How soft they are, s^2: MuJoCo's contacts of time constant `t`, damping ratio 1 and impedance `d` sink in by
-/// `(1 - d) / d * (d t)^2 * F / m`, as its documentation has it, with `d` and `t` of [`CONTACT`].
+/// Their softness, s^2: by its documentation, MuJoCo's contacts of time constant `t`, damping ratio 1 and impedance `d`
+/// penetrate by `(1 - d) / d * (d t)^2 * F / m`, with `d` and `t` of [`CONTACT`].
 const SOFTNESS_S2: f64 = 0.01 * 0.99 * 0.004 * 0.004;
 
 type Xml = Writer<Vec<u8>>;
 
-/// An arm that holds, with its moving bodies and the positions that they are planned at.
+/// An arm of the plan with its moving bodies and planned positions.
 struct ExportedArm<'a> {
     arm: &'a Arm,
     hold: &'a ArmHold,
@@ -149,7 +152,7 @@ fn custom(xml: &mut Xml, conditions: &Conditions, tool: &ToolLoad<'_>) -> io::Re
     Ok(())
 }
 
-/// The bodies that hang on one body, or on the world, each with what hangs on it.
+/// The children of a body, or of the world, recursively.
 fn children(
     xml: &mut Xml,
     robot: &Robot,
@@ -217,7 +220,7 @@ fn pads(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, k: usize, body: &Mo
     Ok(())
 }
 
-/// A solid that touches only what a pair names, without a mass of its own.
+/// A massless solid that collides only in explicit contact pairs.
 fn geom(xml: &mut Xml, name: &str, solid: &Solid, x_bc: &Pose) -> io::Result<()> {
     let (kind, size) = match solid {
         Solid::Box { half_m } => ("box", numbers(half_m)),
@@ -229,7 +232,7 @@ fn geom(xml: &mut Xml, name: &str, solid: &Solid, x_bc: &Pose) -> io::Result<()>
     empty(xml, "geom", &attributes)
 }
 
-/// The board, free, with the tool's site.
+/// The board, a free body, with the tool's site.
 fn board(xml: &mut Xml, object: &PlacedObject, x_ot: &Pose) -> io::Result<()> {
     let [x, y, z] = object.size_m;
     let element = with(xml.create_element("body").with_attribute(("name", "board")), &pose_attributes(&object.x_wo));
@@ -247,9 +250,9 @@ fn board(xml: &mut Xml, object: &PlacedObject, x_ot: &Pose) -> io::Result<()> {
     Ok(())
 }
 
-/// Which solids touch, and how.
+/// The contact pairs of pads and board.
 fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], friction: f64) -> io::Result<()> {
-    // MuJoCo knows no pair without friction.
+    // MuJoCo requires positive friction.
     let mu = friction.max(1e-5);
     xml.create_element("contact").write_inner_content(|xml| {
         for arm in arms {
@@ -271,7 +274,7 @@ fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], friction: f64) -> io::
     Ok(())
 }
 
-/// The second finger follows the first.
+/// The coupling of the second finger to the first.
 fn coupling(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>) -> io::Result<()> {
     let [first, second] = &arm.arm.gripper.fingers;
     let slope = first.opening_sign * second.opening_sign;
@@ -284,7 +287,7 @@ fn coupling(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>) -> io::Result<(
     empty(xml, "joint", &attributes)
 }
 
-/// Servos and finger drives, and their controls at the plan.
+/// Servos and finger drives, and their controls in the planned state.
 fn actuators(
     xml: &mut Xml,
     robot: &Robot,
@@ -328,12 +331,12 @@ fn with<'a>(
     element.with_attributes(attributes.iter().map(|(key, value)| (*key, value.as_str())))
 }
 
-/// Numbers as MJCF has them, in the shortest decimals that read back as the same.
+/// Numbers in the shortest decimals that read back exactly.
 fn numbers(values: &[f64]) -> String {
     values.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
 }
 
-/// `x y z w_x w_y w_z` as MuJoCo orders a pose: position, then the quaternion with its scalar first.
+/// A pose in MuJoCo's order: position `x y z`, then the quaternion `w x y z`.
 fn pose_numbers(pose: &Pose) -> [f64; 7] {
     let ([x, y, z], [i, j, k, w]): ([f64; 3], [f64; 4]) =
         (pose.translation.vector.into(), pose.rotation.quaternion().coords.into());

@@ -1,22 +1,23 @@
-//! The rapier simulation of a hold: a [`Plan`] in, a [`Trace`] out.
+//! The rapier simulation of a grasp under load: a [`Plan`] in, a [`Trace`] out (docs/method.md#7-simulation).
 //!
-//! It answers what no static formula does: whether the hands keep their grip while compliant, position-controlled arms
-//! give way. It must never judge what it sees, nor know how the plan was found.
+//! It shows what no static formula does: whether the hands keep their grip while compliant, position-controlled arms
+//! deflect. It must not judge the trace, nor depend on how the plan was found.
 //!
 //! # The scene
-//! - The arms that hold, each a chain of rigid bodies on a fixed root; links that do not move against each other are
-//!   one body. A servo in every joint: an implicit spring and damper about the planned angle, the torque that holds
-//!   the arm's own weight fed forward, and the effort limit by moving the point where the spring rests.
-//! - Grippers: two fingers coupled to open alike, each pushed with a constant force that the palm feels too.
-//! - The board, a free body under gravity and the tool's wrench over time (`tool.rs`). Pads and board touch; nothing else does. Joint limits
-//!   of the arms are not modelled: a plan's angles are inside them, and servos give way by milliradians.
-//! - The person of a plan stands still and is looked at, not touched: the trace tells their distance from robot and board
-//!   (`person.rs`).
+//! - The arms of the plan, each a chain of rigid bodies on a fixed root; links without a joint between them are one
+//!   body. Each joint has a servo: an implicit spring and damper about the planned angle, the gravity torque of the arm
+//!   fed forward, and the torque limit by moving the rest angle of the spring.
+//! - Grippers: two fingers, coupled to open equally, each pushed with a constant force that reacts on the palm.
+//! - The board, a free body under gravity and the tool's wrench over time (`tool_load.rs`). Only pads and board
+//!   collide. Joint limits are not modelled: the planned angles are inside them, and servos deflect by milliradians.
+//! - The person of the plan stands still and is not part of the dynamics: the trace records their distance from robot
+//!   and board (`person_monitor.rs`).
 //!
 //! # The pads
-//! The engine joins two flat boxes in four corners, which resist turning by their distance from the centre. What
-//! several pads of 40.4 x 36.0 mm hold, relative to the closed forms (slip `2 mu N - m g`; torsion `2 mu N e`, `e` the
-//! mean radius of the face; tilt `N (2 b + mu t)`), all with contacts of 1000 Hz and one stabilisation sweep:
+//! The engine connects two flat boxes at four corner contacts, whose resistance to rotation depends on their distance
+//! from the centre. Load capacity of several pads of 40.4 x 36.0 mm, relative to the closed forms (slip `2 mu N - m g`;
+//! torsion `2 mu N e`, `e` the mean radius of the face; tilt `N (2 b + mu t)`), all with contacts of 1000 Hz and one
+//! stabilisation sweep:
 //!
 //! | pad | slip | torsion | tilt | creep at 90 % of slip |
 //! |---|---|---|---|---|
@@ -26,12 +27,13 @@
 //! | 4 x 4 boxes | 0.953..0.988 | 0.80 | 1.01 | 5e-2 mm/s |
 //! | a core with corners at the mean radius before the whole face | 1.000 | 1.000 | 1.01 | 1e-12 mm/s |
 //!
-//! The last one holds 9 % too little where force and torsion meet along its diagonals: four corners give less than a face
-//! when the centre that a pad turns about lies at one of them. So the pads here have a fifth point at their centre and
-//! the corners farther out (`pad_shape.rs`): -4.5 to +3.9 % in every direction.
+//! The last one holds 9 % too little if force and torsion act together along its diagonals: four corners resist less
+//! than a face if the centre of rotation is at one of them. The pads here therefore have a fifth contact at their
+//! centre and the corners farther out (`pad_shape.rs`): -4.5 to +3.9 % in every direction.
 //!
 //! # Accuracy
-//! `tests/pinch` holds the simulation to closed forms. Found with the settings of `world.rs` at time steps of 2 ms:
+//! `tests/pinch` compares the simulation with closed forms. Results with the settings of `world.rs` at time steps of 2
+//! ms:
 //!
 //! | what | against | off by |
 //! |---|---|---|
@@ -52,18 +54,19 @@
 //! | largest translation of their hands | | -2.9 to +0.9 %, 0.001 mm where they stick |
 //!
 //! # The hand-over
-//! In the first 0.15 s of the settling the board's weight passes from whoever hands it over to the arms. A weight that
-//! comes at once makes them swing out too far; hands that slide then stay askew, and turn by less under the load than
-//! hands that were loaded gently. That, and not the pads, was what the statics did not predict.
+//! The board's weight is applied to the arms over the first 0.15 s of settling. A weight applied at once makes the arms
+//! overshoot; hands that slide then keep an offset and rotate less under the load than hands that were loaded slowly.
+//! This, and not the pads, explained the difference from the statics.
 //!
-//! A step of two arms takes some 180 us, 11 times real time on one core, one of one arm 51 us. Of its 2.5 million instructions 99 %
-//! are the engine's: 43 % mass matrices and Coriolis terms with their factorisation, anew in each of four substeps, 37 % the contacts'
-//! rows and sweeps, 7 % forward kinematics. Reading the state and the books take 0.3 % each, the person's distance at most
-//! 0.5 %; the judge adds 2 %, nearly all of it the fingerprint. Three substeps would take a quarter less, and small
-//! deflections would leave the bounds above; four sweeps in place of six would let hands slide on a release.
-//! `benches/sim.rs` measures it.
+//! # Performance
+//! A step of two arms takes about 180 us, 11 times real time on one core, a step of one arm 51 us. Of its 2.5 million
+//! instructions 99 % are the engine's: 43 % mass matrices and Coriolis terms with their factorisation, repeated in each
+//! of four substeps, 37 % contact rows and sweeps, 7 % forward kinematics. Reading the state and the balance take 0.3 %
+//! each, the person's distance at most 0.5 %; the judge adds 2 %, nearly all of it the fingerprint. Three substeps
+//! would take a quarter less time, but small deflections would exceed the bounds above; with four sweeps instead of
+//! six, hands slide at a release. `benches/sim.rs` measures it.
 //!
-//! The engine makes a contact as stiff as the lighter of its bodies is heavy, so light boards sit softer.
+//! The engine scales a contact's stiffness with the mass of the lighter body, so light boards have softer contacts.
 
 mod arm;
 mod balance;
@@ -95,22 +98,22 @@ use crate::{
     model::trace::{ArmTrace, Trace},
 };
 
-/// How long the board may go without a touch before it counts as lost, s: long enough to see it fall, 5 cm by then.
+/// Time without any contact after which the board counts as lost, s: it has then fallen by 5 cm.
 const LOST_AFTER_S: f64 = 0.1;
 
-/// Simulates a hold: settle, ramp, hold, release.
+/// Simulates a plan: settle, ramp, hold, release.
 ///
-/// The board is held by the plan's arms, whose servos keep the planned angles against the torque limits of the
-/// robot, under gravity and the tool's wrench. The wrench acts at the tool point: nothing while settling, growing in the
-/// ramp, whole in the hold, nothing after, as [`crate::model::load::Load`] has it.
+/// The plan's arms hold the board under gravity and the tool's wrench; their servos keep the planned angles within the
+/// robot's torque limits. The wrench acts at the tool tip: zero while settling, increasing in the ramp, full in the
+/// hold and zero after it, see [`crate::model::load::Load`].
 ///
-/// When no pad has touched the board for a tenth of a second the board is lost, and the trace ends there.
+/// The trace ends early if no pad has touched the board for a tenth of a second: the board is lost.
 ///
-/// A simulation that breaks down is no error: its trace ends with the last state that can be believed and says why in
-/// [`Trace::broke_down`]. Equal inputs give equal traces, bit by bit.
+/// A simulation that breaks down is not an error: its trace ends with the last valid state, and [`Trace::broke_down`]
+/// says why. Equal inputs give equal traces, bit for bit.
 ///
 /// # Errors
-/// If the settings or the load over time are invalid, or the robot has a moving part without mass.
+/// If the settings or the load over time are invalid, or a moving part of the robot has no mass.
 pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Trace, SimError> {
     let tool = ToolLoad::new(checked.plan(), conditions)?;
     let timestep_s = conditions.settings.timestep_s;
@@ -133,7 +136,7 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
         (sample.time_s, sample.phase) = (time_s, phase);
         scene.observe(sample);
         sample.person_distance_m = person.as_mut().map(|person| person.distance_m(step, sample));
-        // Before the first step there are no forces yet.
+        // There are no forces before the first step.
         untouched_s = if step == 0 || sample.has_contact() { 0.0 } else { untouched_s + timestep_s };
         if untouched_s > LOST_AFTER_S {
             trace.samples.truncate(step + 1);
@@ -144,7 +147,7 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
     Ok(trace)
 }
 
-/// A trace with room for every sample, so that the steps allocate nothing of ours.
+/// A trace with room for every sample, so that steps do not allocate.
 fn empty_trace(checked: &CheckedPlan<'_>, conditions: &Conditions, samples: usize) -> Trace {
     let plan = checked.plan();
     let arms = checked.arms().iter().map(|CheckedArm { index, hold, .. }| {

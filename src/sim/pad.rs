@@ -1,4 +1,4 @@
-//! The pads in the engine, and what they do to the board.
+//! The pads in the engine and their forces on the board.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::{
@@ -15,12 +15,12 @@ use crate::{
     robot::Pad,
 };
 
-/// The board, as the pads see it.
+/// Handles of the board in the engine.
 #[derive(Clone, Copy)]
 pub(super) struct BoardHandles {
     /// The body.
     pub body: RigidBodyHandle,
-    /// Its shape.
+    /// Its collider.
     pub collider: ColliderHandle,
 }
 
@@ -29,11 +29,11 @@ pub(super) struct BoardHandles {
 pub(super) struct PadContact {
     /// Coulomb coefficient.
     pub friction: f64,
-    /// What presses it.
+    /// The load on it and the compliance of its contacts.
     pub loading: PadLoading,
 }
 
-/// Pose of the pad of finger `k` (0 on the +y_G side) in G when its travel is 0: x_P along x_G, z_P into the object.
+/// X_GP of the pad of finger `k` (0 on the +y_G side) at zero travel: x_P along x_G, z_P into the object.
 pub(super) fn x_gp(pad: &Pad, k: usize) -> Pose {
     let side = if k == 0 { 1.0 } else { -1.0 };
     let z_p = Vector3::y() * -side;
@@ -47,14 +47,14 @@ pub(super) fn x_gp(pad: &Pad, k: usize) -> Pose {
 /// A pad of the scene.
 pub(super) struct SimPad {
     finger: RigidBodyHandle,
-    /// P in the finger's body: x_P along x_G, z_P into the board, at the centre of the face.
+    /// P in the finger's body: at the centre of the face, x_P along x_G, z_P into the board.
     x_fp: Pose,
-    /// One a part.
+    /// One for each part.
     colliders: [ColliderHandle; 3],
 }
 
 impl SimPad {
-    /// The pad of finger `k` (0 on the +y_G side), whose body is at `x_gf` when its travel is 0.
+    /// The pad of finger `k` (0 on the +y_G side), whose body is at `x_gf` at zero travel.
     pub fn new(
         world: &mut PhysicsWorld,
         pad: &Pad,
@@ -79,14 +79,14 @@ impl SimPad {
         Self { finger, x_fp, colliders }
     }
 
-    /// How deep the pad's contacts with the board sank in before the last step, m: nothing where it does not touch.
+    /// Largest penetration of the pad's contacts with the board before the last step, m; 0 without contact.
     pub fn penetration_m(&self, world: &PhysicsWorld, board: BoardHandles) -> f64 {
         let pairs = self.colliders.iter().filter_map(|part| world.narrow_phase.contact_pair(*part, board.collider));
         let points = pairs.flat_map(|pair| pair.solver_manifolds()).flat_map(|manifold| &manifold.points);
         points.map(|point| -point.dist).fold(0.0, f64::max)
     }
 
-    /// What the pad does to the board in the last substep: the engine keeps the friction of no other.
+    /// The pad's wrench on the board in the last substep; the engine keeps friction impulses of that one only.
     pub fn observe(&self, world: &PhysicsWorld, board: BoardHandles) -> PadSample {
         let x_wp = convert::from_engine_pose(world.bodies[self.finger].position()) * self.x_fp;
         let p_wp_m = x_wp.translation.vector;
@@ -102,7 +102,7 @@ impl SimPad {
     }
 }
 
-/// Impulse and its moment about a point that the contacts of a manifold gave the board in the last substep, world axes.
+/// Impulse, with its moment about a point, of a manifold's contacts on the board in the last substep, world axes.
 fn impulse_on_board(
     world: &PhysicsWorld,
     manifold: &ContactManifold,
@@ -113,7 +113,7 @@ fn impulse_on_board(
     let board_is_first = data.rigid_body1 == Some(board);
     let com_w = world.bodies[board].center_of_mass();
     let mut total = Wrench::default();
-    // A point that the solver left out keeps an old impulse, so only the solver's own contacts are read.
+    // A point that is not in the solver keeps an old impulse, so only the solver's contacts are read.
     for contact in &data.solver_contacts {
         let Some(point) = manifold.points.get((contact.contact_id[0] & !NEW_CONTACT_BIT) as usize) else { continue };
         let on_first = point.data.warmstart_tangent_world - data.normal * point.data.warmstart_impulse;

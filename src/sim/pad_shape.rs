@@ -1,5 +1,5 @@
-//! The shape of a pad for engines that know contacts in points only: solids whose few points hold together what a face
-//! under even pressure holds.
+//! The shape of a pad for engines with point contacts: solids whose contact points together have the load capacity of a
+//! face under uniform pressure (docs/method.md#72-grippers-and-pads).
 
 use nalgebra::{Isometry3, Point3};
 
@@ -9,38 +9,38 @@ use crate::{
     robot::{Arm, Pad},
 };
 
-/// Depth of the solids behind a pad's face, m: nothing reaches their back.
+/// Depth of the solids behind a pad's face, m; nothing penetrates that far.
 const DEPTH_M: f64 = 0.004;
 
-/// The part of an evenly pressed pad's force that the point at its centre carries; the corners of the core carry the
-/// rest. By the theory of five points, force and torsion together then stay within 4 % of what a uniform patch of
-/// 40.4 x 36.0 mm holds, in every direction: with 0 they fall short by 9 %, with 0.2 they exceed it by 6 %.
+/// Share of the normal force at the central contact of a uniformly pressed pad; the corners of the core carry the rest.
+/// In theory the five contacts then resist force and torsion together within 4 % of a uniform patch of 40.4 x 36.0 mm
+/// in every direction; with 0 up to 9 % less, with 0.2 up to 6 % more.
 const CENTRE_SHARE: f64 = 0.17;
 
-/// How far the whole face lies behind the core's corners, as a multiple of what they sink in. A uniform elastic face
-/// turns as hard about its centre, however it tilts, as long as it touches all over, and so does the core alone. With 3
-/// the face's edge comes to bear once the core tilts on two of its corners, at half of the tilt that the pad holds; with
-/// 2, earlier, and then it adds to the torsion of pads that are pressed unevenly.
+/// Recess of the whole face behind the core's corners, as a multiple of their penetration. A uniform elastic face has
+/// the same torsional resistance at any tilt as long as all of it is in contact; so has the core alone. With 3 the
+/// face's edge makes contact once the core tilts on two of its corners, at half of the tilting moment that the pad
+/// holds; with 2 it does so earlier and adds to the torsion of unevenly pressed pads.
 const FACE_RECESS: f64 = 3.0;
 
-/// Mean distance of a rectangle's points from its centre, m: `(1/A) integral of r dA` for half sides a and b,
-/// `(d + a^2/(2b) ln((b+d)/a) + b^2/(2a) ln((a+d)/b)) / 3` with `d` the half diagonal (METHOD section 6).
+/// Mean distance of a rectangle's points from its centre, m: `(1/A) integral of r dA` for half sides a and b, `(d +
+/// a^2/(2b) ln((b+d)/a) + b^2/(2a) ln((a+d)/b)) / 3` with `d` the half diagonal (docs/method.md#62-pad-limits).
 fn mean_radius_m([a, b]: [f64; 2]) -> f64 {
     let d = a.hypot(b);
     (d + a * a / (2.0 * b) * ((b + d) / a).ln() + b * b / (2.0 * a) * ((a + d) / b).ln()) / 3.0
 }
 
-/// A hand, and where it holds.
+/// A hand and its grasp.
 pub(super) struct GraspingHand<'a> {
-    /// The arm that it ends.
+    /// Its arm.
     pub arm: &'a Arm,
-    /// What of it moves.
+    /// The arm's moving bodies.
     pub bodies: &'a ArmBodies,
-    /// G in O.
+    /// X_OG.
     pub x_og: Pose,
 }
 
-/// What presses a pad on a board, and what gives way there.
+/// The load on a pad and the compliance of its contacts with the board.
 #[derive(Clone, Copy)]
 pub(super) struct PadLoading {
     /// The grip force, N.
@@ -51,20 +51,20 @@ pub(super) struct PadLoading {
     board_kg: f64,
     /// Sides of the board, m.
     board_m: [f64; 3],
-    /// The frame with the axes of G at the centre between the pads, in O.
+    /// X_OC, C with the axes of G at the centre between the pads.
     x_oc: Pose,
-    /// `1 / omega^2` of the contacts, s^2.
+    /// Softness `1 / omega^2` of the contacts, s^2.
     softness_s2: f64,
 }
 
 impl PadLoading {
-    /// Pads of a robot's hand on a board, by contacts of the softness `1 / omega^2`.
+    /// Pads of a robot's hand on a board, with contacts of the softness `1 / omega^2`.
     pub fn new(hand: &GraspingHand<'_>, object: &PlacedObject, force_n: f64, softness_s2: f64) -> Self {
         let GraspingHand { arm, bodies, x_og } = hand;
         let finger = &bodies.bodies[bodies.body_of_joint[arm.joints.len()]];
         Self {
             force_n,
-            // The drive has the inertia of the board: see the gripper.
+            // The drive has the inertia of the board, see `SimGripper::close`.
             finger_kg: finger.mass.mass_kg + object.mass_kg,
             board_kg: object.mass_kg,
             board_m: object.size_m,
@@ -73,9 +73,9 @@ impl PadLoading {
         }
     }
 
-    /// How far a contact at `[x, z]` from the centre along x_G and z_G gives way under a force, m/N:
-    /// `1 / (m omega^2)`, with `1/m = 1/m_finger + 1/m_board + y^2/I_x + x^2/I_y` the inverse of the mass that two
-    /// bodies oppose to a push along the board's normal. The palm behind the finger gives way by little.
+    /// Compliance of a contact at `[x, z]` from the centre along x_G and z_G, m/N: `1 / (m omega^2)`, with `1/m =
+    /// 1/m_finger + 1/m_board + y^2/I_x + x^2/I_y` the inverse effective mass of the two bodies along the board's
+    /// normal. The palm's motion is neglected.
     fn compliance_m_n(&self, [x, z]: [f64; 2]) -> f64 {
         let p_o = self.x_oc * Point3::new(x, 0.0, z);
         let [size_x, size_y, size_z] = self.board_m.map(|side| side * side);
@@ -83,7 +83,7 @@ impl PadLoading {
         self.softness_s2 * (1.0 / self.finger_kg + (1.0 + turning) / self.board_kg)
     }
 
-    /// How far the corners of a core with these half sides sink in, and a ball at the centre that carries its share, m.
+    /// Penetration of the corners of a core with these half sides, and of the ball at the centre under its share, m.
     fn penetrations_m(&self, [x, z]: [f64; 2]) -> [f64; 2] {
         let corners = [[x, z], [x, -z], [-x, z], [-x, -z]];
         let corner_m_n = corners.iter().map(|corner| self.compliance_m_n(*corner)).sum::<f64>() / 4.0;
@@ -110,7 +110,7 @@ pub(super) enum Solid {
 /// A part of a pad.
 #[derive(Clone, Copy)]
 pub(super) struct PadPart {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// Its shape.
     pub solid: Solid,
@@ -120,10 +120,10 @@ pub(super) struct PadPart {
 
 /// The parts of a pad: the core, the ball at its centre, and the whole face.
 ///
-/// Engines hold two flat boxes together in four corners. The corners of the core, with the ball between them, turn
-/// exactly as hard as an evenly pressed face when the mean distance from the centre, each point counted by its share of
-/// the force, is the face's: `(1 - share) r = e`. Four corners alone would give too little when the pad turns about one
-/// of them. The whole face, recessed, comes to bear where the pad tilts.
+/// Engines connect two flat boxes at four corner contacts. The corners of the core and the ball between them have the
+/// torsional resistance of a uniformly pressed face if their mean distance from the centre, weighted by their share of
+/// the force, is the face's: `(1 - share) r = e`. Four corners alone resist too little if the pad turns about one of
+/// them. The recessed face makes contact if the pad tilts.
 pub(super) fn pad_parts(pad: &Pad, loading: &PadLoading) -> [PadPart; 3] {
     let half_m = pad.size_m.map(|side| side / 2.0);
     let corner_m = mean_radius_m(half_m) / (1.0 - CENTRE_SHARE);
@@ -150,12 +150,12 @@ mod tests {
 
     #[test]
     fn the_mean_radius_is_that_of_the_rectangle() {
-        // 14.63 mm for the pad of 40.4 x 36.0 mm (METHOD section 6), given to four digits.
+        // 14.63 mm for the pad of 40.4 x 36.0 mm (docs/method.md#62-pad-limits), to four digits.
         assert!((mean_radius_m([0.0202, 0.018]) - 0.01463).abs() < 5e-6);
     }
 
     #[test]
-    fn a_contact_gives_way_as_the_masses_that_meet_there() {
+    fn the_compliance_of_a_contact_is_that_of_the_effective_mass() {
         let at = |x: f64| PadLoading {
             force_n: 30.0,
             finger_kg: 0.2,
@@ -166,10 +166,10 @@ mod tests {
         };
         // Two bodies of 0.2 kg, pushed through their centres: 1e-8 * (5 + 5).
         assert!((at(0.0).compliance_m_n([0.0; 2]) - 1e-7).abs() < 1e-20);
-        // 0.23 m aside the board turns too: I_y = 0.2 (0.25 + 0.0009) / 12.
+        // 0.23 m off the centre the board turns too: I_y = 0.2 (0.25 + 0.0009) / 12.
         let turning = 1e-8 * 0.23 * 0.23 / (0.2 * 0.2509 / 12.0);
         assert!((at(0.23).compliance_m_n([0.0; 2]) - (1e-7 + turning)).abs() < 1e-20);
-        // x_G of a hand that looks along x_O is in the plane of the board.
+        // The hand's x_G is in the plane of the board.
         assert!(at(0.23).compliance_m_n([0.01, 0.0]) > at(0.23).compliance_m_n([-0.01, 0.0]));
     }
 }

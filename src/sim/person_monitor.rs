@@ -1,10 +1,10 @@
-//! The person beside the hold: how far robot and board are from them while the arms give way.
+//! Distance of robot and board from the person during the simulation (docs/method.md#87-person-overlap).
 //!
-//! The person stands still in the posture of the plan and nothing pushes them: they are looked at, not simulated. Against
-//! them go all links of the robot and the board; what goes with the tool is left out, as
-//! [`StandingPerson`] has it. What the distance means is the judge's business.
+//! The person stands still in the posture of the plan and is not part of the dynamics. All links of the robot and the
+//! board are measured against them, without the body parts that move with the tool (see [`StandingPerson`]). The judge
+//! interprets the distance.
 
-use super::Conditions;
+use super::conditions::Conditions;
 use crate::{
     check::CheckedPlan,
     collision::{CollisionModel, Nearest, StandingPerson},
@@ -12,34 +12,33 @@ use crate::{
     robot::{ArmState, Robot},
 };
 
-/// How often the distance is measured, s.
+/// Interval between two measurements, s.
 const INTERVAL_S: f64 = 0.01;
 
-/// Bodies nearer than this are measured in every step, m: at up to 1 m/s nothing comes from beyond it to a touch between two
-/// measurements.
+/// Below this distance it is measured in every step, m: at up to 1 m/s no body gets from beyond it into contact between
+/// two measurements.
 const NEAR_M: f64 = 0.01;
 
-/// How much farther away than last time the nearest bodies are looked for at first, m: nearly always enough, and little to
-/// look at.
+/// The nearest bodies are first searched for within the last distance plus this, m: nearly always enough, and fast.
 const SLACK_M: f64 = 0.02;
 
-/// The person of a plan.
+/// Monitors the distance of the person of a plan.
 pub(super) struct PersonMonitor<'a> {
     robot: &'a Robot,
     model: CollisionModel,
     person: StandingPerson,
-    /// The robot's arms (indices) in the order of every sample.
+    /// Indices of the robot's arms in the order of the samples.
     arms: Vec<usize>,
-    /// How many steps the distance is measured after.
-    every: usize,
-    /// The distance as it was measured last, m.
+    /// Interval between two measurements in steps.
+    interval_steps: usize,
+    /// The last measured distance, m.
     distance_m: f64,
-    /// The first bodies that overlapped.
+    /// The first pair of bodies that overlapped.
     pub touch: Option<PersonTouch>,
 }
 
 impl<'a> PersonMonitor<'a> {
-    /// The person of a plan; `None` if the plan has none.
+    /// The monitor of a plan's person; `None` if the plan has no person.
     pub fn of(checked: &CheckedPlan<'a>, conditions: &Conditions) -> Option<Self> {
         checked.person()?;
         Some(Self {
@@ -47,16 +46,16 @@ impl<'a> PersonMonitor<'a> {
             model: CollisionModel::new(checked.robot()),
             person: StandingPerson::new(&checked.person_parts(), checked.plan().object.size_m),
             arms: checked.arms().iter().map(|arm| arm.index).collect(),
-            every: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
+            interval_steps: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             distance_m: f64::INFINITY,
             touch: None,
         })
     }
 
-    /// The least distance of robot and board from the person after a step, m, negative when they overlap: measured where
-    /// it is due, else as it was measured last.
+    /// The smallest distance of robot and board from the person after a step, m, negative if they overlap. Measured if
+    /// due, otherwise the last measured value.
     pub fn distance_m(&mut self, step: usize, sample: &Sample) -> f64 {
-        if step.is_multiple_of(self.every) || self.distance_m < NEAR_M {
+        if step.is_multiple_of(self.interval_steps) || self.distance_m < NEAR_M {
             self.measure(sample);
         }
         self.distance_m

@@ -1,10 +1,10 @@
-//! The phases of a simulation: when the tool's wrench acts.
+//! The phases of a simulation (docs/method.md#74-phases).
 
-use super::SimError;
+use super::error::SimError;
 use crate::model::{scenario::SimulationSettings, trace::Phase};
 
-/// The load over the steps of a simulation: none while settling, growing evenly in the ramp, whole in the hold, none
-/// after the release.
+/// The ramp of the load over the steps of a simulation: 0 while settling, linear in the ramp, 1 in the hold, 0 after
+/// the release.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PhaseSchedule {
     settle: usize,
@@ -14,11 +14,11 @@ pub(super) struct PhaseSchedule {
 }
 
 impl PhaseSchedule {
-    /// The profile of these settings, each phase rounded to whole steps.
+    /// The schedule of these settings, each phase rounded to whole steps.
     ///
     /// # Errors
-    /// [`SimError::Settings`] when the time step is not positive or longer than 4 ms, a phase negative or not finite,
-    /// or the whole longer than 100 000 steps.
+    /// [`SimError::Settings`] if the time step is not positive or longer than 4 ms, a phase is negative or not finite,
+    /// or the simulation is longer than 100 000 steps.
     pub fn new(settings: &SimulationSettings) -> Result<Self, SimError> {
         let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
         if !(timestep_s > 0.0 && timestep_s <= SimulationSettings::MAX_TIMESTEP_S) {
@@ -27,7 +27,7 @@ impl PhaseSchedule {
         }
         let steps = |key, duration_s: f64| {
             if duration_s.is_finite() && duration_s >= 0.0 {
-                // The cast saturates; what it rounds is not negative.
+                // The cast saturates; the value is not negative.
                 Ok((duration_s / timestep_s).round() as usize)
             } else {
                 Err(SimError::Settings { key, found: duration_s, expected: "a time of at least zero" })
@@ -46,23 +46,22 @@ impl PhaseSchedule {
         Ok(profile)
     }
 
-    /// How many steps there are.
+    /// The number of steps.
     pub fn steps(&self) -> usize {
         self.settle.saturating_add(self.ramp).saturating_add(self.hold).saturating_add(self.release)
     }
 
-    /// How many of them come before the load.
+    /// The number of steps before the load.
     pub fn settle_steps(&self) -> usize {
         self.settle
     }
 
-    /// In how many of them the load grows.
+    /// The number of steps of the ramp.
     pub fn ramp_steps(&self) -> usize {
         self.ramp
     }
 
-    /// The phase and the multiple of the operation's wrench that acts in a step; steps count from 1, and 0 stands for
-    /// the state at the start.
+    /// The phase and the multiple of the operation's wrench in a step. Steps count from 1; 0 is the initial state.
     pub fn at(&self, step: usize) -> (Phase, f64) {
         let ramp_end = self.settle + self.ramp;
         if step <= self.settle {
@@ -87,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn the_load_grows_evenly_to_one_and_goes() {
+    fn the_load_increases_linearly_to_one_and_is_released() {
         let profile = profile(0.5, 1.0);
         assert_eq!(profile.steps(), 1500);
         assert_eq!(profile.at(250), (Phase::Settle, 0.0));
@@ -98,12 +97,12 @@ mod tests {
     }
 
     #[test]
-    fn without_a_ramp_the_load_comes_at_once() {
+    fn without_a_ramp_the_whole_load_acts_at_once() {
         assert_eq!(profile(0.5, 0.0).at(251), (Phase::Hold, 1.0));
     }
 
     #[test]
-    fn settings_that_make_no_sense_are_refused() {
+    fn invalid_settings_are_refused() {
         for timestep_s in [0.0, -0.002, 0.005, f64::NAN, f64::INFINITY] {
             let settings = SimulationSettings { timestep_s, ..SimulationSettings::default() };
             assert!(matches!(PhaseSchedule::new(&settings), Err(SimError::Settings { key: "timestep_s", .. })));

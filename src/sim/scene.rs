@@ -1,13 +1,14 @@
-//! The scene: the arms that hold, the board, gravity and the tool.
+//! The scene: arms, board, gravity and the tool's wrench.
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 
 use super::{
-    Conditions, SimError,
     arm::SimArm,
     balance::{Balance, mechanical_energy_j},
+    conditions::Conditions,
     convert,
+    error::SimError,
     pad::BoardHandles,
     tool_load::{ToolState, wrench_w},
     world::{board_groups, new_world},
@@ -24,16 +25,17 @@ use crate::{
     },
 };
 
-/// A joint speed that no servo reaches, rad/s: beyond it the engine has lost the state. (A board that was dropped may
-/// well reach any speed under a steady load.)
+/// A joint speed that no servo reaches, rad/s: beyond it the engine's state is invalid. (A dropped board may reach any
+/// speed under a constant load.)
 const LOST_RAD_S: f64 = 100.0;
 
-/// In what time a board is handed over to the arms, s, at most half of the settling. A weight that comes at once makes
-/// them swing out by a fifth too far, and hands that slide in the swing stay askew: under a tenth of their load some then
-/// turn by less than hands do that were loaded gently. With 0.1 to 0.25 s the difference is gone.
+/// Time over which the board's weight is applied to the arms, s, at most half of the settling. If the weight is applied
+/// at once, the arms overshoot by a fifth, and hands that slide in the swing keep an offset: under a tenth of the load
+/// some then turn less than hands that were loaded slowly. With 0.1 to 0.25 s the difference vanishes.
 const HAND_OVER_S: f64 = 0.15;
 
-/// A board held by arms, stepped by hand. `sim::simulate` runs one through a plan's load; tests load it as they like.
+/// A board held by arms, advanced step by step. [`simulate`](super::simulate) applies a plan's load; tests apply their
+/// own.
 pub struct SimScene {
     world: PhysicsWorld,
     arms: Vec<SimArm>,
@@ -42,26 +44,25 @@ pub struct SimScene {
     wrench_o: Wrench,
     /// The tool point in O, m.
     p_ot_m: Vector3<f64>,
-    /// What the tool's direction is fixed to.
+    /// The frame in which the tool's direction is fixed.
     frame: ForceFrame,
     /// The planned pose of the board.
     x_wo_planned: Pose,
-    /// What the tool did in the last step.
+    /// State of the tool in the last step.
     tool: ToolState,
-    /// Its wrench then, about the tool point, world axes.
+    /// The tool's wrench in the last step, about the tool point, world axes.
     tool_wrench_w: Wrench,
-    /// Steps until now, and those in which the board is handed over.
+    /// The steps so far, and those of the hand-over.
     steps: [usize; 2],
-    /// Momentum and energy.
+    /// Balance of momentum and energy.
     balance: Balance,
 }
 
 impl SimScene {
-    /// Builds the scene of a plan: the arms that hold, standing still at the planned angles with their pads on the
-    /// board, and the board.
+    /// Builds the scene of a plan: the board, and the arms at rest at the planned angles with their pads on the board.
     ///
     /// # Errors
-    /// If the conditions are invalid, or the robot has a moving part without mass.
+    /// If the conditions are invalid, or a moving part of the robot has no mass.
     pub fn new(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Self, SimError> {
         let plan = checked.plan();
         conditions.check()?;
@@ -96,7 +97,7 @@ impl SimScene {
         self.step_under(ToolState { load_factor, wrench_o, p_ot_m: self.p_ot_m });
     }
 
-    /// One time step under what the tool does.
+    /// One time step under a state of the tool.
     pub(super) fn step_under(&mut self, tool: ToolState) {
         let timestep_s = self.world.integration_parameters.dt;
         for arm in &mut self.arms {
@@ -110,7 +111,7 @@ impl SimScene {
         self.balance.end_step(&self.world, energy_j, worked_j);
     }
 
-    /// Lays the tool's wrench on the board for one step.
+    /// Applies the tool's wrench, and the support of the hand-over, to the board for one step.
     fn push_board(&mut self) {
         let x_wo = self.x_wo();
         self.tool_wrench_w = wrench_w(self.frame, &self.tool.wrench_o, &x_wo, &self.x_wo_planned);
@@ -133,19 +134,19 @@ impl SimScene {
         body.add_force_at_point(convert::to_engine_vector(&support.force_n), com_w, false);
     }
 
-    /// The part of the board's weight that whoever hands it over still carries in this step.
+    /// The share of the board's weight that is supported from outside in this step of the hand-over.
     fn supported_share(&self) -> f64 {
         let [step, hand_over] = self.steps;
         if step >= hand_over { 0.0 } else { 1.0 - step as f64 / hand_over as f64 }
     }
 
-    /// Pose of the board.
+    /// X_WO.
     pub fn x_wo(&self) -> Pose {
         convert::from_engine_pose(self.world.bodies[self.board.body].position())
     }
 
-    /// Writes the state, and the forces of the last step, into a sample of [`blank_sample`]'s shape. Time and phase are
-    /// the caller's.
+    /// Writes the state and the forces of the last step into a sample of [`blank_sample`]'s shape. The caller sets time
+    /// and phase.
     pub fn observe(&self, sample: &mut Sample) {
         sample.load_factor = self.tool.load_factor;
         sample.p_ot_m = self.tool.p_ot_m;
@@ -161,7 +162,7 @@ impl SimScene {
         sample.self_check = self.self_check(&sample.arms);
     }
 
-    /// What the last step made of the laws of mechanics.
+    /// The self-checks of the last step.
     fn self_check(&self, observed: &[ArmSample]) -> StepCheck {
         let pads = self.arms.iter().flat_map(|arm| &arm.gripper.pads);
         let pads_w_n = observed.iter().flat_map(|arm| &arm.pads).map(|pad| pad.wrench_w.force_n).sum();
@@ -174,7 +175,7 @@ impl SimScene {
         }
     }
 
-    /// Why the state can no longer be believed, if so.
+    /// Why the state is invalid; `None` if it is valid.
     pub fn breakdown(&self) -> Option<&'static str> {
         if !self.world.quarantine().is_empty() {
             return Some("the state is no longer finite");
@@ -184,15 +185,15 @@ impl SimScene {
     }
 }
 
-/// Kinetic energy and weight's potential of arms and board, J.
+/// Kinetic and gravitational energy of arms and board, J.
 fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: BoardHandles) -> f64 {
     arms.iter().map(|arm| arm.energy_j(world)).sum::<f64>() + mechanical_energy_j(&world.bodies[board.body])
 }
 
-/// The board as a free body of evenly spread mass.
+/// Inserts the board as a free body of uniform density.
 fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) -> BoardHandles {
     let [hx, hy, hz] = object.size_m.map(|side| side / 2.0);
-    // A sleeping board would ignore a load until it is woken.
+    // A sleeping board would not react to the load.
     let body = RigidBodyBuilder::dynamic().pose(convert::to_engine_pose(&object.x_wo)).can_sleep(false);
     let body = world.bodies.insert(body);
     let collider =
@@ -202,7 +203,7 @@ fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) 
     BoardHandles { body, collider }
 }
 
-/// A sample of the right shape, with nothing observed yet.
+/// A sample of the right shape, without observations.
 pub fn blank_sample(plan: &Plan) -> Sample {
     let pad = PadSample { normal_force_n: 0.0, wrench_w: Wrench::default(), p_wp_m: Vector3::zeros() };
     let arms = plan.arms.iter().map(|hold| ArmSample {

@@ -1,40 +1,40 @@
 //! The position control of one joint.
 
-/// A spring and damper about a wanted angle, with the torque that holds the arm's own weight added, up to the effort
-/// limit. Stiffness and damping act inside the engine, implicitly; this decides where the spring rests.
+/// A spring and damper about the commanded angle with gravity feed-forward and a torque limit. The engine integrates
+/// stiffness and damping implicitly; this computes the rest angle of the spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Servo {
-    /// The wanted angle, rad.
-    pub wanted_rad: f64,
-    /// Torque that holds the arm itself at the wanted angle, N m.
+    /// The commanded angle, rad.
+    pub commanded_rad: f64,
+    /// Gravity torque of the arm at the commanded angle, N m.
     pub feed_forward_nm: f64,
-    /// N m/rad.
+    /// Stiffness K, N m/rad.
     pub stiffness_nm_rad: f64,
-    /// N m s/rad.
+    /// Damping D, N m s/rad.
     pub damping_nm_s_rad: f64,
-    /// The largest torque, N m.
+    /// Torque limit, N m.
     pub effort_nm: f64,
 }
 
 impl Servo {
-    /// What the control asks for without its limit: `tau_ff + K (q_wanted - q) - D q'`, N m.
+    /// The demanded torque, without the limit: `tau_ff + K (q_commanded - q) - D q'`, N m.
     pub fn demanded_nm(&self, q_rad: f64, velocity_rad_s: f64) -> f64 {
-        self.feed_forward_nm + self.stiffness_nm_rad * (self.wanted_rad - q_rad)
+        self.feed_forward_nm + self.stiffness_nm_rad * (self.commanded_rad - q_rad)
             - self.damping_nm_s_rad * velocity_rad_s
     }
 
-    /// What a spring that rests at `rest_rad` and the damper give, N m.
+    /// The torque of the damper and a spring with rest angle `rest_rad`, N m.
     pub fn applied_nm(&self, rest_rad: f64, q_rad: f64, velocity_rad_s: f64) -> f64 {
         self.stiffness_nm_rad * (rest_rad - q_rad) - self.damping_nm_s_rad * velocity_rad_s
     }
 
-    /// Where the spring has to rest, rad, so that it gives the demanded torque, or the limit where the demand is
-    /// larger, once the joint has moved on for one step.
+    /// The rest angle, rad, for which the spring applies the demanded torque, limited to the torque limit, after the
+    /// joint has moved on for one step.
     pub fn rest_rad(&self, q_rad: f64, velocity_rad_s: f64, timestep_s: f64) -> f64 {
         let next_rad = q_rad + velocity_rad_s * timestep_s;
         let demanded_nm = self.demanded_nm(next_rad, velocity_rad_s);
         let excess_nm = demanded_nm - demanded_nm.clamp(-self.effort_nm, self.effort_nm);
-        self.wanted_rad + (self.feed_forward_nm - excess_nm) / self.stiffness_nm_rad
+        self.commanded_rad + (self.feed_forward_nm - excess_nm) / self.stiffness_nm_rad
     }
 }
 
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     const SERVO: Servo = Servo {
-        wanted_rad: 0.3,
+        commanded_rad: 0.3,
         feed_forward_nm: 12.0,
         stiffness_nm_rad: 843.0,
         damping_nm_s_rad: 30.0,
@@ -51,7 +51,7 @@ mod tests {
     };
 
     #[test]
-    fn within_its_limit_it_gives_what_it_demands() {
+    fn within_its_limit_it_applies_the_demanded_torque() {
         let (q, v) = (0.27, -0.2);
         let rest = SERVO.rest_rad(q, v, 0.002);
         // Rounding of sums of numbers below 300.
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_its_limit_it_gives_the_limit_at_the_end_of_the_step() {
+    fn beyond_its_limit_it_applies_the_limit_at_the_end_of_the_step() {
         for (q, v, limit) in [(0.1, 0.4, 50.0), (0.6, -0.4, -50.0)] {
             let rest = SERVO.rest_rad(q, v, 0.002);
             assert!(SERVO.demanded_nm(q, v).abs() > 50.0);

@@ -1,10 +1,10 @@
-//! The tool's wrench on the board over time: the profile of the load, step by step.
+//! The tool's wrench on the board over the steps of a simulation (docs/method.md#73-applied-load).
 
 use std::f64::consts::TAU;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::{Conditions, SimError, phases::PhaseSchedule};
+use super::{conditions::Conditions, error::SimError, phases::PhaseSchedule};
 use crate::model::{
     frames::Pose,
     load::{BREAKTHROUGH_S, ForceFrame, ForceProfile},
@@ -14,12 +14,12 @@ use crate::model::{
     wrench::Wrench,
 };
 
-/// What the tool does to the board in one step.
+/// The state of the tool in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ToolState {
-    /// The multiple of the profile's wrench that acts.
+    /// The multiple of the profile's wrench.
     pub load_factor: f64,
-    /// The wrench about the tool point, in O axes, or in those of the planned board when the load's frame is the world.
+    /// The wrench about the tool point, in O axes; in the planned board's axes if the load's frame is the world.
     pub wrench_o: Wrench,
     /// The tool point in O, m.
     pub p_ot_m: Vector3<f64>,
@@ -32,11 +32,11 @@ pub(super) struct ToolLoad<'a> {
     operation: &'a Operation,
     scale: f64,
     timestep_s: f64,
-    /// Size of the largest row of a measured profile.
+    /// Magnitude of the largest row of a measured profile.
     largest: f64,
 }
 
-/// Size of a wrench by which rows of a profile are compared: that of its force, or of its moment where `force` is false.
+/// Magnitude of a row's force, or of its moment if `force` is false.
 fn size(row: &[f64; 7], force: bool) -> f64 {
     let first = if force { 1 } else { 4 };
     Vector3::from_column_slice(&row[first..first + 3]).norm()
@@ -46,7 +46,7 @@ impl<'a> ToolLoad<'a> {
     /// The load of a plan's operation under these conditions.
     ///
     /// # Errors
-    /// [`SimError::Settings`] when phases or time step make no sense, [`SimError::Profile`] when the profile does.
+    /// [`SimError::Settings`] if phases or time step are invalid, [`SimError::Profile`] if the profile is.
     pub fn new(plan: &'a Plan, conditions: &'a Conditions) -> Result<Self, SimError> {
         let profile = &conditions.load.profile;
         check(profile, &plan.operation)?;
@@ -64,12 +64,12 @@ impl<'a> ToolLoad<'a> {
         })
     }
 
-    /// How many steps there are.
+    /// The number of steps.
     pub fn steps(&self) -> usize {
         self.phases.steps()
     }
 
-    /// The phase, and what the tool does, in a step; steps count from 1, and 0 stands for the state at the start.
+    /// The phase and the state of the tool in a step. Steps count from 1; 0 is the initial state.
     pub fn at(&self, step: usize) -> (Phase, ToolState) {
         let (phase, ramp) = self.phases.at(step);
         let loaded_s = step.saturating_sub(self.phases.settle_steps()) as f64 * self.timestep_s;
@@ -116,13 +116,13 @@ impl<'a> ToolLoad<'a> {
     }
 }
 
-/// Size of the largest force of measured rows, or of the largest moment where there is no force at all.
+/// Magnitude of the largest force of measured rows, or of the largest moment if there is no force.
 fn largest(samples: &[[f64; 7]]) -> f64 {
     let of = |force: bool| samples.iter().map(|row| size(row, force)).fold(0.0, f64::max);
     if of(true) > 0.0 { of(true) } else { of(false) }
 }
 
-/// The measured row and wrench at a time, linear between two rows.
+/// The measured row and wrench at a time, by linear interpolation.
 fn interpolated(samples: &[[f64; 7]], time_s: f64) -> ([f64; 7], Wrench) {
     let next = samples.partition_point(|row| row[0] <= time_s);
     let row = match (next.checked_sub(1).map(|last| samples[last]), samples.get(next)) {
@@ -131,7 +131,7 @@ fn interpolated(samples: &[[f64; 7]], time_s: f64) -> ([f64; 7], Wrench) {
             std::array::from_fn(|k| a[k] + share * (b[k] - a[k]))
         }
         (Some(a), None) => a,
-        // Before the first row; there is one, or the profile would have been refused.
+        // Before the first row. `check` refuses a profile without rows.
         (None, b) => b.copied().unwrap_or_default(),
     };
     let [_, fx, fy, fz, mx, my, mz] = row;
@@ -139,7 +139,7 @@ fn interpolated(samples: &[[f64; 7]], time_s: f64) -> ([f64; 7], Wrench) {
 }
 
 /// # Errors
-/// [`SimError::Profile`] when figures of the profile are not finite, or it does not fit the operation.
+/// [`SimError::Profile`] if a value of the profile is not finite, or it does not match the operation.
 fn check(profile: &ForceProfile, operation: &Operation) -> Result<(), SimError> {
     let refuse = |found: String, expected| Err(SimError::Profile { found, expected });
     match profile {
@@ -171,7 +171,7 @@ fn check(profile: &ForceProfile, operation: &Operation) -> Result<(), SimError> 
     }
 }
 
-/// The wrench in world axes of a board at `x_wo` that was planned at `x_wo_planned`.
+/// The wrench in world axes for a board at `x_wo` that was planned at `x_wo_planned`.
 pub(super) fn wrench_w(frame: ForceFrame, wrench_o: &Wrench, x_wo: &Pose, x_wo_planned: &Pose) -> Wrench {
     let rotation = match frame {
         ForceFrame::Board => x_wo.rotation,

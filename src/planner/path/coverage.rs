@@ -31,7 +31,10 @@ pub struct PathProblem<'a> {
     pub random: Pcg64,
     evaluators: Vec<Evaluator<'a>>,
     postures: PostureMap,
+    /// Responses that were searched for.
     evaluations: u64,
+    /// The number of them at which the present search ends.
+    last_evaluation: u64,
     observer: Option<&'a mut Observer<'a>>,
 }
 
@@ -59,7 +62,13 @@ impl<'a, 'o> PathProblem<'a> {
         let random = Pcg64::new(u128::from(problem.scenario.planner.seed), 1);
         // Force and person are the same at all points, seen from the tool.
         let postures = problem::posture_map(problem.scenario, &problem.human);
-        Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, observer }))
+        Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, last_evaluation: 0, observer }))
+    }
+
+    /// Begins a search: the scenario's limit of evaluations applies to each one.
+    pub fn begin_search(&mut self) {
+        let limit = self.evaluators.first().and_then(|first| first.problem.scenario.planner.evaluations);
+        self.last_evaluation = self.evaluations.saturating_add(limit.unwrap_or(u64::MAX));
     }
 
     /// The estimated objective of a grasp at each point; minus infinity if the map has no posture.
@@ -107,8 +116,11 @@ impl<'a, 'o> PathProblem<'a> {
     }
 
     /// The person's response to a grasp at a point if the grasp is stable there: the best near `known`, or else near the most
-    /// promising postures of the map.
+    /// promising postures of the map. `None` beyond the limit of evaluations.
     pub fn response(&mut self, grasp: &BoardGrasp, point: usize, known: Option<&Answer>) -> Option<Answer> {
+        if self.evaluations >= self.last_evaluation {
+            return None;
+        }
         self.evaluations += 1;
         let candidate = Candidate::without_person(grasp);
         if self.evaluators[point].utilisation(&candidate, &grasp.x_wo) > 1.0 {
@@ -173,8 +185,11 @@ impl<'a, 'o> PathProblem<'a> {
         self.evaluators.len()
     }
 
-    /// True if the observer stops the search.
+    /// True if the limit of evaluations is reached or the observer stops the search.
     pub fn is_stopped(&mut self) -> bool {
+        if self.evaluations >= self.last_evaluation {
+            return true;
+        }
         let progress = Progress { evaluations: self.evaluations, better: None };
         self.observer.as_mut().is_some_and(|observer| observer(&progress).is_break())
     }

@@ -26,6 +26,7 @@ use crate::{comfort::Answer, model::frames::Pose};
 /// The best sequence from these grasps; `None` without a grasp. It covers no fewer points than the first of them, whose pose
 /// is one of its poses.
 pub fn search(problem: &mut PathProblem<'_>, roots: &[Coverage]) -> Option<Vec<Waypoint>> {
+    problem.begin_search();
     let mut best: Option<(f64, Vec<Waypoint>)> = None;
     for root in roots {
         if best.is_some() && problem.is_stopped() {

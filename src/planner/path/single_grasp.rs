@@ -22,6 +22,7 @@ use crate::comfort::Answer;
 
 /// The best grasps that are found for all points, the best first.
 pub fn search(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
+    problem.begin_search();
     let mut starts = starts(problem);
     starts.truncate(problem.budget.path.local_searches);
     let mut improved: Vec<_> = starts.into_iter().map(|start| improve(problem, start)).collect();

@@ -11,9 +11,9 @@ use super::{
             CLEARANCE_MARGIN_M, FULL_UTILISATION, MARGIN, NEAR_M, RELAXED_UTILISATION, STABILITY_DIFFERENCE,
         },
         problem::Problem,
+        qp::LinearConstraint,
     },
     jacobian::Jacobian,
-    qp::LinearConstraint,
     variables::Variables,
 };
 use crate::{

@@ -7,7 +7,6 @@
 
 mod jacobian;
 mod linearization;
-mod qp;
 mod repair;
 mod sqp;
 mod variables;

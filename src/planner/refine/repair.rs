@@ -7,9 +7,9 @@ use super::{
         candidate::Candidate,
         evaluate::{self, Evaluator, Feasible, Rejected},
         params::refine::{RADIUS_RANGE, REPAIR_STEPS},
+        qp,
     },
     linearization::Linearization,
-    qp,
 };
 
 /// The candidate itself if it satisfies every constraint, or else one near it that does: the shortest steps that satisfy the

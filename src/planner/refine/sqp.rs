@@ -15,9 +15,9 @@ use super::{
             refine::{CORRECTIONS, GOOD, LEAST_GAIN, POOR, RADIUS_RANGE, SHRINK, START_RADIUS},
         },
         problem::Problem,
+        qp::{self, LinearConstraint},
     },
     linearization::Linearization,
-    qp::{self, LinearConstraint},
 };
 
 /// Refines the starts round by round; the best first.
