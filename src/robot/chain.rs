@@ -59,7 +59,8 @@ impl Chain {
         let limit = |of: fn(&super::tree::Joint) -> f64| arm.joints.iter().map(|&j| of(&robot.joints[j])).collect();
         Self {
             joints: joints.collect(),
-            x_lg: x_wj[x_wj.len() - 1].inverse() * x_wl[arm.gripper.frame_link],
+            // A gripper without an arm stands in the world.
+            x_lg: x_wj.last().unwrap_or(&Pose::identity()).inverse() * x_wl[arm.gripper.frame_link],
             lower: limit(|joint| joint.lower),
             upper: limit(|joint| joint.upper),
             effort_nm: arm.effort_nm.clone(),
