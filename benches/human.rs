@@ -57,7 +57,7 @@ fn inverse_kinematics(criterion: &mut Criterion) {
         bencher.iter(|| human.arm_solutions(black_box(&x_bt), swivel_rad));
     });
     criterion.bench_function("intervals of the swivel", |bencher| {
-        bencher.iter(|| human.swivel_intervals(black_box(&x_bt)));
+        bencher.iter(|| human.swivel_circle(black_box(&x_bt)).unwrap().intervals());
     });
 }
 

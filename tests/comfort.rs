@@ -1,4 +1,4 @@
-//! How a scenario's `[comfort]` and the person's lean reach the plan and the check of it.
+//! Effect of a scenario's `[comfort]` and the person's lean on the plan and its verification.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn flaws(plan: &Plan, loaded: &LoadedScenario) -> Vec<String> {
 }
 
 #[test]
-fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
+fn the_objective_of_a_mean_scenario_is_that_of_the_mean_response() {
     let mut loaded = cut();
     loaded.scenario.comfort.person = ResponseKind::Mean;
     let plan = plan(&loaded);
@@ -39,7 +39,7 @@ fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
     assert!(responses > 100);
     // The default weights; rounding of one sum.
     assert!((comfort.objective - (muscular_regularised + 64.0 * peripersonal_m)).abs() < 1e-12);
-    // The posture in the plan is the best answer that the search found, not a middling one.
+    // The posture in the plan is the best response that the search found.
     let of_posture = comfort.muscular_regularised + 64.0 * comfort.peripersonal_m;
     assert!(of_posture > comfort.objective);
 
@@ -62,7 +62,7 @@ fn a_saturated_metric_and_a_leaning_person_pass_the_check() {
     // A trunk that leans scores 2 in table B.
     assert!(comfort.rula.unwrap().neck_trunk_legs >= 2);
     assert_eq!(plan.human.unwrap().lean_deg, 10.0);
-    // The same plan is another one to a scenario without saturation.
+    // Without saturation the plan's comfort is different.
     loaded.scenario.comfort.saturation_m = None;
     assert!(flaws(&plan, &loaded)[0].starts_with("comfort.peripersonal_m is"));
 }

@@ -8,7 +8,7 @@
 //!        \______ R_SU ________/
 //! ```
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::body::Body;
 use crate::model::frames::Pose;
@@ -16,9 +16,6 @@ use crate::model::frames::Pose;
 /// Joint angles of the working arm, rad, positive towards: shoulder flexion, abduction, internal rotation, elbow flexion,
 /// pronation, wrist flexion, ulnar deviation. For a left-handed person those of the mirrored right arm.
 pub type ArmAngles = [f64; 7];
-
-/// Geometric Jacobian: rows are the velocity of a point, m/s, then the angular velocity, rad/s; columns are the joints.
-pub type ArmJacobian = SMatrix<f64, 6, 7>;
 
 /// A right arm that holds a tool.
 #[derive(Clone, Debug)]
@@ -136,20 +133,6 @@ impl Arm {
     pub fn tool_pose_b(&self, q_rad: &ArmAngles) -> Pose {
         self.hand_pose_b(q_rad) * self.x_ht
     }
-
-    /// Geometric Jacobian at the tool tip in B axes: column i is `(a_i x (p_T - o_i); a_i)` with the joint's axis `a_i`
-    /// through `o_i`.
-    pub fn jacobian_b(&self, q_rad: &ArmAngles) -> ArmJacobian {
-        let frames = self.frames(q_rad);
-        let p_bt_m = frames.hand_point_b(&self.x_ht.translation.vector);
-        let mut jacobian = ArmJacobian::zeros();
-        for (joint, axis) in frames.axes_b.iter().enumerate() {
-            let linear = axis.cross(&(p_bt_m - frames.joint_origin_m(joint)));
-            jacobian.fixed_view_mut::<3, 1>(0, joint).copy_from(&linear);
-            jacobian.fixed_view_mut::<3, 1>(3, joint).copy_from(axis);
-        }
-        jacobian
-    }
 }
 
 /// The axes of a frame that is rotated about its own axes in sequence; cheaper than matrix products.
@@ -187,6 +170,23 @@ fn turned(first: &Vector3<f64>, second: &Vector3<f64>, angle_rad: f64) -> (Vecto
     // libm, not std: the same bits on every platform.
     let (sin, cos) = libm::sincos(angle_rad);
     (first * cos + second * sin, second * cos - first * sin)
+}
+
+#[cfg(test)]
+impl Arm {
+    /// Geometric Jacobian at the tool tip in B axes: column i is `(a_i x (p_T - o_i); a_i)` with the joint's axis `a_i`
+    /// through `o_i`.
+    pub(super) fn jacobian_b(&self, q_rad: &ArmAngles) -> nalgebra::SMatrix<f64, 6, 7> {
+        let frames = self.frames(q_rad);
+        let p_bt_m = frames.hand_point_b(&self.x_ht.translation.vector);
+        let mut jacobian = nalgebra::SMatrix::<f64, 6, 7>::zeros();
+        for (joint, axis) in frames.axes_b.iter().enumerate() {
+            let linear = axis.cross(&(p_bt_m - frames.joint_origin_m(joint)));
+            jacobian.fixed_view_mut::<3, 1>(0, joint).copy_from(&linear);
+            jacobian.fixed_view_mut::<3, 1>(3, joint).copy_from(axis);
+        }
+        jacobian
+    }
 }
 
 #[cfg(test)]

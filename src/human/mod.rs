@@ -34,7 +34,7 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use arm::{Arm, ArmAngles, ArmFrames, ArmJacobian};
+pub use arm::{Arm, ArmAngles, ArmFrames};
 pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use gradient::{ArmAxes, MuscularGradient};
 pub use muscular::{JointTorques, Muscular};
@@ -155,11 +155,6 @@ impl Human {
     /// The solutions of both shoulder branches for the tool pose `x_bt` at a swivel, within the joint limits.
     pub fn arm_solutions(&self, x_bt: &Pose, swivel_rad: f64) -> ArmSolutions {
         self.swivel_circle(x_bt).map_or_else(ArmSolutions::new, |circle| circle.solutions(swivel_rad))
-    }
-
-    /// The intervals of the swivel with solutions for the tool pose `x_bt`, by shoulder branch.
-    pub fn swivel_intervals(&self, x_bt: &Pose) -> SwivelIntervals {
-        self.swivel_circle(x_bt).map_or_else(SwivelIntervals::new, |circle| circle.intervals())
     }
 
     /// The swivel angle of a posture, rad, in [-pi, pi].

@@ -79,7 +79,7 @@ proptest! {
         let q_rad = posture(&left, fractions);
         let x_bt = left.tool_pose_b(&q_rad);
         let swivel_rad = left.swivel_rad(&q_rad);
-        let covered = left.swivel_intervals(&x_bt).iter().any(|interval| {
+        let covered = left.swivel_circle(&x_bt).unwrap().intervals().iter().any(|interval| {
             // Sampled fractions include postures on a limit, at the very end of a range.
             (swivel_rad - interval.from_rad + 1e-6).rem_euclid(2.0 * PI) <= interval.to_rad - interval.from_rad + 2e-6
         });

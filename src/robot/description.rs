@@ -17,14 +17,14 @@ pub(super) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The error at a place of this text.
+    /// An error at a position of this text.
     pub fn error(&self, span: Range<usize>, problem: &str) -> RobotError {
         let line = 1 + self.text.bytes().take(span.start).filter(|&byte| byte == b'\n').count();
         RobotError::Invalid { file: self.file.into(), problem: format!("line {line}: {problem}") }
     }
 }
 
-/// A description file, as written.
+/// A description file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Description {
@@ -37,7 +37,7 @@ pub(super) struct Description {
     pub body_points: Spanned<Vec<PointEntry>>,
 }
 
-/// An arm, as written.
+/// An arm entry.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ArmEntry {
@@ -50,7 +50,7 @@ pub(super) struct ArmEntry {
     pub gripper: GripperEntry,
 }
 
-/// A gripper, as written.
+/// A gripper entry.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GripperEntry {
@@ -63,7 +63,7 @@ pub(super) struct GripperEntry {
     pub fingers: Spanned<[FingerEntry; 2]>,
 }
 
-/// A finger, as written.
+/// A finger entry.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FingerEntry {
@@ -72,7 +72,7 @@ pub(super) struct FingerEntry {
     pub pad_link: Spanned<String>,
 }
 
-/// A point on the robot's surface, as written.
+/// An entry of a point on the robot's surface.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointEntry {

@@ -1,24 +1,24 @@
 //! The closed form for seven joints whose axes intersect in pairs.
 //!
 //! The joints S0 S1 E0 E1 W0 W1 W2 have axes z, a1, f, y, d, a, Z, each normal to the next; S1 meets E0, E1 meets W0,
-//! W1 meets W2. Three offsets keep shoulder, elbow and wrist from being spherical:
+//! W1 meets W2. With three offsets, shoulder, elbow and wrist are not spherical:
 //!
 //! ```text
 //! r_E = A u + r,   r = L1 f + B x_E       the elbow from the shoulder's axis z, at the height of a1
 //! r_M = r_E + L2 d + C (a x d)            the wrist, where W1 meets W2
 //! ```
 //!
-//! with `u = a1 x z` and `x_E = y x f`. The target gives the wrist `r_M` and the axes `X, Y, Z` of its frame M. One
-//! joint is free; with W1 chosen, W2 and S0 are bound by one equation, the length of the upper arm:
+//! with `u = a1 x z` and `x_E = y x f`. The target determines the wrist `r_M` and the axes `X, Y, Z` of its frame M. One joint
+//! is free; for a given W1, one equation relates W2 and S0, the length of the upper arm:
 //!
 //! ```text
 //! c0 = r_M - (C sin w1 + L2 cos w1) Z     k = C cos w1 - L2 sin w1     b(w2) = X cos w2 - Y sin w2
 //! |q - k b(w2)|^2 = L1^2 + B^2,  q(s0) = c0 - A u(s0)
 //! ```
 //!
-//! so that each S0 leaves at most two W2, in closed form. Then `r = q - k b` and the forearm's direction `d` are known,
-//! the elbow's axis is one of `+-(r x d) / |r x d|`, and what is left is one residual, `f . a1 = 0`, whose zeros along
-//! S0 are the solutions of the slice. The angles follow by `atan2`.
+//! Each S0 has at most two W2, in closed form. They give `r = q - k b`, the forearm's direction `d`, and the elbow's axis, one
+//! of `+-(r x d) / |r x d|`. The zeros along S0 of the remaining residual `f . a1 = 0` are the solutions of the slice. The
+//! angles follow by `atan2`.
 
 use std::f64::consts::TAU;
 
@@ -33,13 +33,13 @@ use super::{
 };
 use crate::{model::frames::Pose, robot::chain::Chain};
 
-/// How far a closed-form angle may be beyond its limit before the polishing clamps it, rad: its own rounding.
+/// Tolerance of limits for angles of the closed form before Newton's method clamps them, rad: rounding.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
-/// An arm is nearly stretched when the wrist is farther away than this share of its length.
+/// Fraction of the arm's length beyond which the arm counts as nearly stretched.
 const NEARLY_STRETCHED: f64 = 0.93;
 
-/// The joint that is chosen freely: W1.
+/// The free joint: W1.
 pub(super) const FREE_JOINT: usize = 5;
 
 /// The inverse kinematics of a chain of this structure.
@@ -55,28 +55,27 @@ impl ClosedForm {
         Some(Self { general: General::new(chain), geometry: Geometry::new(chain)? })
     }
 
-    /// The search for the same chain.
+    /// The general solver of the same chain.
     pub(super) fn general(&self) -> &General {
         &self.general
     }
 
-    /// The range of the formulas' S0 that the limits leave, at most one turn, rad.
+    /// The range of S0 within its limits, at most one turn, rad.
     pub(super) fn s0_range(&self) -> [f64; 2] {
         let chain = self.general.chain();
         [chain.lower()[0], chain.upper()[0].min(chain.lower()[0] + std::f64::consts::TAU)]
     }
 
-    /// The solutions over the self-motion of the arm: those of `slices` angles of the joint W1, evenly spread over its
-    /// range, in that order.
+    /// Samples of the self-motion: the solutions at `slices` angles of the joint W1, evenly spread over its range, in order.
     pub fn manifold(&self, target: &Pose, slices: usize) -> Vec<Vec<f64>> {
         let (lower, upper) = (self.general.chain().lower()[FREE_JOINT], self.general.chain().upper()[FREE_JOINT]);
         let angle = |number: usize| lower + (upper - lower) * (number as f64 + 0.5) / slices as f64;
         (0..slices).flat_map(|number| self.slice(target, angle(number))).collect()
     }
 
-    /// All solutions within limits that have the joint W1 at `w1_rad`, but for pairs that nearly coincide, which
-    /// [`ClosedForm::branches`] finds. Empty when
-    /// there are none, when the target is not finite, and at the one angle (k = 0) at which W2 does not move the elbow.
+    /// All solutions within limits with the joint W1 at `w1_rad`. May miss pairs that nearly coincide, which
+    /// [`ClosedForm::branches`] finds. Empty if there are none, if the target is not finite, and at the one angle (k = 0) at
+    /// which W2 does not move the elbow.
     pub fn slice(&self, target: &Pose, w1_rad: f64) -> Vec<Vec<f64>> {
         if !is_finite(target) || !w1_rad.is_finite() {
             return Vec::new();
@@ -90,14 +89,14 @@ impl ClosedForm {
         solutions
     }
 
-    /// The solutions with the joint W1 at `w1_rad`, whatever the limits of the others; good to about 1e-4 rad.
+    /// The solutions with the joint W1 at `w1_rad`, without limits of the others, to about 1e-4 rad.
     pub(super) fn unlimited_slice(&self, target: &Pose, w1_rad: f64) -> Vec<Angles> {
         let slice = Slice::new(&self.geometry, target, w1_rad);
         let zeros = slice.zeros([-std::f64::consts::PI, std::f64::consts::PI]);
         zeros.iter().filter_map(|zero| self.unlimited_angles(&slice, zero)).collect()
     }
 
-    /// The joint angles at a zero of the residual; none when one is beyond its limits.
+    /// The joint angles at a zero of the residual; `None` if one is beyond its limits.
     fn angles(&self, slice: &Slice, zero: &Zero) -> Option<Vec<f64>> {
         let chain = self.general.chain();
         let limits = chain.lower().iter().zip(chain.upper());
@@ -105,16 +104,16 @@ impl ClosedForm {
         angles.iter().zip(limits).map(|(angle, (lower, upper))| turned_into(*angle, *lower, *upper)).collect()
     }
 
-    /// The joint angles at a zero of the residual, but for whole turns.
+    /// The joint angles at a zero of the residual, modulo full turns.
     fn unlimited_angles(&self, slice: &Slice, zero: &Zero) -> Option<Angles> {
         let at = slice.elbow(zero.s0, zero.w2_sign);
         let m = at.r.cross(&at.d).norm();
-        // At m = 0 the arm is stretched and the elbow's axis undefined: the neighbouring slices stand for this one.
+        // At m = 0 the arm is stretched and the elbow's axis undefined. Neighbouring slices cover this case.
         let y = at.r.cross(&at.d) * (zero.elbow_sign / (m > 0.0).then_some(m)?);
         Some(self.angles_at(slice, zero.s0, [slice.w1, at.w2()], [&at.r, &at.d, &y]))
     }
 
-    /// The joint angles when S0, the wrist (W1 and W2), r, d and the elbow's axis y are known.
+    /// The joint angles from S0, the wrist (W1 and W2), r, d and the elbow's axis y.
     fn angles_at(&self, slice: &Slice, s0: f64, [w1, w2]: [f64; 2], [r, d, y]: [&Vector3<f64>; 3]) -> Angles {
         let (u, a1) = (Vector3::new(s0.cos(), s0.sin(), 0.0), Vector3::new(-s0.sin(), s0.cos(), 0.0));
         let [l1, b] = self.geometry.upper_arm_m;
@@ -130,9 +129,8 @@ impl ClosedForm {
         Angles::from([s0, s1, e0, e1, w0, w1, w2]) - Angles::from(self.geometry.offset_rad)
     }
 
-    /// Postures near the target in which the arm is stretched, r along d, when the target is that far. There the whole
-    /// upper arm turns about r while W1 hardly moves, so that slices may miss it. `turns` postures for each way in which
-    /// shoulder and wrist can point.
+    /// Stretched postures (r along d) near a far target. There the upper arm rotates about r while W1 hardly moves, so slices may
+    /// miss the curve. `turns` postures per configuration of shoulder and wrist.
     pub(super) fn stretched(&self, target: &Pose, turns: usize) -> Vec<Angles> {
         let frame = Slice::new(&self.geometry, target, 0.0);
         let wrist = frame.wrist();
@@ -161,7 +159,7 @@ impl ClosedForm {
     }
 }
 
-/// The angle plus whole turns that lies within the limits, if there is one, rad.
+/// The angle plus full turns that is within the limits, if there is one, rad.
 fn turned_into(angle: f64, lower: f64, upper: f64) -> Option<f64> {
     let turn = std::f64::consts::TAU;
     let least = angle + ((lower - LIMIT_TOLERANCE_RAD - angle) / turn).ceil() * turn;

@@ -4,14 +4,14 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::{model::frames::Pose, robot::chain::Chain};
 
-/// How far axes may be from normal and intersecting (1, m): quarter turns written with five decimals leave 4e-6. The
-/// polishing takes out what that does to the angles.
+/// Tolerance of normal (1) and intersecting (m) axes: quarter turns with five decimals have an error of 4e-6. Newton's method
+/// removes the resulting error of the angles.
 const STRUCTURE_TOLERANCE: f64 = 1e-5;
 
-/// An offset of the shoulder below this leaves nothing to turn about, m.
+/// Minimum shoulder offset of the closed form, m.
 const MIN_SHOULDER_OFFSET_M: f64 = 1e-3;
 
-/// The parameters of the closed form, by its symbols.
+/// The parameters of the closed form.
 #[derive(Clone, Debug)]
 pub(super) struct Geometry {
     /// The shoulder's frame in W: on the axis of S0 at the height of S1; z along S0, y along S1 at zero angles.
@@ -24,7 +24,7 @@ pub(super) struct Geometry {
     pub upper_arm_m: [f64; 2],
     /// L2 and C, m.
     pub forearm_m: [f64; 2],
-    /// What a joint's angle is short of the angle in the formulas, rad.
+    /// Angles of the formulas minus joint angles, rad.
     pub offset_rad: [f64; 7],
 }
 
@@ -43,7 +43,7 @@ impl ZeroPosture {
         normal.then_some(Self { axes, origins: origins.try_into().ok()? })
     }
 
-    /// Where two axes that are normal to each other meet; none when they pass each other.
+    /// Intersection of two axes that are normal to each other; `None` if they do not intersect.
     fn meeting(&self, first: usize, second: usize) -> Option<Vector3<f64>> {
         let (along_first, along_second) = (self.axes[first], self.axes[second]);
         let between = self.origins[second] - self.origins[first];
@@ -94,9 +94,9 @@ impl Geometry {
     }
 }
 
-/// A frame of these axes.
+/// A frame with these axes.
 fn frame(origin: Vector3<f64>, axes: [Vector3<f64>; 3]) -> Pose {
-    // Axes that are normal only within the structure's tolerance need a proper rotation.
+    // Orthonormalises axes that are normal only within the tolerance.
     let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&Matrix3::from_columns(&axes)));
     Isometry3::from_parts(origin.into(), rotation)
 }
