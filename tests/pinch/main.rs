@@ -9,6 +9,7 @@ mod holds;
 mod loads;
 mod patch;
 mod person;
+mod prediction;
 
 use std::{ops::AddAssign, thread};
 

@@ -48,9 +48,9 @@ fn chains() -> &'static [Chain; 2] {
 
 /// Baxter with a fixed joint in its left arm: six joints, no closed form.
 fn six_joint_chain() -> Chain {
-    let urdf = include_str!("../assets/baxter.urdf");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let fixed = urdf.replace("<joint name=\"left_e0\" type=\"revolute\">", "<joint name=\"left_e0\" type=\"fixed\">");
-    let description = include_str!("../assets/baxter.toml");
+    let description = include_str!("../../assets/baxter.toml");
     // The left arm is described first: its lists lose their third entry.
     let description = description
         .replacen(" \"left_e0\",", "", 1)
@@ -96,7 +96,7 @@ fn the_closed_form_is_chosen_by_geometry() {
 
 #[test]
 fn the_closed_form_reads_its_parameters_from_the_chain() {
-    let urdf = include_str!("../assets/baxter.urdf");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let rounded = urdf.replace("1.5707963267948966", "1.5708");
     let elbow = "<joint name=\"left_e1\" type=\"revolute\">";
     let at = urdf.find(elbow).unwrap();
@@ -112,7 +112,7 @@ fn the_closed_form_reads_its_parameters_from_the_chain() {
     {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("baxter.urdf"), urdf).unwrap();
-        std::fs::write(folder.path().join("baxter.toml"), include_str!("../assets/baxter.toml")).unwrap();
+        std::fs::write(folder.path().join("baxter.toml"), include_str!("../../assets/baxter.toml")).unwrap();
         let robot = Robot::load("baxter.toml", folder.path()).unwrap();
         let chain = Chain::new(&robot, 0, 0.0);
         let target = chain.gripper_pose(&q_rad);

@@ -1,5 +1,5 @@
 //! The text of every message. The expected texts are in `tests/snapshots`; after an intended change,
-//! `INSTA_UPDATE=always cargo test --release --test messages` updates them.
+//! `INSTA_UPDATE=always cargo test --release --test cli messages` updates them.
 
 #![cfg(feature = "recording")]
 
@@ -10,8 +10,8 @@ use std::{
 };
 
 /// A scenario that names a plan, so that it runs within a second.
-const SCENARIO: &str = include_str!("../scenarios/fails-weak-grip.toml");
-const PLAN: &str = include_str!("../scenarios/plans/cut-rim-weak-grip.json");
+const SCENARIO: &str = include_str!("../../scenarios/fails-weak-grip.toml");
+const PLAN: &str = include_str!("../../scenarios/plans/cut-rim-weak-grip.json");
 
 /// A folder with scenarios of these names and expectations.
 fn folder(names: &[(&str, &str)]) -> tempfile::TempDir {
@@ -71,6 +71,7 @@ fn without_times(text: &str) -> String {
 fn assert_seen(name: &str, folder: &Path, arguments: &[&str]) {
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
+    settings.set_snapshot_path("../snapshots");
     settings.set_omit_expression(true);
     settings.bind(|| insta::assert_snapshot!(name, seen(folder, arguments)));
 }

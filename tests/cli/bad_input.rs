@@ -167,7 +167,7 @@ fn a_format_from_the_future() {
     );
 }
 
-const PLAN: &str = include_str!("../scenarios/plans/cut-rim.json");
+const PLAN: &str = include_str!("../../scenarios/plans/cut-rim.json");
 
 /// Asserts that a plan with one replacement is refused with this message.
 #[track_caller]

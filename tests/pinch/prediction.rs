@@ -1,5 +1,5 @@
 //! Predictions of the statics against the simulation for ten plans: five cuts and five drills on the foam board
-//! (docs/method.md#24-board). `cargo test --release --test prediction -- --nocapture` prints both tables.
+//! (docs/method.md#24-board). `cargo test --release --test pinch prediction -- --nocapture` prints both tables.
 
 use std::{convert::Infallible, fs, path::Path, thread};
 

@@ -53,7 +53,7 @@ fn reference() -> [(&'static str, Vec<Sample>); 2] {
 
 /// Baxter without the masses of its grippers: the `inertial` elements of all links of the grippers are cut out.
 fn baxter_without_gripper_masses() -> Robot {
-    let urdf = include_str!("../assets/baxter.urdf");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let mut stripped = String::new();
     let (mut in_gripper, mut in_inertial) = (false, false);
     for line in urdf.lines() {
@@ -69,7 +69,7 @@ fn baxter_without_gripper_masses() -> Robot {
     }
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("baxter.urdf"), stripped).unwrap();
-    std::fs::write(folder.path().join("bare.toml"), include_str!("../assets/baxter.toml")).unwrap();
+    std::fs::write(folder.path().join("bare.toml"), include_str!("../../assets/baxter.toml")).unwrap();
     Robot::load("bare.toml", folder.path()).unwrap()
 }
 

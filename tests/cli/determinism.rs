@@ -16,7 +16,7 @@ use serde_json::Value;
 /// run in release; this checks a build without optimisation:
 ///
 /// ```sh
-/// cargo test --no-default-features --features cli --test determinism a_short_hold
+/// cargo test --no-default-features --features cli --test cli a_short_hold
 /// ```
 ///
 /// After an intended change of the simulation, copy the new value from the failing test.

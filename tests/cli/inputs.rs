@@ -9,8 +9,8 @@ use std::{
 
 use tempfile::TempDir;
 
-const CUT: &str = include_str!("../scenarios/cut-rim.toml");
-const PLAN: &str = include_str!("../scenarios/plans/cut-rim.json");
+const CUT: &str = include_str!("../../scenarios/cut-rim.toml");
+const PLAN: &str = include_str!("../../scenarios/plans/cut-rim.json");
 
 /// A folder with these files.
 fn folder(files: &[(&str, &str)]) -> TempDir {
@@ -114,8 +114,8 @@ fn run_does_not_overwrite_its_inputs() {
 
 #[test]
 fn the_files_of_a_robot_are_inputs() {
-    let robot = include_str!("../assets/baxter.toml");
-    let urdf = include_str!("../assets/baxter.urdf");
+    let robot = include_str!("../../assets/baxter.toml");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let scenario = format!("{CUT}\n[robot]\ndescription = \"my-robot.toml\"\n");
     let files = [("cut.toml", &*scenario), ("my-robot.toml", robot), ("baxter.urdf", urdf)];
     assert_refused(&files, &["run", "cut.toml", "--junit", "my-robot.toml"], "my-robot.toml");

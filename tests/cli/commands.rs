@@ -103,8 +103,8 @@ fn a_closed_pipe_is_not_an_error() {
     assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-const CUT: &str = include_str!("../scenarios/plans/cut-rim.json");
-const LEVER: &str = include_str!("../scenarios/plans/long-lever.json");
+const CUT: &str = include_str!("../../scenarios/plans/cut-rim.json");
+const LEVER: &str = include_str!("../../scenarios/plans/long-lever.json");
 
 /// The verdict on a changed plan, and the exit code of `simulate`.
 fn verdict_on_changed_plan(plan: &str, change: impl FnOnce(&mut Value)) -> (Value, Option<i32>) {

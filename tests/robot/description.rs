@@ -4,8 +4,8 @@ use std::path::Path;
 
 use benchdog::robot::{Chain, Robot, RobotError};
 
-const DESCRIPTION: &str = include_str!("../assets/baxter.toml");
-const URDF: &str = include_str!("../assets/baxter.urdf");
+const DESCRIPTION: &str = include_str!("../../assets/baxter.toml");
+const URDF: &str = include_str!("../../assets/baxter.urdf");
 
 fn load(description: &str, urdf: &str) -> Result<Robot, RobotError> {
     let folder = tempfile::tempdir().unwrap();

@@ -1,0 +1,12 @@
+//! The binary: its commands, files, messages and exit codes.
+
+mod bad_input;
+mod commands;
+mod determinism;
+mod inputs;
+mod margin_and_export;
+mod messages;
+mod reports;
+mod reproduce;
+mod scenarios;
+mod schemas;

@@ -1,0 +1,7 @@
+//! The robot model: description files, kinematics and dynamics against a reference, inverse kinematics, collisions.
+
+mod collision;
+mod description;
+mod inverse_kinematics;
+mod reference;
+mod self_motion;
