@@ -1,5 +1,9 @@
 //! The binary: its commands, files, messages and exit codes.
 
+#[path = "../common/mod.rs"]
+mod common;
+mod process;
+
 mod bad_input;
 mod commands;
 mod determinism;

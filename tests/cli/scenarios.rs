@@ -1,38 +1,29 @@
 //! Every file in `scenarios/` meets its expectation.
 
-use std::{collections::BTreeMap, fs, path::PathBuf, process::Command};
+use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-fn scenario_files() -> Vec<PathBuf> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let mut files: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .collect();
-    files.sort();
-    files
-}
+use crate::{
+    common::root,
+    process::{argument, benchdog, printed_json},
+};
 
 #[test]
 fn every_scenario_meets_its_expectation() {
-    let files = scenario_files();
     let out = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_benchdog"))
-        .args(["run", "--format", "json", "--record", "never", "--out"])
-        .arg(out.path())
-        .args(&files)
-        .output()
-        .unwrap();
-    let verdicts: Vec<Value> = serde_json::from_slice(&output.stdout)
-        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&output.stderr)));
-    assert_eq!(verdicts.len(), files.len());
-    for verdict in &verdicts {
+    let files = std::fs::read_dir(root().join("scenarios")).unwrap().map(|entry| entry.unwrap().path());
+    let scenarios = files.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).count();
+    let arguments = ["run", "scenarios", "--format", "json", "--record", "never", "--out", argument(out.path())];
+    let output = benchdog(root(), &arguments);
+    let verdicts = printed_json(&output);
+    let verdicts = verdicts.as_array().unwrap();
+    assert_eq!(verdicts.len(), scenarios);
+    for verdict in verdicts {
         assert_eq!(verdict["met"], true, "{verdict:#}");
     }
     assert_eq!(output.status.code(), Some(0));
-    assert_reasons_differ(&verdicts);
+    assert_reasons_differ(verdicts);
 }
 
 /// Asserts that the scenarios show successes and several kinds of failure.

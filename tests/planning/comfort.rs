@@ -1,39 +1,15 @@
 //! How a scenario's `[comfort]` and the person's lean reach the plan and the check of it.
 
-use std::path::Path;
+use benchdog::model::{plan::MeanComfort, scenario::ResponseKind};
 
-use benchdog::{
-    model::{
-        plan::{MeanComfort, Plan},
-        scenario::ResponseKind,
-    },
-    planner::{self, Outcome, Planner},
-    robot::Robot,
-    scenario::{self, LoadedScenario},
-};
-
-fn cut() -> LoadedScenario {
-    scenario::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/cut-rim.toml")).unwrap()
-}
-
-fn plan(loaded: &LoadedScenario) -> Plan {
-    match Planner::new(&loaded.robot).plan(&loaded.scenario).unwrap() {
-        Outcome::Found(plan) => plan,
-        Outcome::Infeasible(why) => panic!("{why}"),
-    }
-}
-
-fn flaws(plan: &Plan, loaded: &LoadedScenario) -> Vec<String> {
-    let robot: &Robot = &loaded.robot;
-    planner::verify(plan, &loaded.scenario, robot).iter().map(ToString::to_string).collect()
-}
+use crate::shared::{fast, flaws, plan, verified};
 
 #[test]
 fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
-    let mut loaded = cut();
-    loaded.scenario.comfort.person = ResponseKind::Mean;
-    let plan = plan(&loaded);
-    assert_eq!(flaws(&plan, &loaded), [""; 0]);
+    let mut scenario = fast("cut-rim");
+    scenario.comfort.person = ResponseKind::Mean;
+    let plan = plan(&scenario);
+    verified(&plan, &scenario);
     let comfort = plan.comfort.unwrap();
     let MeanComfort { responses, muscular_regularised, peripersonal_m } = comfort.average.unwrap();
     assert!(responses > 100);
@@ -46,16 +22,16 @@ fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
     let mut spoiled = plan;
     let average = MeanComfort { responses, muscular_regularised: 1.01 * muscular_regularised, peripersonal_m };
     spoiled.comfort.as_mut().unwrap().average = Some(average);
-    assert!(flaws(&spoiled, &loaded)[0].starts_with("comfort.average.muscular_regularised is"));
+    assert!(flaws(&spoiled, &scenario)[0].starts_with("comfort.average.muscular_regularised is"));
 }
 
 #[test]
 fn a_saturated_metric_and_a_leaning_person_pass_the_check() {
-    let mut loaded = cut();
-    loaded.scenario.comfort.saturation_m = Some(0.4);
-    loaded.scenario.human.lean_deg = 10.0;
-    let plan = plan(&loaded);
-    assert_eq!(flaws(&plan, &loaded), [""; 0]);
+    let mut scenario = fast("cut-rim");
+    scenario.comfort.saturation_m = Some(0.4);
+    scenario.human.lean_deg = 10.0;
+    let plan = plan(&scenario);
+    verified(&plan, &scenario);
     let comfort = plan.comfort.unwrap();
     assert!(comfort.peripersonal_m <= 0.4);
     assert_eq!(comfort.peripersonal_scaled, Some(64.0 * comfort.peripersonal_m));
@@ -63,6 +39,6 @@ fn a_saturated_metric_and_a_leaning_person_pass_the_check() {
     assert!(comfort.rula.unwrap().neck_trunk_legs >= 2);
     assert_eq!(plan.human.unwrap().lean_deg, 10.0);
     // The same plan is another one to a scenario without saturation.
-    loaded.scenario.comfort.saturation_m = None;
-    assert!(flaws(&plan, &loaded)[0].starts_with("comfort.peripersonal_m is"));
+    scenario.comfort.saturation_m = None;
+    assert!(flaws(&plan, &scenario)[0].starts_with("comfort.peripersonal_m is"));
 }

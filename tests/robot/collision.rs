@@ -1,8 +1,6 @@
 //! Collision checks of the built-in Baxter: distances worked out by hand, and every pair of primitives compared without
 //! a broad phase.
 
-use std::{path::Path, sync::LazyLock};
-
 use benchdog::{
     collision::{Body, CollisionModel, PersonClearance, PersonPart, Scene},
     human::{BodyPart, Side},
@@ -18,15 +16,12 @@ use parry3d_f64::{
 };
 use proptest::prelude::*;
 
+use crate::common::baxter;
+
 const BOARD_SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
 
 /// The angles at which the maker parks the arms, rad: the elbows bent, the forearms level.
 const NEUTRAL_RAD: [f64; 7] = [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0];
-
-fn baxter() -> &'static Robot {
-    static BAXTER: LazyLock<Robot> = LazyLock::new(|| Robot::load("baxter", Path::new(".")).unwrap());
-    &BAXTER
-}
 
 fn link_poses(robot: &Robot, left_rad: &[f64], right_rad: &[f64]) -> Vec<Pose> {
     let state =

@@ -1,5 +1,9 @@
 //! The robot model: description files, kinematics and dynamics against a reference, inverse kinematics, collisions.
 
+mod chains;
+#[path = "../common/mod.rs"]
+mod common;
+
 mod collision;
 mod description;
 mod inverse_kinematics;
