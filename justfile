@@ -31,7 +31,7 @@ schemas:
 
 # Write the expected messages under tests/snapshots again after a change that is meant
 snapshots:
-    INSTA_UPDATE=always cargo test --release --test messages
+    INSTA_UPDATE=always cargo test --release --test cli messages
 
 # Licences, duplicate crates and sources of the dependencies (needs cargo-deny)
 deny:

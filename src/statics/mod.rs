@@ -15,7 +15,7 @@
 //!
 //! # Accuracy
 //! Ten plans of `benchdog plan` for the foam board (docs/method.md#24-board) against the simulation
-//! (`tests/prediction.rs`): five points of the circle cut with 30 N, five of the grid drilled with 15 N. Deflection at
+//! (`tests/pinch/prediction.rs`): five points of the circle cut with 30 N, five of the grid drilled with 15 N. Deflection at
 //! a tenth of the load, and the load factor at failure with the limit that ends it; the simulation's by bisection to
 //! 0.1 %.
 //!

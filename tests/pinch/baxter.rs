@@ -1,7 +1,5 @@
 //! Baxter holding a board by two opposite edges, its worked face towards the person.
 
-use std::path::Path;
-
 use benchdog::{
     model::{
         FORMAT,
@@ -20,10 +18,6 @@ use rand::{RngExt, SeedableRng};
 /// The foam board of docs/method.md#24-board, m and kg.
 const BOARD_M: [f64; 3] = [0.50, 0.40, 0.030];
 pub const BOARD_KG: f64 = 0.21;
-
-pub fn robot() -> Robot {
-    Robot::load("baxter", Path::new(".")).unwrap()
-}
 
 /// The twist in W axes from one pose to another: displacement of the origin, then rotation vector.
 fn twist_between(from: &Pose, to: &Pose) -> Vector6<f64> {

@@ -173,7 +173,7 @@ impl Bench {
 
     pub fn new(robot: &Robot, plan: &Plan, friction: f64) -> Self {
         let settings = SimulationSettings { timestep_s: TIMESTEP_S, ..SimulationSettings::default() };
-        let scene = SimScene::new(&crate::checked(robot, plan), &Conditions::new(friction, settings)).unwrap();
+        let scene = SimScene::new(&crate::common::checked(robot, plan), &Conditions::new(friction, settings)).unwrap();
         Self { scene, sample: blank_sample(plan) }
     }
 

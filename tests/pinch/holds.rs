@@ -1,7 +1,5 @@
 //! Whole simulations: the ten plans of `tests/data/holds`, and properties of every simulation.
 
-use std::{fs, path::Path};
-
 use benchdog::{
     judge::{Judgement, judge},
     model::{
@@ -13,7 +11,6 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::Robot,
-    scenario::read_plan,
     sim::Conditions,
     statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace},
 };
@@ -23,26 +20,21 @@ use rand::{RngExt, SeedableRng};
 use crate::{
     THICKNESS_M,
     baxter::{self, BOARD_KG},
-    checked, simulate,
+    common::{self, checked, ten_plans},
+    simulate,
 };
 
-const FRICTION: f64 = 0.6;
+/// The default friction of the pads.
+pub const FRICTION: f64 = 0.6;
 
-const SETTINGS: SimulationSettings =
+/// The default settings without the release, which is not judged.
+pub const SETTINGS: SimulationSettings =
     SimulationSettings { settle_s: 0.5, ramp_s: 1.0, hold_s: 1.0, release_s: 0.0, timestep_s: 0.002 };
 
-fn limits(kind: OperationKind) -> Limits {
+/// docs/method.md#810-default-limits.
+pub fn limits(kind: OperationKind) -> Limits {
     let deflection_mm = if kind == OperationKind::Drill { 5.0 } else { 15.0 };
     Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 }
-}
-
-fn plans() -> (Robot, Vec<Plan>) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/holds");
-    let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let (_, robot) = read_plan(&paths[0], None).unwrap();
-    let plans = paths.iter().map(|path| read_plan(path, Some(&robot)).unwrap().0).collect();
-    (robot, plans)
 }
 
 fn judged(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Judgement {
@@ -80,20 +72,19 @@ fn differences(robot: &Robot, plan: &Plan) -> Vec<String> {
 
 #[test]
 fn a_quarter_of_the_time_step_changes_little() {
-    let (robot, plans) = plans();
-    let too_far: Vec<String> = plans.iter().flat_map(|plan| differences(&robot, plan)).collect();
+    let too_far: Vec<String> = ten_plans().iter().flat_map(|plan| differences(common::baxter(), plan)).collect();
     assert!(too_far.is_empty(), "{too_far:#?}");
 }
 
 #[test]
 fn ten_times_the_certificates_load_always_fails() {
-    let (robot, plans) = plans();
-    for plan in plans {
-        let hold = ContactModel::of_plan(&checked(&robot, &plan), FRICTION).unwrap();
+    let robot = common::baxter();
+    for plan in ten_plans() {
+        let hold = ContactModel::of_plan(&checked(robot, &plan), FRICTION).unwrap();
         let found = StabilityWorkspace::new().load_factor(&hold).unwrap();
         let LoadFactorOutcome::Solved(certificate) = found else { panic!("{}: {found:?}", plan.name) };
         let conditions = Conditions::new(FRICTION, SETTINGS).scaled(10.0 * certificate.load_factor);
-        let judgement = judged(&robot, &plan, &conditions);
+        let judgement = judged(robot, &plan, &conditions);
         println!("{}: {} {:?}", plan.name, judgement.verdict, judgement.first_failure);
         // Under such a load the engine may break down, but only after a limit that determines the verdict.
         assert!(judgement.first_failure.is_some(), "{}: {} {:?}", plan.name, judgement.verdict, judgement.reason);
@@ -103,10 +94,10 @@ fn ten_times_the_certificates_load_always_fails() {
 
 #[test]
 fn a_board_without_a_load_stays_for_a_minute() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, Operation::drill([0.0, 0.0], 15.0, THICKNESS_M), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, Operation::drill([0.0, 0.0], 15.0, THICKNESS_M), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 1.0, ramp_s: 1.0, hold_s: 59.0, ..SETTINGS };
-    let judgement = judged(&robot, &plan, &Conditions::new(FRICTION, settings).scaled(0.0));
+    let judgement = judged(robot, &plan, &Conditions::new(FRICTION, settings).scaled(0.0));
     assert_eq!(judgement.verdict, VerdictKind::Holds);
     for kind in [CheckKind::Slip, CheckKind::Deflection] {
         println!("{kind} after a minute: {:e} mm", value(&judgement, kind));
@@ -140,10 +131,10 @@ fn random_load(draw: &mut impl FnMut(f64, f64) -> f64) -> Load {
 
 #[test]
 fn two_hundred_random_scenarios_end_with_a_judgement() {
-    let robot = baxter::robot();
+    let robot = common::baxter();
     let mut random = rand_pcg::Pcg64::seed_from_u64(7);
     let mut draw = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
-    let still = baxter::plan(&robot, Operation::drill([0.0, 0.0], 15.0, THICKNESS_M), BOARD_KG, 30.0);
+    let still = baxter::plan(robot, Operation::drill([0.0, 0.0], 15.0, THICKNESS_M), BOARD_KG, 30.0);
     let (mut holds, mut without_verdict) = (0, Vec::new());
     for case in 0..200 {
         let mut plan = still.clone();
@@ -169,7 +160,7 @@ fn two_hundred_random_scenarios_end_with_a_judgement() {
             },
             ..Conditions::new(FRICTION, settings)
         };
-        let trace = simulate(&robot, &plan, &conditions).unwrap();
+        let trace = simulate(robot, &plan, &conditions).unwrap();
         // As many samples as steps, or fewer if the board is lost or the engine breaks down.
         assert!(trace.samples.len() <= 226, "case {case}");
         let judgement = judge(&trace, &limits(OperationKind::Cut));

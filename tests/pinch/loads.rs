@@ -19,7 +19,7 @@ use crate::{
     GRAVITY_M_S2, LIGHT_KG, THICKNESS_M,
     baxter::{self, BOARD_KG},
     bench::{self, Bench, Grip, Hinge, fingers_level},
-    checked, displacement_m, drill, force_along_x_g, last, moment_g, simulate,
+    checked, common, displacement_m, drill, force_along_x_g, last, moment_g, simulate,
 };
 
 const SHORT: SimulationSettings =
@@ -45,11 +45,11 @@ fn at(trace: &Trace, time_s: f64) -> &Sample {
 
 #[test]
 fn a_drill_has_torque_and_vibration_and_breaks_through_within_20_ms() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(10.0), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(10.0), BOARD_KG, 30.0);
     let profile =
         ForceProfile::Drill { spindle_torque_nm: 0.4, vibration_n: 2.0, vibration_hz: 25.0, breakthrough_s: Some(0.1) };
-    let trace = traced(&robot, &plan, profile);
+    let trace = traced(robot, &plan, profile);
     // z_T = -z_O. 0.01 s after the start of the load the sine of 25 Hz is 1 and the ramp is at a tenth.
     let first = wrench_o(at(&trace, 0.11));
     // The board turns by microradians between the start of the step, when the wrench is applied, and its end.
@@ -64,11 +64,11 @@ fn a_drill_has_torque_and_vibration_and_breaks_through_within_20_ms() {
 
 #[test]
 fn a_knife_travels_around_the_circle_with_its_force_along_the_tangent() {
-    let robot = baxter::robot();
+    let robot = common::baxter();
     let radius_m = 0.12;
     let cut = Operation::cut([radius_m, 0.0], Vector3::y(), 10.0, THICKNESS_M);
     let profile = ForceProfile::Path { speed_m_s: 0.3, centre_m: [0.0, 0.0], normal_share: 0.2 };
-    let trace = traced(&robot, &baxter::plan(&robot, cut, BOARD_KG, 30.0), profile);
+    let trace = traced(robot, &baxter::plan(robot, cut, BOARD_KG, 30.0), profile);
     for (time_s, held_s) in [(0.2, 0.0), (0.3, 0.1), (0.4, 0.2)] {
         let (sin, cos) = f64::sin_cos(0.3 * held_s / radius_m);
         let sample = at(&trace, time_s);
@@ -80,17 +80,17 @@ fn a_knife_travels_around_the_circle_with_its_force_along_the_tangent() {
     // The other way around, clockwise.
     let cut = Operation::cut([radius_m, 0.0], -Vector3::y(), 10.0, THICKNESS_M);
     let profile = ForceProfile::Path { speed_m_s: 0.3, centre_m: [0.0, 0.0], normal_share: 0.0 };
-    let trace = traced(&robot, &baxter::plan(&robot, cut, BOARD_KG, 30.0), profile);
+    let trace = traced(robot, &baxter::plan(robot, cut, BOARD_KG, 30.0), profile);
     assert!(at(&trace, 0.4).p_ot_m.y < -0.05);
 }
 
 #[test]
 fn a_measured_load_is_linear_between_its_rows_and_constant_beyond() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(10.0), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(10.0), BOARD_KG, 30.0);
     let row = |time_s: f64, force_n: f64| [time_s, 0.0, 0.0, force_n, 0.0, 0.01 * force_n, 0.0];
     let samples = vec![row(0.05, 0.0), row(0.15, -8.0), row(0.25, -4.0)];
-    let trace = traced(&robot, &plan, ForceProfile::Measured { samples: samples.clone() });
+    let trace = traced(robot, &plan, ForceProfile::Measured { samples: samples.clone() });
     for (time_s, force_n, load_factor) in [(0.14, 0.0, 0.0), (0.2, -4.0, 0.5), (0.3, -6.0, 0.75), (0.39, -4.0, 0.5)] {
         let sample = at(&trace, time_s);
         assert!((wrench_o(sample).force_n.z - force_n).abs() < 1e-4, "{time_s} s: {:?}", wrench_o(sample));
@@ -98,18 +98,18 @@ fn a_measured_load_is_linear_between_its_rows_and_constant_beyond() {
     }
     let mut backwards = samples;
     backwards.swap(0, 1);
-    let refused = simulate(&robot, &plan, &under(ForceProfile::Measured { samples: backwards }));
+    let refused = simulate(robot, &plan, &under(ForceProfile::Measured { samples: backwards }));
     assert!(matches!(refused, Err(SimError::Profile { .. })));
 }
 
 #[test]
 fn a_load_fixed_in_the_world_does_not_turn_with_the_board() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, Operation::drill([0.1, 0.1], 20.0, THICKNESS_M), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, Operation::drill([0.1, 0.1], 20.0, THICKNESS_M), BOARD_KG, 30.0);
     let last_hold = |frame| {
         let conditions =
             Conditions { load: Load { frame, profile: ForceProfile::Ramp }, ..Conditions::new(0.6, SHORT) };
-        last(&simulate(&robot, &plan, &conditions).unwrap(), Phase::Hold).clone()
+        last(&simulate(robot, &plan, &conditions).unwrap(), Phase::Hold).clone()
     };
     let planned_n = plan.object.x_wo.rotation * Vector3::new(0.0, 0.0, -20.0);
     let (world, board) = (last_hold(ForceFrame::World), last_hold(ForceFrame::Board));
@@ -122,11 +122,11 @@ fn a_load_fixed_in_the_world_does_not_turn_with_the_board() {
 
 #[test]
 fn each_uncertainty_has_its_effect() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(1.5), 1.0, 15.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(1.5), 1.0, 15.0);
     let settings = SimulationSettings { settle_s: 1.0, ramp_s: 0.5, hold_s: 0.5, ..SHORT };
     let with = |uncertainty| {
-        let trace = simulate(&robot, &plan, &Conditions { uncertainty, ..Conditions::new(0.6, settings) }).unwrap();
+        let trace = simulate(robot, &plan, &Conditions { uncertainty, ..Conditions::new(0.6, settings) }).unwrap();
         let sample = last(&trace, Phase::Hold).clone();
         (displacement_m(&trace, &sample).norm(), sample, trace.arms[0].grip_force_n)
     };
@@ -167,13 +167,13 @@ fn hand_wrench_o(sample: &Sample, arm: usize) -> Wrench {
 
 #[test]
 fn a_closed_chain_shares_load_and_internal_force_by_its_stiffness() {
-    let robot = baxter::robot();
+    let robot = common::baxter();
     // A cut off the centre: the internal force is as large as the load.
     let cut = Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M);
-    let plan = baxter::plan(&robot, cut, 1.0, 30.0);
+    let plan = baxter::plan(robot, cut, 1.0, 30.0);
     let settings = SimulationSettings { settle_s: 1.0, ramp_s: 0.5, hold_s: 0.5, ..SHORT };
-    let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
-    let hold = ContactModel::of_plan(&checked(&robot, &plan), 0.6).unwrap();
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, settings)).unwrap();
+    let hold = ContactModel::of_plan(&checked(robot, &plan), 0.6).unwrap();
     let predicted = WeldedStiffness::new(&hold).unwrap().hand_wrenches(&hold.load);
     let (before, after) = (last(&trace, Phase::Settle), last(&trace, Phase::Hold));
     for (arm, predicted) in predicted.iter().enumerate() {

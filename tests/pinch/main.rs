@@ -3,20 +3,22 @@
 //!
 //! All scenes are built by the code that `simulate` uses.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod baxter;
 mod bench;
 mod holds;
 mod loads;
 mod patch;
 mod person;
+mod prediction;
 
 use std::{ops::AddAssign, thread};
 
 use baxter::{BOARD_KG, welded_displacement_m};
 use bench::{Bench, Grip, Hinge, PAD_HALF_M, THICKNESS_M, fingers_level};
 use benchdog::{
-    check::CheckedPlan,
-    human::default_tool,
     model::{
         operation::Operation,
         plan::Plan,
@@ -27,6 +29,7 @@ use benchdog::{
     robot::{Chain, Robot},
     sim::{self, Conditions, SimError},
 };
+use common::checked;
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 
 /// Mass of a light block, whose weight uses little of the friction.
@@ -36,11 +39,6 @@ const GRAVITY_M_S2: f64 = 9.81;
 
 /// Mean distance of the points of a 40.4 x 36.0 mm pad from its centre, m (docs/method.md#62-pad-limits).
 const MEAN_RADIUS_M: f64 = 0.014630;
-
-/// The check of a plan with the usual tool for its operation.
-fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
-    CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).unwrap()
-}
 
 /// Checks and simulates a plan.
 fn simulate(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Result<Trace, SimError> {
@@ -193,15 +191,15 @@ fn free_arm_displacement_m(robot: &Robot, q_rad: &[f64], force_w: &Vector3<f64>)
 
 #[test]
 fn a_free_arm_deflects_by_its_compliance() {
-    let robot = baxter::robot();
+    let robot = common::baxter();
     // A board of ten grams in one hand, pushed where the hand holds it.
-    let mut plan = baxter::plan(&robot, drill(0.0), 0.01, 30.0);
+    let mut plan = baxter::plan(robot, drill(0.0), 0.01, 30.0);
     plan.arms.truncate(1);
     plan.operation.x_ot.translation = plan.arms[0].x_og.translation;
     for force_o in [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * 0.5) {
         plan.operation.wrench_o = Wrench::from_force(force_o);
         let settings = SimulationSettings { settle_s: 2.0, ramp_s: 1.0, hold_s: 2.0, ..QUICK };
-        let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
+        let trace = simulate(robot, &plan, &Conditions::new(0.6, settings)).unwrap();
         let p_wg = |sample: &Sample| {
             let p_cg = -robot.arms[0].gripper.grasp_point_g();
             sample.x_wo * sample.arms[0].x_oc * Point3::from(p_cg)
@@ -212,7 +210,7 @@ fn a_free_arm_deflects_by_its_compliance() {
         assert!(sagged.fold(0.0, f64::max) < 5e-4);
         let moved_m = p_wg(last(&trace, Phase::Hold)) - p_wg(settled);
         let force_w = plan.object.x_wo.rotation * force_o;
-        let predicted_m = free_arm_displacement_m(&robot, &settled.arms[0].q_rad, &force_w);
+        let predicted_m = free_arm_displacement_m(robot, &settled.arms[0].q_rad, &force_w);
         let error = (moved_m - predicted_m).norm() / predicted_m.norm();
         // The levers change by 1e-3 over such a displacement; 0.5 % is required.
         assert!(error < 5e-3, "moved {moved_m}, predicted {predicted_m}: off by {error}");
@@ -221,7 +219,7 @@ fn a_free_arm_deflects_by_its_compliance() {
 
 #[test]
 fn two_arms_deflect_as_if_welded_under_a_small_load() {
-    let robot = baxter::robot();
+    let robot = common::baxter();
     let operations = [
         drill(1.5),
         Operation::drill([0.1, 0.1], 1.5, THICKNESS_M),
@@ -233,10 +231,10 @@ fn two_arms_deflect_as_if_welded_under_a_small_load() {
     // hands.)
     for (mass_kg, tolerance) in [(0.5, 0.04), (BOARD_KG, 0.08)] {
         for operation in operations {
-            let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
-            let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
+            let plan = baxter::plan(robot, operation, mass_kg, 30.0);
+            let trace = simulate(robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
             let found_m = displacement_m(&trace, last(&trace, Phase::Hold));
-            let welded_m = welded_displacement_m(&robot, &plan);
+            let welded_m = welded_displacement_m(robot, &plan);
             let error = (found_m - welded_m).norm() / welded_m.norm();
             println!("{mass_kg} kg: off by {:.4} mm, {:.2} %", (found_m - welded_m).norm() * 1e3, 100.0 * error);
             assert!(error < tolerance, "{mass_kg} kg, {operation:?}: found {found_m}, welded {welded_m}: {error}");
@@ -246,9 +244,9 @@ fn two_arms_deflect_as_if_welded_under_a_small_load() {
 
 #[test]
 fn forces_and_moments_on_the_board_balance_in_the_hold() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, Operation::cut([0.0, 0.1], Vector3::x(), 10.0, THICKNESS_M), BOARD_KG, 30.0);
-    let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, Operation::cut([0.0, 0.1], Vector3::x(), 10.0, THICKNESS_M), BOARD_KG, 30.0);
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
     let sample = last(&trace, Phase::Hold);
     let centre_w = sample.x_wo.translation.vector;
     let tip_w = (sample.x_wo * Point3::from(trace.p_ot_m)).coords;
@@ -264,13 +262,13 @@ fn forces_and_moments_on_the_board_balance_in_the_hold() {
 
 #[test]
 fn no_board_oscillates_between_the_hands() {
-    let robot = baxter::robot();
+    let robot = common::baxter();
     let cut = Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M);
     for (operation, mass_kg) in [drill(15.0), cut].iter().flat_map(|operation| MASSES_KG.map(|kg| (*operation, kg))) {
         for timestep_s in [0.001, 0.002] {
-            let plan = baxter::plan(&robot, operation, mass_kg, 30.0);
+            let plan = baxter::plan(robot, operation, mass_kg, 30.0);
             let settings = SimulationSettings { ramp_s: 0.3, hold_s: 0.3, release_s: 0.0, timestep_s, ..QUICK };
-            let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
+            let trace = simulate(robot, &plan, &Conditions::new(0.6, settings)).unwrap();
             let jump_n = largest_jump_n(&trace);
             println!("{mass_kg} kg, {timestep_s} s: {jump_n:.4} N from step to step");
             // 0.04 N a step is the end of a swing; boards that oscillate do so by 1 N and more.
@@ -295,19 +293,19 @@ fn largest_jump_n(trace: &Trace) -> f64 {
 
 #[test]
 fn a_board_without_a_load_stays() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(0.0), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(0.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 5.0, ramp_s: 0.0, hold_s: 0.0, release_s: 0.0, timestep_s: 0.002 };
-    let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, settings)).unwrap();
     let drift_m = displacement_m(&trace, &trace.samples[1650]).norm();
     assert!(drift_m < 1e-8, "drifted {drift_m} m in the last 1.7 s");
 }
 
 #[test]
 fn after_the_release_the_board_returns() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(1.5), BOARD_KG, 30.0);
-    let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(1.5), BOARD_KG, 30.0);
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
     let bent_m = displacement_m(&trace, last(&trace, Phase::Hold)).norm();
     let left_m = displacement_m(&trace, last(&trace, Phase::Release)).norm();
     // The swing has decayed by then; at a sudden release the hands slide by micrometres, 5 % of the deflection.
@@ -316,10 +314,9 @@ fn after_the_release_the_board_returns() {
 
 #[test]
 fn a_board_that_is_torn_out_is_lost_and_the_arms_stay() {
-    let robot = baxter::robot();
+    let robot = common::baxter();
     let operation = Operation::cut([0.0, 0.1], -Vector3::y(), 200.0, THICKNESS_M);
-    let trace =
-        simulate(&robot, &baxter::plan(&robot, operation, BOARD_KG, 30.0), &Conditions::new(0.6, QUICK)).unwrap();
+    let trace = simulate(robot, &baxter::plan(robot, operation, BOARD_KG, 30.0), &Conditions::new(0.6, QUICK)).unwrap();
     // A lost board is an outcome, not a breakdown.
     assert_eq!(trace.broke_down, None);
     let (before, after) = (last(&trace, Phase::Settle), trace.samples.last().unwrap());
@@ -346,10 +343,10 @@ fn bits(trace: &Trace) -> String {
 
 #[test]
 fn equal_inputs_give_equal_traces() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(15.0), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(15.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 0.1, ramp_s: 0.1, hold_s: 0.1, release_s: 0.1, timestep_s: 0.002 };
-    let run = || bits(&simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap());
+    let run = || bits(&simulate(robot, &plan, &Conditions::new(0.6, settings)).unwrap());
     let here = run();
     let there = thread::scope(|scope| [scope.spawn(run), scope.spawn(run)].map(|thread| thread.join().unwrap()));
     assert!(there.iter().all(|other| *other == here));
@@ -357,10 +354,10 @@ fn equal_inputs_give_equal_traces() {
 
 #[test]
 fn the_trace_describes_the_simulation() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(3.0), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(3.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 0.1, ramp_s: 0.1, hold_s: 0.1, release_s: 0.1, timestep_s: 0.002 };
-    let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, settings)).unwrap();
     assert_eq!(trace.broke_down, None);
     assert_eq!(trace.samples.len(), 201);
     assert_eq!(trace.arms.iter().map(|arm| arm.name.as_str()).collect::<Vec<_>>(), ["left", "right"]);
@@ -383,10 +380,10 @@ fn the_trace_describes_the_simulation() {
 
 #[test]
 fn an_upper_pad_pushes_the_board_down() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(0.0), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(0.0), BOARD_KG, 30.0);
     let settings = SimulationSettings { settle_s: 0.2, ramp_s: 0.0, hold_s: 0.0, release_s: 0.0, timestep_s: 0.002 };
-    let trace = simulate(&robot, &plan, &Conditions::new(0.6, settings)).unwrap();
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, settings)).unwrap();
     let sample = last(&trace, Phase::Settle);
     let face_w = sample.x_wo.rotation * Vector3::z();
     for (arm, names) in sample.arms.iter().zip(&trace.arms) {
@@ -400,21 +397,21 @@ fn an_upper_pad_pushes_the_board_down() {
 
 #[test]
 fn invalid_conditions_are_refused() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(15.0), BOARD_KG, 30.0);
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(15.0), BOARD_KG, 30.0);
     let short = SimulationSettings { settle_s: 0.0, ramp_s: 0.0, hold_s: 0.0, release_s: 0.0, timestep_s: 0.002 };
-    assert!(simulate(&robot, &plan, &Conditions::new(0.6, short)).is_ok());
+    assert!(simulate(robot, &plan, &Conditions::new(0.6, short)).is_ok());
     assert!(matches!(
-        simulate(&robot, &plan, &Conditions::new(-0.1, short)),
+        simulate(robot, &plan, &Conditions::new(-0.1, short)),
         Err(SimError::Settings { key: "friction", .. })
     ));
 }
 
 #[test]
 fn a_simulation_that_breaks_down_reports_it() {
-    let robot = baxter::robot();
-    let plan = baxter::plan(&robot, drill(1e300), BOARD_KG, 30.0);
-    let trace = simulate(&robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
+    let robot = common::baxter();
+    let plan = baxter::plan(robot, drill(1e300), BOARD_KG, 30.0);
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
     // The first step of the ramp is the 501st.
     assert_eq!(trace.broke_down.as_deref(), Some("at 1.002 s the state is no longer finite"));
     assert_eq!(trace.samples.len(), 501);

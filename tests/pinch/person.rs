@@ -20,7 +20,7 @@ use nalgebra::Vector3;
 use crate::{
     THICKNESS_M,
     baxter::{self, BOARD_KG},
-    simulate,
+    common, simulate,
 };
 
 const FRICTION: f64 = 0.6;
@@ -80,13 +80,13 @@ fn overlap_mm(judgement: &Judgement) -> Option<f64> {
 
 #[test]
 fn deflecting_arms_touch_a_person_who_is_too_close() {
-    let robot = baxter::robot();
-    let plan = pulled(&robot, 20.0);
-    let (alone, alone_judged) = simulated(&robot, &plan);
+    let robot = common::baxter();
+    let plan = pulled(robot, 20.0);
+    let (alone, alone_judged) = simulated(robot, &plan);
     assert_eq!((alone_judged.verdict, overlap_mm(&alone_judged)), (VerdictKind::Holds, None));
 
     // Nothing touches in the plan, and everything but the person is as before.
-    let (near, near_judged) = simulated(&robot, &with_person_at(&robot, &plan, 0.002));
+    let (near, near_judged) = simulated(robot, &with_person_at(robot, &plan, 0.002));
     let touch = near.person_touch.as_ref().unwrap();
     println!("{touch:?}, {:?} mm", overlap_mm(&near_judged));
     assert!((near.samples[0].person_distance_m.unwrap() - 0.002).abs() < 1e-6);
@@ -95,7 +95,7 @@ fn deflecting_arms_touch_a_person_who_is_too_close() {
     assert!(near.samples.iter().zip(&alone.samples).all(|(near, alone)| near.x_wo == alone.x_wo));
 
     // A few centimetres are enough for deflections of millimetres.
-    let (far, far_judged) = simulated(&robot, &with_person_at(&robot, &plan, 0.05));
+    let (far, far_judged) = simulated(robot, &with_person_at(robot, &plan, 0.05));
     assert_eq!((far_judged.verdict, far.person_touch), (VerdictKind::Holds, None));
     let left_mm = -overlap_mm(&far_judged).unwrap();
     // The approach is the same as in the case with contact, up to the curvature of the surfaces.
@@ -106,14 +106,14 @@ fn deflecting_arms_touch_a_person_who_is_too_close() {
 
 #[test]
 fn the_distance_is_measured_in_every_step_if_small_and_every_fifth_otherwise() {
-    let robot = baxter::robot();
-    let plan = pulled(&robot, 20.0);
-    let (near, _) = simulated(&robot, &with_person_at(&robot, &plan, 0.004));
+    let robot = common::baxter();
+    let plan = pulled(robot, 20.0);
+    let (near, _) = simulated(robot, &with_person_at(robot, &plan, 0.004));
     let moved = |trace: &Trace, step: usize| {
         trace.samples[step].person_distance_m.unwrap() != trace.samples[step - 1].person_distance_m.unwrap()
     };
     // In the middle of the ramp the distance decreases in every step.
     assert!((200..300).all(|step| moved(&near, step)));
-    let (far, _) = simulated(&robot, &with_person_at(&robot, &plan, 0.05));
+    let (far, _) = simulated(robot, &with_person_at(robot, &plan, 0.05));
     assert!((200..300).all(|step| moved(&far, step) == (step % 5 == 0)));
 }

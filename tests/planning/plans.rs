@@ -1,45 +1,22 @@
 //! Searches that are stopped or limited, and searches for several plans: the best few, the Pareto front, a whole circle.
 
-use std::{cell::Cell, ops::ControlFlow, path::Path, sync::LazyLock};
+use std::{cell::Cell, ops::ControlFlow};
 
 use benchdog::{
     collision::{CollisionModel, Scene},
     model::{
         frames::Pose,
         plan::Plan,
-        scenario::{Budget, PlannerKind, Scenario},
+        scenario::{Budget, PlannerKind},
     },
-    planner::{self, Outcome, Planner, Progress, path},
-    robot::{ArmState, Chain, Robot},
-    scenario,
+    planner::{self, Outcome, Progress, path},
+    robot::{ArmState, Chain},
 };
 
-static ROBOT: LazyLock<Robot> = LazyLock::new(|| load("quickstart").1);
-/// The tests share its maps.
-static PLANNER: LazyLock<Planner> = LazyLock::new(|| Planner::new(&ROBOT));
-
-fn load(name: &str) -> (Scenario, Robot) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/{name}.toml"));
-    let loaded = scenario::load(&path).unwrap();
-    (loaded.scenario, loaded.robot)
-}
-
-fn fast(name: &str) -> Scenario {
-    let mut scenario = load(name).0;
-    scenario.planner.budget = Budget::Fast;
-    scenario
-}
-
-fn found<T>(outcome: Outcome<T>) -> T {
-    match outcome {
-        Outcome::Found(found) => found,
-        Outcome::Infeasible(why) => panic!("{why}"),
-    }
-}
-
-fn plan(scenario: &Scenario) -> Plan {
-    found(PLANNER.plan(scenario).unwrap())
-}
+use crate::{
+    common::baxter,
+    shared::{PLANNER, fast, found, plan, verified},
+};
 
 fn objective(plan: &Plan) -> f64 {
     plan.comfort.as_ref().unwrap().objective
@@ -48,10 +25,6 @@ fn objective(plan: &Plan) -> f64 {
 fn comforts(plan: &Plan) -> [f64; 2] {
     let comfort = plan.comfort.as_ref().unwrap();
     [comfort.muscular_regularised, comfort.peripersonal_m]
-}
-
-fn verified(plan: &Plan, scenario: &Scenario) {
-    assert_eq!(planner::verify(plan, scenario, &ROBOT), []);
 }
 
 #[test]
@@ -202,11 +175,11 @@ fn a_front_marks_the_share_that_a_normalised_objective_asks_for() {
 fn link_poses(q_rad: &[Vec<f64>], thickness_m: f64) -> Vec<Pose> {
     let states: Vec<_> = (0..q_rad.len())
         .map(|arm| {
-            let finger_travel_m = [0, 1].map(|finger| ROBOT.arms[arm].gripper.travel_for_gap_m(finger, thickness_m));
+            let finger_travel_m = [0, 1].map(|finger| baxter().arms[arm].gripper.travel_for_gap_m(finger, thickness_m));
             ArmState { arm, q_rad: &q_rad[arm], finger_travel_m }
         })
         .collect();
-    ROBOT.link_poses(&ROBOT.positions(&states))
+    baxter().link_poses(&baxter().positions(&states))
 }
 
 #[test]
@@ -251,9 +224,9 @@ fn no_search_of_a_circle_evaluates_more_than_allowed() {
 
 /// Every step of every motion within joint limits, on the grasps, free of collisions, short, and from plan to plan.
 fn motions_are_clear(found: &path::Continuous, size_m: [f64; 3]) {
-    let collision = CollisionModel::new(&ROBOT);
+    let collision = CollisionModel::new(baxter());
     let grasp = &found.sequence.iter().flatten().next().unwrap().arms;
-    let chains: Vec<_> = (0..2).map(|arm| Chain::new(&ROBOT, arm, 0.0)).collect();
+    let chains: Vec<_> = (0..2).map(|arm| Chain::new(baxter(), arm, 0.0)).collect();
     assert_eq!(found.motions.len(), path::POINTS - 1);
     for (index, motion) in found.motions.iter().enumerate() {
         for (plan, step) in

@@ -4,8 +4,10 @@ use std::path::Path;
 
 use benchdog::robot::{Chain, Robot, RobotError};
 
-const DESCRIPTION: &str = include_str!("../assets/baxter.toml");
-const URDF: &str = include_str!("../assets/baxter.urdf");
+use crate::common::baxter;
+
+const DESCRIPTION: &str = include_str!("../../assets/baxter.toml");
+const URDF: &str = include_str!("../../assets/baxter.urdf");
 
 fn load(description: &str, urdf: &str) -> Result<Robot, RobotError> {
     let folder = tempfile::tempdir().unwrap();
@@ -31,9 +33,9 @@ fn line_of(text: &str) -> String {
 
 #[test]
 fn a_file_is_as_good_as_the_built_in_one() {
-    let (built_in, file) = (Robot::load("baxter", Path::new(".")).unwrap(), load(DESCRIPTION, URDF).unwrap());
+    let (built_in, file) = (baxter(), load(DESCRIPTION, URDF).unwrap());
     let q_rad = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6, -0.7];
-    assert_eq!(Chain::new(&built_in, 1, 0.01).gripper_pose(&q_rad), Chain::new(&file, 1, 0.01).gripper_pose(&q_rad));
+    assert_eq!(Chain::new(built_in, 1, 0.01).gripper_pose(&q_rad), Chain::new(&file, 1, 0.01).gripper_pose(&q_rad));
     assert_eq!(built_in.allowed_collisions, file.allowed_collisions);
 }
 
@@ -44,8 +46,10 @@ fn unknown_robots_and_missing_files_are_told_apart() {
         unknown.to_string(),
         "found robot \"no_such_robot\", expected a built-in robot (baxter) or the path of a description file"
     );
-    let missing = Robot::load("missing.toml", Path::new("/nowhere")).unwrap_err();
-    assert!(missing.to_string().starts_with("failed to read /nowhere/missing.toml: "), "{missing}");
+    let nowhere = Path::new("/nowhere");
+    let missing = Robot::load("missing.toml", nowhere).unwrap_err();
+    let expected = format!("failed to read {}: ", nowhere.join("missing.toml").display());
+    assert!(missing.to_string().starts_with(&expected), "{missing}");
 }
 
 #[test]

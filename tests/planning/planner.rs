@@ -1,55 +1,37 @@
 //! The planner: a plan satisfies every constraint, is better than a random one, and is the same bytes for the same seed.
 
-use std::path::Path;
-
 use benchdog::{
     model::{
         operation::Operation,
         plan::Plan,
         scenario::{Budget, Optima, PlannerKind, Scenario, StabilityKind},
     },
-    planner::{self, Outcome, Planner},
+    planner::{Outcome, Planner},
     reproduce::paper,
-    robot::Robot,
-    scenario,
 };
 use rayon::prelude::*;
 
-fn load(name: &str) -> (Scenario, Robot) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/{name}.toml"));
-    let loaded = scenario::load(&path).unwrap();
-    (loaded.scenario, loaded.robot)
-}
-
-fn plan(scenario: &Scenario, robot: &Robot) -> Plan {
-    plan_by(&Planner::new(robot), scenario)
-}
-
-fn plan_by(planner: &Planner, scenario: &Scenario) -> Plan {
-    match planner.plan(scenario).unwrap() {
-        Outcome::Found(plan) => plan,
-        Outcome::Infeasible(why) => panic!("{}, {}: {why}", scenario.name, scenario.planner.kind),
-    }
-}
+use crate::{
+    common::{baxter, scenario},
+    shared::{PLANNER, fast, flaws, plan, plan_by, verified},
+};
 
 #[test]
 fn plans_satisfy_every_constraint() {
     for name in ["quickstart", "cut-rim"] {
-        let (scenario, robot) = load(name);
-        let plan = plan(&scenario, &robot);
-        assert_eq!(planner::verify(&plan, &scenario, &robot), [], "{name}");
+        let scenario = scenario(name);
+        verified(&plan(&scenario), &scenario);
     }
 }
 
 #[test]
 fn the_check_finds_what_was_changed() {
-    let (scenario, robot) = load("quickstart");
-    let good = plan(&scenario, &robot);
+    let scenario = scenario("quickstart");
+    let good = plan(&scenario);
     let flaws = |spoil: &dyn Fn(&mut Plan)| {
         let mut plan = good.clone();
         spoil(&mut plan);
-        let flaws = planner::verify(&plan, &scenario, &robot);
-        flaws.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        flaws(&plan, &scenario).join("; ")
     };
     assert!(flaws(&|plan| plan.arms[0].q_rad[6] += 1e-3).contains("arms[0].x_og: found the gripper"));
     assert!(flaws(&|plan| plan.human.as_mut().unwrap().q_rad[3] += 1e-3).contains("human.q_rad: found the tool"));
@@ -71,12 +53,11 @@ fn with_kind(scenario: &Scenario, kind: PlannerKind) -> Scenario {
 
 #[test]
 fn every_planner_satisfies_every_constraint_and_is_best_at_its_own_comfort() {
-    let (scenario, robot) = load("quickstart");
-    let planner = Planner::new(&robot);
+    let scenario = scenario("quickstart");
     let [comfort, peripersonal, muscular, random] = PlannerKind::ALL.map(|kind| {
         let scenario = with_kind(&scenario, kind);
-        let plan = plan_by(&planner, &scenario);
-        assert_eq!(planner::verify(&plan, &scenario, &robot), [], "{kind}");
+        let plan = plan(&scenario);
+        verified(&plan, &scenario);
         assert_eq!(plan.planner.unwrap().kind, kind);
         plan.comfort.unwrap()
     });
@@ -94,7 +75,8 @@ fn every_planner_satisfies_every_constraint_and_is_best_at_its_own_comfort() {
 #[test]
 fn every_operation_has_a_plan_of_every_planner_by_the_papers_stability_too() {
     let operations: Vec<_> = paper::operations().iter().map(|operation| operation.load().unwrap()).collect();
-    let planner = Planner::new(&operations[0].robot);
+    // Before the threads ask for it.
+    let planner = &*PLANNER;
     let infeasible: Vec<_> = PlannerKind::ALL
         .into_par_iter()
         .flat_map_iter(|kind| {
@@ -115,36 +97,33 @@ fn every_operation_has_a_plan_of_every_planner_by_the_papers_stability_too() {
 
 #[test]
 fn the_reference_stability_of_the_paper_can_be_asked_for() {
-    let (mut scenario, robot) = load("cut-rim");
+    let mut scenario = fast("cut-rim");
     scenario.planner.stability = StabilityKind::Paper;
-    scenario.planner.budget = Budget::Fast;
-    let plan = plan(&scenario, &robot);
-    assert_eq!(planner::verify(&plan, &scenario, &robot), []);
+    let plan = plan(&scenario);
+    verified(&plan, &scenario);
     assert!(plan.stability.unwrap().load_factor >= 1.0);
 }
 
 #[test]
 fn a_larger_budget_is_never_worse_and_kept_maps_change_nothing() {
-    let (mut scenario, robot) = load("quickstart");
-    let planner = Planner::new(&robot);
+    let mut scenario = scenario("quickstart");
     let mut objective = |evaluations| {
         scenario.planner.evaluations = evaluations;
-        let Outcome::Found(plan) = planner.plan(&scenario).unwrap() else { return 0.0 };
+        let Outcome::Found(plan) = PLANNER.plan(&scenario).unwrap() else { return 0.0 };
         assert!(evaluations.is_none_or(|most| plan.planner.unwrap().evaluations <= most));
         plan.comfort.unwrap().objective
     };
     // The search is the same up to where it is cut off.
     let objectives = [Some(10), Some(60), Some(150), None].map(&mut objective);
     assert!(objectives.is_sorted(), "{objectives:?}");
-    assert_eq!(plan(&scenario, &robot).comfort.unwrap().objective, objectives[3]);
+    assert_eq!(plan_by(&Planner::new(baxter()), &scenario).comfort.unwrap().objective, objectives[3]);
 }
 
 /// The objective at one seed against the best known, which a hundred times the budget found at other seeds, for four of the
 /// paper's cuts.
 #[test]
 fn the_default_budget_comes_near_the_best_known_objective() {
-    let (scenario, robot) = load("cut-rim");
-    let planner = Planner::new(&robot);
+    let scenario = scenario("cut-rim");
     let [_, _, thickness_m] = scenario.object.size_m;
     for (angle_deg, best_known, least) in
         [(0.0_f64, 138.8, 0.98), (180.0, 138.8, 0.98), (157.5, 142.2, 0.99), (270.0, 140.8, 0.98)]
@@ -153,7 +132,7 @@ fn the_default_budget_comes_near_the_best_known_objective() {
         let mut scenario = scenario.clone();
         let direction_o = nalgebra::Vector3::new(-sin, cos, 0.0);
         scenario.operation = Operation::cut([0.12 * cos, 0.12 * sin], direction_o, 30.0, thickness_m);
-        let plan = plan_by(&planner, &scenario);
+        let plan = plan(&scenario);
         let share = plan.comfort.unwrap().objective / best_known;
         // Single seeds reach 0.984 to 1. At 157.5 degrees a local optimum that is easier to find has 0.985.
         assert!(share > least, "at {angle_deg} degrees: {share}");
@@ -164,7 +143,7 @@ fn the_default_budget_comes_near_the_best_known_objective() {
 /// threads.
 #[test]
 fn warm_starts_serve_a_task_family_and_change_nothing() {
-    let (scenario, robot) = load("cut-rim");
+    let scenario = scenario("cut-rim");
     let [_, _, thickness_m] = scenario.object.size_m;
     let cut = |angle_deg: f64| {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
@@ -175,7 +154,7 @@ fn warm_starts_serve_a_task_family_and_change_nothing() {
         scenario
     };
     let (first, other) = (cut(0.0), cut(112.5));
-    let [warm, cold] = [(); 2].map(|()| Planner::new(&robot));
+    let [warm, cold] = [(); 2].map(|()| Planner::new(baxter()));
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     one_thread.install(|| warm.prepare(&first)).unwrap();
     let json = |planner: &Planner| serde_json::to_string(&plan_by(planner, &other)).unwrap();
@@ -184,12 +163,12 @@ fn warm_starts_serve_a_task_family_and_change_nothing() {
 
 #[test]
 fn more_weight_on_a_comfort_gives_more_of_it() {
-    let (mut scenario, robot) = load("quickstart");
+    let mut scenario = fast("quickstart");
     scenario.comfort.weight_peripersonal = 0.0;
-    let muscular = plan(&scenario, &robot).comfort.unwrap();
+    let muscular = plan(&scenario).comfort.unwrap();
     scenario.comfort.weight_peripersonal = 1000.0;
     scenario.comfort.weight_muscular = 0.0;
-    let peripersonal = plan(&scenario, &robot).comfort.unwrap();
+    let peripersonal = plan(&scenario).comfort.unwrap();
     assert!(muscular.muscular_regularised > peripersonal.muscular_regularised);
     assert!(peripersonal.peripersonal_m > muscular.peripersonal_m);
 }
@@ -198,10 +177,7 @@ fn more_weight_on_a_comfort_gives_more_of_it() {
 /// be checked by itself.
 #[test]
 fn a_normalised_objective_is_relative_to_the_optima_of_each_comfort() {
-    let (mut scenario, robot) = load("cut-rim");
-    scenario.planner.budget = Budget::Fast;
-    let planner = Planner::new(&robot);
-    let plan = |scenario: &Scenario| plan_by(&planner, scenario);
+    let mut scenario = fast("cut-rim");
     let alone = [PlannerKind::Muscular, PlannerKind::Peripersonal].map(|kind| plan(&with_kind(&scenario, kind)));
     let [muscular, peripersonal] = alone.map(|plan| plan.comfort.unwrap());
     scenario.comfort.peripersonal_share = Some(0.4);
@@ -215,7 +191,7 @@ fn a_normalised_objective_is_relative_to_the_optima_of_each_comfort() {
     let shares =
         [comfort.muscular_regularised / optima.muscular_regularised, comfort.peripersonal_m / optima.peripersonal_m];
     assert!((comfort.objective - (60.0 * shares[0] + 40.0 * shares[1])).abs() < 1e-9);
-    assert_eq!(planner::verify(&normalised, &used, &robot), []);
+    verified(&normalised, &used);
     // Optima that are given are taken as they are.
     let given = Optima { muscular_regularised: 2.0 * optima.muscular_regularised, ..optima };
     scenario.comfort.optima = Some(given);
@@ -224,9 +200,9 @@ fn a_normalised_objective_is_relative_to_the_optima_of_each_comfort() {
 
 #[test]
 fn a_load_beyond_anyones_strength_is_infeasible_and_says_so() {
-    let (mut scenario, robot) = load("quickstart");
+    let mut scenario = fast("quickstart");
     scenario.operation.wrench_o.force_n *= 100.0;
-    match Planner::new(&robot).plan(&scenario).unwrap() {
+    match PLANNER.plan(&scenario).unwrap() {
         Outcome::Infeasible(why) => assert_eq!(why.removed[0].0, "person's strength", "{why}"),
         Outcome::Found(plan) => panic!("nobody drills with 1500 N: {:?}", plan.comfort),
     }

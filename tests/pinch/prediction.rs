@@ -1,33 +1,22 @@
 //! Predictions of the statics against the simulation for ten plans: five cuts and five drills on the foam board
-//! (docs/method.md#24-board). `cargo test --release --test prediction -- --nocapture` prints both tables.
+//! (docs/method.md#24-board). `cargo test --release --test pinch prediction -- --nocapture` prints both tables.
 
-use std::{convert::Infallible, fs, path::Path, thread};
+use std::{convert::Infallible, thread};
 
 use benchdog::{
-    check::CheckedPlan,
-    human::default_tool,
     judge::{Judgement, failing_load, judge},
-    model::{
-        operation::OperationKind,
-        plan::Plan,
-        scenario::{Limits, SimulationSettings},
-        verdict::VerdictKind,
-    },
-    robot::Robot,
-    scenario::read_plan,
+    model::{plan::Plan, scenario::Limits, verdict::VerdictKind},
     sim::{Conditions, simulate},
     statics::{CompliantResponse, ContactModel, LimitCrossing, ResponseOutcome, StabilityWorkspace},
 };
 
-/// docs/method.md#76-robot-figures.
-const FRICTION: f64 = 0.6;
+use crate::{
+    common::{baxter, checked, ten_plans},
+    holds::{FRICTION, SETTINGS, limits},
+};
 
 /// A share of the load at which most pads are far from their limits.
 const SMALL_LOAD: f64 = 0.1;
-
-/// Settings without the release, which is not judged.
-const SETTINGS: SimulationSettings =
-    SimulationSettings { settle_s: 0.5, ramp_s: 1.0, hold_s: 1.0, release_s: 0.0, timestep_s: 0.002 };
 
 struct Case {
     plan: Plan,
@@ -35,39 +24,20 @@ struct Case {
     limits: Limits,
 }
 
-/// The check of a plan with the usual tool for its operation.
-fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
-    CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).unwrap()
-}
-
-/// The plans of `tests/data/holds` in the order of their names: object, arms and operation as `benchdog plan` wrote
-/// them.
-fn cases() -> (Robot, Vec<Case>) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/holds");
-    let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    assert_eq!(paths.len(), 10);
-    let (_, robot) = read_plan(&paths[0], None).unwrap();
-    let cases = paths.iter().map(|path| {
-        let (plan, _) = read_plan(path, Some(&robot)).unwrap();
-        let hold = ContactModel::of_plan(&checked(&robot, &plan), FRICTION).unwrap();
+/// The ten plans with their contact models and limits.
+fn cases() -> Vec<Case> {
+    let case = |plan: Plan| {
+        let hold = ContactModel::of_plan(&checked(baxter(), &plan), FRICTION).unwrap();
         let limits = limits(plan.operation.kind);
         Case { plan, hold, limits }
-    });
-    let cases = cases.collect();
-    (robot, cases)
-}
-
-/// docs/method.md#810-default-limits.
-fn limits(kind: OperationKind) -> Limits {
-    let deflection_mm = if kind == OperationKind::Drill { 5.0 } else { 15.0 };
-    Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 }
+    };
+    ten_plans().into_iter().map(case).collect()
 }
 
 /// The judgement under a multiple of the load.
-fn simulated(robot: &Robot, case: &Case, load_factor: f64) -> Judgement {
+fn simulated(case: &Case, load_factor: f64) -> Judgement {
     let trace =
-        simulate(&checked(robot, &case.plan), &Conditions::new(FRICTION, SETTINGS).scaled(load_factor)).unwrap();
+        simulate(&checked(baxter(), &case.plan), &Conditions::new(FRICTION, SETTINGS).scaled(load_factor)).unwrap();
     judge(&trace, &case.limits)
 }
 
@@ -92,9 +62,9 @@ fn of_each<T: Send>(cases: &[Case], result: impl Fn(&Case) -> T + Sync) -> Vec<T
 
 #[test]
 fn small_deflections_are_predicted() {
-    let (robot, cases) = cases();
+    let cases = cases();
     let found = of_each(&cases, |case| {
-        let deflection_mm = *simulated(&robot, case, SMALL_LOAD).measures.deflection_mm.last().unwrap();
+        let deflection_mm = *simulated(case, SMALL_LOAD).measures.deflection_mm.last().unwrap();
         (predicted(case, SMALL_LOAD).deflection_mm(), deflection_mm)
     });
     let mut too_far = Vec::new();
@@ -110,18 +80,18 @@ fn small_deflections_are_predicted() {
 }
 
 /// The simulated load factor and the verdict at failure, as `benchdog margin` finds them.
-fn simulated_failing_load(robot: &Robot, case: &Case, predicted: f64) -> (f64, VerdictKind) {
-    let judged = |load_factor| Ok::<_, Infallible>(simulated(robot, case, load_factor));
+fn simulated_failing_load(case: &Case, predicted: f64) -> (f64, VerdictKind) {
+    let judged = |load_factor| Ok::<_, Infallible>(simulated(case, load_factor));
     let Ok(found) = failing_load(predicted, judged);
     (found.holds_at, found.judgement.verdict)
 }
 
 #[test]
 fn failing_loads_are_predicted() {
-    let (robot, cases) = cases();
+    let cases = cases();
     let found = of_each(&cases, |case| {
         let found = StabilityWorkspace::new().compliant_load_factor(&case.hold, &case.limits).unwrap();
-        let simulated = simulated_failing_load(&robot, case, found.load_factor);
+        let simulated = simulated_failing_load(case, found.load_factor);
         (found, simulated)
     });
     let mut too_far = Vec::new();

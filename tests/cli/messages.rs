@@ -1,35 +1,27 @@
 //! The text of every message. The expected texts are in `tests/snapshots`; after an intended change,
-//! `INSTA_UPDATE=always cargo test --release --test messages` updates them.
+//! `INSTA_UPDATE=always cargo test --release --test cli messages` updates them.
 
-#![cfg(feature = "recording")]
+// The messages of Windows have other paths and other texts of the system.
+#![cfg(all(feature = "recording", unix))]
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{fs, path::Path, process::Output};
 
-/// A scenario that names a plan, so that it runs within a second.
-const SCENARIO: &str = include_str!("../scenarios/fails-weak-grip.toml");
-const PLAN: &str = include_str!("../scenarios/plans/cut-rim-weak-grip.json");
+use tempfile::TempDir;
 
-/// A folder with scenarios of these names and expectations.
-fn folder(names: &[(&str, &str)]) -> tempfile::TempDir {
+use crate::process::{command, slipping_scenario};
+
+/// A folder with scenarios of these names and expectations, and with the plan that they name.
+fn folder(names: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    fs::create_dir_all(folder.path().join("plans")).unwrap();
-    fs::write(folder.path().join("plans/cut-rim-weak-grip.json"), PLAN).unwrap();
     for (name, expected) in names {
-        let text = SCENARIO.replace("fails-weak-grip", name).replace("\"slips\"", &format!("\"{expected}\""));
-        fs::write(folder.path().join(format!("{name}.toml")), text).unwrap();
+        slipping_scenario(folder.path(), name, expected);
     }
     folder
 }
 
 fn benchdog(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_benchdog"));
-    command.args(arguments).current_dir(folder);
     // So that a viewer installed on this machine is not found.
-    command.env("PATH", folder.join("bin")).output().unwrap()
+    command(folder, arguments).env("PATH", folder.join("bin")).output().unwrap()
 }
 
 /// Output and exit code, without paths and times.
@@ -71,6 +63,7 @@ fn without_times(text: &str) -> String {
 fn assert_seen(name: &str, folder: &Path, arguments: &[&str]) {
     let mut settings = insta::Settings::clone_current();
     settings.set_prepend_module_to_snapshot(false);
+    settings.set_snapshot_path("../snapshots");
     settings.set_omit_expression(true);
     settings.bind(|| insta::assert_snapshot!(name, seen(folder, arguments)));
 }
@@ -176,7 +169,6 @@ fn messages_about_a_recording() {
     assert_seen("view-without-viewer", folder.path(), &["view", recording]);
 }
 
-#[cfg(unix)]
 #[test]
 fn the_viewer_is_started_with_the_file() {
     use std::os::unix::fs::PermissionsExt as _;

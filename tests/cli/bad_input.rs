@@ -1,11 +1,9 @@
 //! Invalid input: exit code 2, one message with file, line, key, the value found and the value expected, and no file
 //! written.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{fs, process::Output};
+
+use crate::process::{benchdog, folder, stderr, text_of_both};
 
 const SCENARIO: &str = "format = 1
 name = \"bad\"
@@ -25,17 +23,12 @@ friction = 0.6
 
 /// Runs benchdog in a folder with one input file; returns its output and the names of all files afterwards.
 fn benchdog_on(file: &str, text: &str, arguments: &[&str]) -> (Output, Vec<String>) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join(file), text).unwrap();
-    let output = benchdog_in(folder.path(), arguments);
+    let folder = folder(&[(file, text)]);
+    let output = benchdog(folder.path(), arguments);
     let mut left: Vec<_> =
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     left.sort();
     (output, left)
-}
-
-fn benchdog_in(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_benchdog")).args(arguments).current_dir(folder).output().unwrap()
 }
 
 /// Asserts that a scenario with one replacement is refused with this message.
@@ -50,7 +43,7 @@ fn assert_scenario_refused(replace: &str, with: &str, message: &str) {
 
 #[track_caller]
 fn assert_refused(output: &Output, message: &str) {
-    assert_eq!(String::from_utf8_lossy(&output.stderr), format!("error: {message}\n"));
+    assert_eq!(stderr(output), format!("error: {message}\n"));
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
 }
@@ -58,14 +51,15 @@ fn assert_refused(output: &Output, message: &str) {
 #[test]
 fn the_scenario_without_a_replacement_is_valid() {
     let (output, _) = benchdog_on("good.toml", SCENARIO, &["run", "good.toml", "--record", "never"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }
 
 #[test]
 fn a_missing_file() {
     let folder = tempfile::tempdir().unwrap();
-    let output = benchdog_in(folder.path(), &["run", "nowhere.toml"]);
-    assert_refused(&output, "nowhere.toml: failed to read the file: No such file or directory (os error 2)");
+    let output = benchdog(folder.path(), &["run", "nowhere.toml"]);
+    let cause = fs::read(folder.path().join("nowhere.toml")).unwrap_err();
+    assert_refused(&output, &format!("nowhere.toml: failed to read the file: {cause}"));
 }
 
 #[test]
@@ -167,7 +161,7 @@ fn a_format_from_the_future() {
     );
 }
 
-const PLAN: &str = include_str!("../scenarios/plans/cut-rim.json");
+const PLAN: &str = include_str!("../../scenarios/plans/cut-rim.json");
 
 /// Asserts that a plan with one replacement is refused with this message.
 #[track_caller]
@@ -182,7 +176,7 @@ fn assert_plan_refused(replace: &str, with: &str, message: &str) {
 #[test]
 fn the_plan_without_a_replacement_is_valid() {
     let (output, _) = benchdog_on("good.json", PLAN, &["simulate", "good.json", "--record", "never"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }
 
 #[test]
@@ -275,10 +269,9 @@ fn a_plan_of_a_format_from_the_future() {
 
 #[test]
 fn a_plan_for_another_operation_than_the_scenarios() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("plan.json"), PLAN).unwrap();
-    fs::write(folder.path().join("bad.toml"), format!("{SCENARIO}\n[planner]\nplan = \"plan.json\"\n")).unwrap();
-    let output = benchdog_in(folder.path(), &["run", "bad.toml"]);
+    let scenario = format!("{SCENARIO}\n[planner]\nplan = \"plan.json\"\n");
+    let folder = folder(&[("plan.json", PLAN), ("bad.toml", &scenario)]);
+    let output = benchdog(folder.path(), &["run", "bad.toml"]);
     assert_refused(
         &output,
         "bad.toml:17: planner.plan: found a plan for cut with [0.0, 30.0, 0.0, 0.0, 0.0, 0.0] at [0.12, 0.0, 0.015], turned by \
@@ -334,14 +327,7 @@ fn a_tool_whose_rotation_is_not_a_unit_quaternion() {
 
 #[test]
 fn an_invalid_scenario_inside_a_plan() {
-    let out = tempfile::tempdir().unwrap();
-    let planned = benchdog_in(
-        Path::new(env!("CARGO_MANIFEST_DIR")),
-        &["plan", "scenarios/quickstart.toml", "-o", out.path().join("plan.json").to_str().unwrap()],
-    );
-    assert_eq!(planned.status.code(), Some(0));
-    let plan = fs::read_to_string(out.path().join("plan.json")).unwrap();
-    let spoilt = plan.replace("\"friction\": 0.6", "\"friction\": -0.6");
+    let spoilt = text_of_both("quickstart/plan.json").replace("\"friction\": 0.6", "\"friction\": -0.6");
     let (output, _) = benchdog_on("bad.json", &spoilt, &["simulate", "bad.json"]);
     let line = 1 + spoilt.lines().position(|line| line.contains("\"friction\": -0.6")).unwrap();
     let message = format!(
@@ -422,11 +408,9 @@ fn a_load_that_does_not_fit_its_operation() {
 #[test]
 fn a_file_of_forces_names_its_own_line() {
     let refused = |csv: &str, message: &str| {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("forces.csv"), csv).unwrap();
         let scenario = format!("{SCENARIO}\n[load]\nkind = \"measured\"\nfile = \"forces.csv\"\n");
-        fs::write(folder.path().join("bad.toml"), scenario).unwrap();
-        assert_refused(&benchdog_in(folder.path(), &["run", "bad.toml"]), message);
+        let folder = folder(&[("forces.csv", csv), ("bad.toml", &scenario)]);
+        assert_refused(&benchdog(folder.path(), &["run", "bad.toml"]), message);
     };
     let header = "time_s,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm\n";
     refused(

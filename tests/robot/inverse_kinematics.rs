@@ -1,18 +1,21 @@
 //! Inverse kinematics of the built-in Baxter: every solution is checked by forward kinematics.
 
-use std::{path::Path, sync::LazyLock};
-
 use benchdog::{
     model::frames::Pose,
     robot::{
         Chain, InverseKinematics, Robot, Solution,
-        inverse::{ClosedForm, General, RESIDUAL_TOLERANCE},
+        inverse::{ClosedForm, General},
     },
 };
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use serde::Deserialize;
+
+use crate::{
+    chains::{assert_solves, chains, distance_rad, posture},
+    common::root,
+};
 
 /// Slices that find a solution of every target of the file: the narrowest self-motion that joint limits leave there
 /// spans more than the joint's range over this.
@@ -38,19 +41,11 @@ impl Target {
     }
 }
 
-fn chains() -> &'static [Chain; 2] {
-    static CHAINS: LazyLock<[Chain; 2]> = LazyLock::new(|| {
-        let robot = Robot::load("baxter", Path::new(".")).unwrap();
-        ["left", "right"].map(|arm| Chain::new(&robot, robot.arm_index(arm).unwrap(), 0.0))
-    });
-    &CHAINS
-}
-
 /// Baxter with a fixed joint in its left arm: six joints, no closed form.
 fn six_joint_chain() -> Chain {
-    let urdf = include_str!("../assets/baxter.urdf");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let fixed = urdf.replace("<joint name=\"left_e0\" type=\"revolute\">", "<joint name=\"left_e0\" type=\"fixed\">");
-    let description = include_str!("../assets/baxter.toml");
+    let description = include_str!("../../assets/baxter.toml");
     // The left arm is described first: its lists lose their third entry.
     let description = description
         .replacen(" \"left_e0\",", "", 1)
@@ -65,26 +60,13 @@ fn six_joint_chain() -> Chain {
 }
 
 fn targets() -> [Vec<Pose>; 2] {
-    let text = std::fs::read_to_string("tests/data/baxter_ik_targets.json").unwrap();
+    let text = std::fs::read_to_string(root().join("tests/data/baxter_ik_targets.json")).unwrap();
     let targets: Targets = serde_json::from_str(&text).unwrap();
     [targets.left, targets.right].map(|side| side.iter().map(Target::pose).collect())
 }
 
-fn assert_solves(chain: &Chain, target: &Pose, q_rad: &[f64]) {
-    assert!(chain.within_limits(q_rad, 0.0), "{q_rad:?}");
-    let x_wg = chain.gripper_pose(q_rad);
-    let position_m = (target.translation.vector - x_wg.translation.vector).norm();
-    let angle_rad = (target.rotation * x_wg.rotation.inverse()).scaled_axis().norm();
-    // The residual is the norm of both together, computed in the same way.
-    assert!(position_m <= RESIDUAL_TOLERANCE && angle_rad <= RESIDUAL_TOLERANCE, "{position_m} {angle_rad}");
-}
-
 fn middle(chain: &Chain) -> Vec<f64> {
     chain.lower().iter().zip(chain.upper()).map(|(lower, upper)| 0.5 * (lower + upper)).collect()
-}
-
-fn distance_rad(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 #[test]
@@ -96,7 +78,7 @@ fn the_closed_form_is_chosen_by_geometry() {
 
 #[test]
 fn the_closed_form_reads_its_parameters_from_the_chain() {
-    let urdf = include_str!("../assets/baxter.urdf");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let rounded = urdf.replace("1.5707963267948966", "1.5708");
     let elbow = "<joint name=\"left_e1\" type=\"revolute\">";
     let at = urdf.find(elbow).unwrap();
@@ -112,7 +94,7 @@ fn the_closed_form_reads_its_parameters_from_the_chain() {
     {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("baxter.urdf"), urdf).unwrap();
-        std::fs::write(folder.path().join("baxter.toml"), include_str!("../assets/baxter.toml")).unwrap();
+        std::fs::write(folder.path().join("baxter.toml"), include_str!("../../assets/baxter.toml")).unwrap();
         let robot = Robot::load("baxter.toml", folder.path()).unwrap();
         let chain = Chain::new(&robot, 0, 0.0);
         let target = chain.gripper_pose(&q_rad);
@@ -231,12 +213,6 @@ fn a_slice_contains_the_posture_that_it_came_from() {
     }
     // Pairs of solutions that nearly coincide may be missed; of 4,000 random postures 8 were.
     assert!(missed <= 5, "{missed} of 1000");
-}
-
-fn posture() -> impl Strategy<Value = Vec<f64>> {
-    let [chain, _] = chains();
-    let ranges: Vec<_> = chain.lower().iter().zip(chain.upper()).map(|(lower, upper)| *lower..*upper).collect();
-    ranges
 }
 
 proptest! {

@@ -1,7 +1,5 @@
 //! The built-in Baxter against an independent rigid-body library, and laws that hold for every chain.
 
-use std::{path::Path, sync::LazyLock};
-
 use benchdog::{
     model::GRAVITY_W,
     robot::{ArmState, Chain, Robot},
@@ -9,6 +7,11 @@ use benchdog::{
 use nalgebra::{DVector, Matrix3, Matrix6xX, Point3, Vector3};
 use proptest::prelude::*;
 use serde::Deserialize;
+
+use crate::{
+    chains::{mirrored, posture},
+    common::{baxter, root},
+};
 
 /// The file's numbers and ours are both rounded at 1e-16 of about 1 m; seven joints and the six digits less of the
 /// source's quarter turns (5e-12) stay well below this.
@@ -36,24 +39,19 @@ struct Sample {
     m_diag_no_gripper: Vec<f64>,
 }
 
-fn baxter() -> &'static Robot {
-    static BAXTER: LazyLock<Robot> = LazyLock::new(|| Robot::load("baxter", Path::new(".")).unwrap());
-    &BAXTER
-}
-
 fn chain(robot: &Robot, arm: &str) -> Chain {
     Chain::new(robot, robot.arm_index(arm).unwrap(), 0.0)
 }
 
 fn reference() -> [(&'static str, Vec<Sample>); 2] {
-    let text = std::fs::read_to_string("tests/data/baxter_reference.json").unwrap();
+    let text = std::fs::read_to_string(root().join("tests/data/baxter_reference.json")).unwrap();
     let reference: Reference = serde_json::from_str(&text).unwrap();
     [("left", reference.left), ("right", reference.right)]
 }
 
 /// Baxter without the masses of its grippers: the `inertial` elements of all links of the grippers are cut out.
 fn baxter_without_gripper_masses() -> Robot {
-    let urdf = include_str!("../assets/baxter.urdf");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let mut stripped = String::new();
     let (mut in_gripper, mut in_inertial) = (false, false);
     for line in urdf.lines() {
@@ -69,7 +67,7 @@ fn baxter_without_gripper_masses() -> Robot {
     }
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("baxter.urdf"), stripped).unwrap();
-    std::fs::write(folder.path().join("bare.toml"), include_str!("../assets/baxter.toml")).unwrap();
+    std::fs::write(folder.path().join("bare.toml"), include_str!("../../assets/baxter.toml")).unwrap();
     Robot::load("bare.toml", folder.path()).unwrap()
 }
 
@@ -184,21 +182,6 @@ fn surface_distance(shape: &benchdog::robot::Shape, p_s: &Vector3<f64>) -> f64 {
         Shape::Cylinder { radius_m, half_length_m } => (p_s.xy().norm() - radius_m).max(p_s.z.abs() - half_length_m),
         Shape::Sphere { radius_m } => p_s.norm() - radius_m,
     }
-}
-
-/// Signs that turn the angles of an arm into those of the other arm's mirror image: turns about axes in the mirror
-/// plane at zero change sign.
-const MIRROR: [f64; 7] = [-1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
-
-fn mirrored(q_rad: &[f64]) -> Vec<f64> {
-    q_rad.iter().zip(MIRROR).map(|(q, sign)| q * sign).collect()
-}
-
-fn posture() -> impl Strategy<Value = Vec<f64>> {
-    let robot = baxter();
-    let chain = chain(robot, "left");
-    let ranges: Vec<_> = chain.lower().iter().zip(chain.upper()).map(|(lo, hi)| *lo..*hi).collect();
-    ranges
 }
 
 proptest! {

@@ -1,48 +1,26 @@
 //! The branches of the built-in Baxter's solutions, and combinations of two arms.
 
-use std::{path::Path, sync::LazyLock};
+use std::sync::LazyLock;
 
 use approx::assert_relative_eq;
 use benchdog::{
     model::frames::Pose,
     robot::{
-        Chain, InverseKinematics, Robot, Solution,
+        Chain, InverseKinematics, Solution,
         bimanual::{Combinations, RankedSolutions},
-        inverse::{Branch, ClosedForm, RESIDUAL_TOLERANCE, SelfMotion},
+        inverse::{Branch, ClosedForm, SelfMotion},
     },
 };
 use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 
-fn chains() -> &'static [Chain; 2] {
-    static CHAINS: LazyLock<[Chain; 2]> = LazyLock::new(|| {
-        let robot = Robot::load("baxter", Path::new(".")).unwrap();
-        ["left", "right"].map(|arm| Chain::new(&robot, robot.arm_index(arm).unwrap(), 0.0))
-    });
-    &CHAINS
-}
+use crate::chains::{assert_solves, chains, distance_rad, mirrored, posture};
 
 fn arms() -> &'static [ClosedForm; 2] {
     static ARMS: LazyLock<[ClosedForm; 2]> =
         LazyLock::new(|| [0, 1].map(|arm| ClosedForm::new(&chains()[arm]).unwrap()));
     &ARMS
-}
-
-fn residual(chain: &Chain, target: &Pose, q_rad: &[f64]) -> f64 {
-    let x_wg = chain.gripper_pose(q_rad);
-    let position_m = (target.translation.vector - x_wg.translation.vector).norm();
-    position_m.hypot((target.rotation * x_wg.rotation.inverse()).scaled_axis().norm())
-}
-
-fn assert_solves(chain: &Chain, target: &Pose, q_rad: &[f64]) {
-    assert!(chain.within_limits(q_rad, 0.0), "{q_rad:?}");
-    let residual = residual(chain, target, q_rad);
-    assert!(residual <= RESIDUAL_TOLERANCE, "{residual}");
-}
-
-fn distance_rad(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 fn random_posture(chain: &Chain, generator: &mut rand_pcg::Pcg64) -> Vec<f64> {
@@ -123,11 +101,6 @@ fn targets_without_branches_are_outcomes() {
     }
 }
 
-/// The mirror image of a posture in the plane y = 0.
-fn mirrored(q_rad: &[f64]) -> Vec<f64> {
-    q_rad.iter().zip([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0]).map(|(q, sign)| q * sign).collect()
-}
-
 #[test]
 fn the_arms_are_mirror_images() {
     let mut generator = rand_pcg::Pcg64::seed_from_u64(6);
@@ -192,12 +165,6 @@ fn both_arms_grasp_one_board() {
         }
     }
     assert!(last > 0.0);
-}
-
-fn posture() -> impl Strategy<Value = Vec<f64>> {
-    let [chain, _] = chains();
-    let ranges: Vec<_> = chain.lower().iter().zip(chain.upper()).map(|(lower, upper)| *lower..*upper).collect();
-    ranges
 }
 
 proptest! {

@@ -3,63 +3,42 @@
 use std::{
     fs,
     io::{BufRead, BufReader},
-    path::{Path, PathBuf},
-    process::{Child, Command, Output, Stdio},
+    path::Path,
+    process::{Child, Command, Stdio},
 };
 
 use serde_json::Value;
 
+use crate::process::{benchdog, command, json, printed_json, slipping_scenario, stderr};
+
 const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
 
 /// Writes scenarios whose plan slips, each with an expected verdict.
-fn scenarios(folder: &Path, names: &[(String, &str)]) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    fs::create_dir_all(folder.join("plans")).unwrap();
-    fs::copy(root.join("plans/cut-rim-weak-grip.json"), folder.join("plans/cut-rim-weak-grip.json")).unwrap();
-    let text = fs::read_to_string(root.join("fails-weak-grip.toml")).unwrap();
+fn scenarios(folder: &Path, names: &[(&str, &str)]) {
     for (name, expected) in names {
-        let text = text.replace("fails-weak-grip", name).replace("\"slips\"", &format!("\"{expected}\""));
-        fs::write(folder.join(format!("{name}.toml")), text).unwrap();
+        slipping_scenario(folder, name, expected);
     }
 }
 
-fn named(name: &str, expected: &'static str) -> (String, &'static str) {
-    (name.to_owned(), expected)
-}
-
-/// Writes 20 scenarios, enough to stop a run in the middle.
+/// Writes 20 scenarios, enough to stop a run in the middle; returns their names.
 fn many(folder: &Path) -> Vec<String> {
-    let names: Vec<_> = (0..20).map(|number| named(&format!("hold-{number:02}"), "slips")).collect();
-    scenarios(folder, &names);
-    names.into_iter().map(|(name, _)| name).collect()
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_benchdog"));
-    command.current_dir(folder).args(arguments);
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-fn json(path: PathBuf) -> Value {
-    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+    let names: Vec<_> = (0..20).map(|number| format!("hold-{number:02}")).collect();
+    names.iter().for_each(|name| drop(slipping_scenario(folder, name, "slips")));
+    names
 }
 
 #[test]
 fn every_scenario_is_in_every_report() {
     let folder = tempfile::tempdir().unwrap();
-    scenarios(folder.path(), &[named("a", "slips"), named("b", "holds"), named("left-out", "slips")]);
-    let output = run(folder.path(), &["run", ".", "--filter", "[ab]", "--jobs", "1"]);
+    scenarios(folder.path(), &[("a", "slips"), ("b", "holds"), ("left-out", "slips")]);
+    let output = benchdog(folder.path(), &["run", ".", "--filter", "[ab]", "--jobs", "1"]);
     assert_eq!(output.status.code(), Some(1));
     let out = folder.path().join("out");
 
-    let summary = json(out.join("summary.json"));
+    let summary = json(&out.join("summary.json"));
     let counts = ["scenarios", "ok", "failed", "crashed", "skipped"].map(|key| summary[key].as_u64().unwrap());
     assert_eq!(counts, [3, 1, 1, 0, 1]);
-    let verdict = json(out.join("b/verdict.json"));
+    let verdict = json(&out.join("b/verdict.json"));
     let outcome = &summary["outcomes"][1];
     assert_eq!((&outcome["name"], &outcome["status"]), (&verdict["name"], &Value::from("failed")));
     assert_eq!(outcome["first_failure"], verdict["first_failure"]);
@@ -142,9 +121,9 @@ fn assert_page(out: &Path, scenarios: usize) {
 #[test]
 fn equal_runs_write_equal_reports() {
     let folder = tempfile::tempdir().unwrap();
-    scenarios(folder.path(), &[named("a", "slips"), named("b", "holds")]);
-    run(folder.path(), &["run", ".", "--jobs", "1", "--out", "one"]);
-    run(folder.path(), &["run", ".", "--jobs", "2", "--out", "two"]);
+    scenarios(folder.path(), &[("a", "slips"), ("b", "holds")]);
+    benchdog(folder.path(), &["run", ".", "--jobs", "1", "--out", "one"]);
+    benchdog(folder.path(), &["run", ".", "--jobs", "2", "--out", "two"]);
     for report in REPORTS {
         let [one, two] = ["one", "two"].map(|out| fs::read(folder.path().join(out).join(report)).unwrap());
         assert!(one == two, "{report}: two runs differ");
@@ -154,10 +133,10 @@ fn equal_runs_write_equal_reports() {
 #[test]
 fn fail_fast_skips_the_scenarios_after_a_failure() {
     let folder = tempfile::tempdir().unwrap();
-    scenarios(folder.path(), &[named("a", "slips"), named("b", "holds"), named("c", "slips")]);
-    let output = run(folder.path(), &["run", ".", "--fail-fast", "--jobs", "1", "--record", "never"]);
+    scenarios(folder.path(), &[("a", "slips"), ("b", "holds"), ("c", "slips")]);
+    let output = benchdog(folder.path(), &["run", ".", "--fail-fast", "--jobs", "1", "--record", "never"]);
     assert_eq!(output.status.code(), Some(1));
-    let summary = json(folder.path().join("out/summary.json"));
+    let summary = json(&folder.path().join("out/summary.json"));
     let statuses: Vec<_> = summary["outcomes"].as_array().unwrap().iter().map(|o| o["status"].clone()).collect();
     assert_eq!(statuses, ["ok", "failed", "skipped"]);
     assert!(!folder.path().join("out/c").exists());
@@ -198,11 +177,11 @@ fn a_killed_run_leaves_only_whole_files_and_no_report() {
         let of = |file: &str| out.join(&name).join(file);
         if of("verdict.json").exists() {
             finished += 1;
-            assert_eq!(json(of("verdict.json"))["verdict"], "slips");
+            assert_eq!(json(&of("verdict.json"))["verdict"], "slips");
             assert!(of("plan.json").exists(), "the verdict is written last");
         }
         if of("plan.json").exists() {
-            assert_eq!(json(of("plan.json"))["format"], 1);
+            assert_eq!(json(&of("plan.json"))["format"], 1);
         }
         #[cfg(feature = "recording")]
         if of("recording.rrd").exists() {
@@ -226,7 +205,7 @@ fn an_interrupted_run_reports_the_finished_scenarios() {
     assert_eq!(output.status.code(), Some(130), "{messages}");
     assert!(messages.contains("interrupted: the scenarios in progress are finished and reported"), "{messages}");
 
-    let summary = json(folder.path().join("out/summary.json"));
+    let summary = json(&folder.path().join("out/summary.json"));
     assert_eq!(summary["interrupted"], true);
     let [ok, skipped] = ["ok", "skipped"].map(|key| summary[key].as_u64().unwrap() as usize);
     assert!(ok >= 1 && skipped >= 1 && ok + skipped == 20, "{ok} ok, {skipped} skipped");
@@ -239,7 +218,7 @@ fn an_interrupted_run_reports_the_finished_scenarios() {
 #[test]
 fn a_full_disk_is_one_clear_error() {
     let folder = tempfile::tempdir().unwrap();
-    scenarios(folder.path(), &[named("a", "slips"), named("b", "slips")]);
+    scenarios(folder.path(), &[("a", "slips"), ("b", "slips")]);
     let output = Command::new("sh")
         .current_dir(folder.path())
         .args(["-c", "trap '' XFSZ; ulimit -f 1; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_benchdog")])
@@ -247,7 +226,7 @@ fn a_full_disk_is_one_clear_error() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8_lossy(&output.stderr);
+    let message = stderr(&output);
     assert!(message.starts_with("error: failed to write out/a/") && message.lines().count() == 1, "{message}");
     let left: Vec<_> = fs::read_dir(folder.path().join("out/a")).unwrap().map(|entry| entry.unwrap().path()).collect();
     assert!(left.is_empty(), "{left:?}");
@@ -257,16 +236,16 @@ fn a_full_disk_is_one_clear_error() {
 #[test]
 fn a_recording_is_judged_again_from_the_file_alone() {
     let folder = tempfile::tempdir().unwrap();
-    scenarios(folder.path(), &[named("a", "slips")]);
-    run(folder.path(), &["run", "a.toml"]);
-    let verdict = json(folder.path().join("out/a/verdict.json"));
+    scenarios(folder.path(), &[("a", "slips")]);
+    benchdog(folder.path(), &["run", "a.toml"]);
+    let verdict = json(&folder.path().join("out/a/verdict.json"));
     let elsewhere = tempfile::tempdir().unwrap();
     fs::copy(folder.path().join("out/a/recording.rrd"), elsewhere.path().join("moved.rrd")).unwrap();
     drop(folder);
 
     let inspect = |more: &[&str]| {
-        let output = run(elsewhere.path(), &[&["inspect", "moved.rrd", "--format", "json"], more].concat());
-        (serde_json::from_slice::<Value>(&output.stdout).unwrap(), output.status.code())
+        let output = benchdog(elsewhere.path(), &[&["inspect", "moved.rrd", "--format", "json"], more].concat());
+        (printed_json(&output), output.status.code())
     };
     let (output, exit) = inspect(&[]);
     assert_eq!((&output["verdict"], &output["judged_again"], exit), (&verdict, &Value::Null, Some(0)));

@@ -1,7 +1,5 @@
 //! Collision checks of the built-in Baxter against distances computed by hand and by brute force over all pairs of primitives.
 
-use std::{path::Path, sync::LazyLock};
-
 use benchdog::{
     collision::{Body, CollisionModel, PersonClearance, PersonPart, Scene},
     human::{BodyPart, Side},
@@ -17,15 +15,12 @@ use parry3d_f64::{
 };
 use proptest::prelude::*;
 
+use crate::common::baxter;
+
 const BOARD_SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
 
 /// The manufacturer's neutral posture of an arm, rad: elbow bent, forearm level.
 const NEUTRAL_RAD: [f64; 7] = [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0];
-
-fn baxter() -> &'static Robot {
-    static BAXTER: LazyLock<Robot> = LazyLock::new(|| Robot::load("baxter", Path::new(".")).unwrap());
-    &BAXTER
-}
 
 fn link_poses(robot: &Robot, left_rad: &[f64], right_rad: &[f64]) -> Vec<Pose> {
     let state =

@@ -1,34 +1,17 @@
 //! Exit codes, files and JUnit reports of the commands.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{fs, path::Path, process::Output};
 
 use serde_json::Value;
 
-fn benchdog(arguments: &[&str], out: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_benchdog"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(arguments)
-        .arg("--out")
-        .arg(out)
-        .output()
-        .unwrap()
-}
+use crate::{
+    common::root,
+    process::{argument, benchdog, command, printed_json, slipping_scenario, stderr},
+};
 
-/// Writes the weak-grip scenario with another name and expectation, and its plan; returns the scenario's path.
-fn slipping_scenario(folder: &Path, name: &str, expected: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let plans = folder.join("plans");
-    fs::create_dir_all(&plans).unwrap();
-    fs::copy(root.join("plans/cut-rim-weak-grip.json"), plans.join("cut-rim-weak-grip.json")).unwrap();
-    let text = fs::read_to_string(root.join("fails-weak-grip.toml")).unwrap();
-    let text = text.replace("fails-weak-grip", name).replace("\"slips\"", &format!("\"{expected}\""));
-    let path = folder.join(format!("{name}.toml"));
-    fs::write(&path, text).unwrap();
-    path.to_str().unwrap().to_owned()
+/// Runs benchdog in the repository with this output folder.
+fn benchdog_to(out: &Path, arguments: &[&str]) -> Output {
+    benchdog(root(), &[arguments, &["--out", argument(out)]].concat())
 }
 
 #[test]
@@ -37,9 +20,9 @@ fn an_expectation_that_is_not_met_is_exit_code_1_and_a_junit_failure() {
     let met = slipping_scenario(folder.path(), "as-expected", "slips");
     let not_met = slipping_scenario(folder.path(), "not-as-expected", "holds");
     let junit = folder.path().join("junit.xml");
-    let output = benchdog(
-        &["run", &met, &not_met, "--record", "never", "--junit", junit.to_str().unwrap()],
+    let output = benchdog_to(
         &folder.path().join("out"),
+        &["run", &met, &not_met, "--record", "never", "--junit", junit.to_str().unwrap()],
     );
     assert_eq!(output.status.code(), Some(1));
     let junit = fs::read_to_string(junit).unwrap();
@@ -52,13 +35,12 @@ fn an_expectation_that_is_not_met_is_exit_code_1_and_a_junit_failure() {
 #[test]
 fn no_plan_where_one_was_expected_is_exit_code_3_and_outweighs_1() {
     let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let text = fs::read_to_string(root.join("fails-out-of-reach.toml")).unwrap();
+    let text = fs::read_to_string(root().join("scenarios/fails-out-of-reach.toml")).unwrap();
     let infeasible = folder.path().join("infeasible.toml");
     fs::write(&infeasible, text.replace("\"infeasible\"", "\"holds\"")).unwrap();
     let not_met = slipping_scenario(folder.path(), "not-as-expected", "holds");
     let out = folder.path().join("out");
-    let output = benchdog(&["run", infeasible.to_str().unwrap(), &not_met, "--record", "never"], &out);
+    let output = benchdog_to(&out, &["run", infeasible.to_str().unwrap(), &not_met, "--record", "never"]);
     assert_eq!(output.status.code(), Some(3));
     let table = String::from_utf8(output.stdout).unwrap();
     assert!(table.contains("robot reach"), "the reason names the constraint: {table}");
@@ -70,9 +52,9 @@ fn two_scenarios_of_one_name_are_refused_before_anything_runs() {
     let folder = tempfile::tempdir().unwrap();
     let one = slipping_scenario(folder.path(), "same", "slips");
     let out = folder.path().join("out");
-    let output = benchdog(&["run", &one, &one], &out);
+    let output = benchdog_to(&out, &["run", &one, &one]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("found \"same\", which is also the name of"));
+    assert!(stderr(&output).contains("found \"same\", which is also the name of"));
     assert!(!out.exists());
 }
 
@@ -82,16 +64,15 @@ fn a_folder_that_cannot_be_written_is_one_clear_error() {
     let scenario = slipping_scenario(folder.path(), "unwritable", "slips");
     let file = folder.path().join("a-file");
     fs::write(&file, "").unwrap();
-    let output = benchdog(&["run", &scenario], &file);
+    let output = benchdog_to(&file, &["run", &scenario]);
     assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8_lossy(&output.stderr);
+    let message = stderr(&output);
     assert!(message.starts_with("error: failed to write") && message.lines().count() == 1, "{message}");
 }
 
 #[test]
 fn a_closed_pipe_is_not_an_error() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_benchdog"))
-        .args(["schema", "plan"])
+    let mut child = command(root(), &["schema", "plan"])
         .stdout(std::process::Stdio::piped())
         .stderr(std::process::Stdio::piped())
         .spawn()
@@ -100,11 +81,11 @@ fn a_closed_pipe_is_not_an_error() {
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stderr.is_empty(), "{}", stderr(&output));
 }
 
-const CUT: &str = include_str!("../scenarios/plans/cut-rim.json");
-const LEVER: &str = include_str!("../scenarios/plans/long-lever.json");
+const CUT: &str = include_str!("../../scenarios/plans/cut-rim.json");
+const LEVER: &str = include_str!("../../scenarios/plans/long-lever.json");
 
 /// The verdict on a changed plan, and the exit code of `simulate`.
 fn verdict_on_changed_plan(plan: &str, change: impl FnOnce(&mut Value)) -> (Value, Option<i32>) {
@@ -113,10 +94,8 @@ fn verdict_on_changed_plan(plan: &str, change: impl FnOnce(&mut Value)) -> (Valu
     change(&mut plan);
     let path = folder.path().join("plan.json");
     fs::write(&path, plan.to_string()).unwrap();
-    let output = benchdog(&["simulate", path.to_str().unwrap(), "--format", "json"], folder.path());
-    let verdicts: Vec<Value> = serde_json::from_slice(&output.stdout)
-        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&output.stderr)));
-    (verdicts[0].clone(), output.status.code())
+    let output = benchdog_to(folder.path(), &["simulate", path.to_str().unwrap(), "--format", "json"]);
+    (printed_json(&output)[0].clone(), output.status.code())
 }
 
 #[test]
@@ -145,9 +124,9 @@ fn files_of_an_earlier_run_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = slipping_scenario(folder.path(), "again", "slips");
     let recording = folder.path().join("again/recording.rrd");
-    benchdog(&["run", &scenario], folder.path());
+    benchdog_to(folder.path(), &["run", &scenario]);
     assert_eq!(recording.exists(), cfg!(feature = "recording"));
-    benchdog(&["run", &scenario, "--record", "never"], folder.path());
+    benchdog_to(folder.path(), &["run", &scenario, "--record", "never"]);
     assert!(!recording.exists() && folder.path().join("again/verdict.json").exists());
 }
 
@@ -158,8 +137,8 @@ fn a_recording_contains_the_verdict() {
 
     let folder = tempfile::tempdir().unwrap();
     let scenario = slipping_scenario(folder.path(), "recorded", "slips");
-    let output = benchdog(&["run", &scenario], folder.path());
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = benchdog_to(folder.path(), &["run", &scenario]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let folder = folder.path().join("recorded");
     let written: Verdict = serde_json::from_slice(&fs::read(folder.join("verdict.json")).unwrap()).unwrap();
     let recorded = benchdog::record::read_summary(&folder.join("recording.rrd")).unwrap();
@@ -176,18 +155,15 @@ fn a_recording_contains_the_verdict() {
 fn only_failed_runs_are_recorded_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let met = slipping_scenario(folder.path(), "as-expected", "slips");
-    let output = benchdog(&["run", &met, "--record", "failed", "--format", "json"], folder.path());
-    let verdicts: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(verdicts[0]["verdict"], "slips");
+    let output = benchdog_to(folder.path(), &["run", &met, "--record", "failed", "--format", "json"]);
+    assert_eq!(printed_json(&output)[0]["verdict"], "slips");
     assert!(!folder.path().join("as-expected/recording.rrd").exists());
 }
 
 /// Runs benchdog and returns its exit code and the largest number of threads that it had.
 #[cfg(target_os = "linux")]
 fn most_threads(arguments: &[&str], folder: &Path) -> (Option<i32>, usize) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_benchdog"))
-        .current_dir(folder)
-        .args(arguments)
+    let mut child = command(folder, arguments)
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::null())
         .spawn()
@@ -207,8 +183,7 @@ fn most_threads(arguments: &[&str], folder: &Path) -> (Option<i32>, usize) {
 #[test]
 fn jobs_bounds_the_threads_of_maps_plans_and_simulations() {
     let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let text = fs::read_to_string(root.join("quickstart.toml")).unwrap();
+    let text = fs::read_to_string(root().join("scenarios/quickstart.toml")).unwrap();
     // Four scenarios that share their maps: with more threads than one, several ask for the same map.
     for place in 1..=4 {
         let text = text.replace("quickstart", &format!("hole-{place}"));

@@ -8,7 +8,12 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::Output,
+};
+
+use crate::{
+    common::root,
+    process::{Files, argument, benchdog, contents, stderr},
 };
 
 /// Half a step of the last digit in the files.
@@ -17,7 +22,7 @@ const ROUNDING: f64 = 0.5e-6;
 const PLANNERS: [&str; 4] = ["comfort", "peripersonal", "muscular", "random"];
 
 fn results() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("results")
+    root().join("results")
 }
 
 /// The rows of a CSV file, by column name.
@@ -218,9 +223,8 @@ fn random_is_the_worst_in_both_comforts_together() {
 /// `docs/reproduction.md` explains every conclusion that the report does not confirm.
 #[test]
 fn claims_that_fail_are_explained() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let report = fs::read_to_string(results().join("report.md")).unwrap();
-    let page = fs::read_to_string(root.join("docs/reproduction.md")).unwrap().replace('\n', " ");
+    let page = fs::read_to_string(root().join("docs/reproduction.md")).unwrap().replace('\n', " ");
     let denied: Vec<_> = report.lines().filter_map(|line| line.strip_prefix("| **no** | ")).collect();
     for row in denied {
         let claim = row.split(" | ").next().unwrap();
@@ -296,27 +300,13 @@ fn simulations_agree_with_predictions() {
 }
 
 fn reproduce(arguments: &[&str], out: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_benchdog"))
-        .args(["reproduce", "--quick"])
-        .args(arguments)
-        .arg("--out")
-        .arg(out)
-        .output()
-        .unwrap()
+    benchdog(root(), &[&["reproduce", "--quick", "--out", argument(out)], arguments].concat())
 }
 
 /// The files of a run that are committed, by path.
-fn written(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        let name = entry.file_name().into_string().unwrap();
-        match name.as_str() {
-            "work" | "recordings" | "timing.csv" => {}
-            "pictures" => files.extend(written(&entry.path())),
-            _ => drop(files.insert(entry.path().strip_prefix(folder).unwrap().into(), fs::read(entry.path()).unwrap())),
-        }
-    }
-    files
+fn written(folder: &Path) -> Files {
+    let kept = |path: &Path| ["work", "recordings", "timing.csv"].iter().any(|name| path.starts_with(name));
+    contents(folder).into_iter().filter(|(path, _)| !kept(path)).collect()
 }
 
 /// A cut and a hole, which threads finish in any order.
@@ -326,7 +316,7 @@ const TWO_OPERATIONS: [&str; 4] = ["--filter", "cut-05", "--filter", "drill-5"];
 fn two_runs_agree_with_each_other_and_with_the_committed_results() {
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let first = reproduce(&[&TWO_OPERATIONS[..], &["--jobs", "1"]].concat(), one.path());
-    assert_eq!(first.status.code(), Some(0), "{}", String::from_utf8_lossy(&first.stderr));
+    assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
     let second = reproduce(&[&TWO_OPERATIONS[..], &["--jobs", "2"]].concat(), two.path());
     assert_eq!(second.status.code(), Some(0));
     let files = written(one.path());

@@ -1,23 +1,25 @@
 //! The commands `margin` and `export`.
 
-use std::{fs, path::Path, process::Command};
+use std::fs;
 
 use benchdog::{model::GRAVITY_W, robot::Robot, scenario::read_plan};
 use quick_xml::{Reader, events::Event};
 use serde_json::Value;
 
-fn benchdog(arguments: &[&str]) -> (String, Option<i32>) {
-    let output = Command::new(env!("CARGO_BIN_EXE_benchdog"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(arguments)
-        .output()
-        .unwrap();
-    (String::from_utf8(output.stdout).unwrap() + &String::from_utf8_lossy(&output.stderr), output.status.code())
+use crate::{
+    common::root,
+    process::{argument, benchdog, stderr},
+};
+
+/// Runs benchdog in the repository; returns all that it prints, and the exit code.
+fn printed(arguments: &[&str]) -> (String, Option<i32>) {
+    let output = benchdog(root(), arguments);
+    (String::from_utf8_lossy(&output.stdout).into_owned() + &stderr(&output), output.status.code())
 }
 
 #[test]
 fn a_margin_agrees_with_the_predictions() {
-    let (text, code) = benchdog(&["margin", "tests/data/holds/cut-04.json", "--format", "json"]);
+    let (text, code) = printed(&["margin", "tests/data/holds/cut-04.json", "--format", "json"]);
     assert_eq!(code, Some(0), "{text}");
     let margin: Value = serde_json::from_str(&text).unwrap();
     let number = |value: &Value| value.as_f64().unwrap();
@@ -35,7 +37,7 @@ fn a_margin_agrees_with_the_predictions() {
 
 #[test]
 fn a_margin_below_one_is_exit_code_1() {
-    let (text, code) = benchdog(&["margin", "scenarios/plans/long-lever.json"]);
+    let (text, code) = printed(&["margin", "scenarios/plans/long-lever.json"]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("FAIL") && text.contains("then deflects (deflection "), "{text}");
 }
@@ -43,7 +45,7 @@ fn a_margin_below_one_is_exit_code_1() {
 #[test]
 fn a_margin_says_what_larger_limits_and_uncertainty_change() {
     let folder = tempfile::tempdir().unwrap();
-    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/holds/cut-04.json");
+    let plan = "tests/data/holds/cut-04.json";
     let scenario = folder.path().join("slippery.toml");
     // The plan's operation, with slippery pads.
     let text = r#"
@@ -53,7 +55,7 @@ fn a_margin_says_what_larger_limits_and_uncertainty_change() {
         uncertainty = { friction_scale = 0.8 }
     "#;
     fs::write(&scenario, text).unwrap();
-    let (text, _) = benchdog(&["margin", plan, "--scenario", scenario.to_str().unwrap(), "--format", "json"]);
+    let (text, _) = printed(&["margin", plan, "--scenario", argument(&scenario), "--format", "json"]);
     let margin: Value = serde_json::from_str(&text).unwrap();
     let predicted = &margin["predicted"];
     let number = |value: &Value| value.as_f64().unwrap();
@@ -97,14 +99,14 @@ fn numbers(text: &str) -> Vec<f64> {
 fn an_exported_scene_has_the_masses_joints_gains_and_load_of_the_plan() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scene.xml");
-    let (text, code) = benchdog(&["export", "scenarios/plans/cut-rim.json", "--mjcf", file.to_str().unwrap()]);
+    let (text, code) = printed(&["export", "scenarios/plans/cut-rim.json", "--mjcf", argument(&file)]);
     assert_eq!(code, Some(0), "{text}");
     let found = elements(&fs::read_to_string(&file).unwrap());
     let of = |name: &str| found.iter().filter(|element| element.0 == name).map(|e| &e.1).collect::<Vec<_>>();
     let get = |attributes: &[(String, String)], key: &str| {
         attributes.iter().find(|(name, _)| name == key).map(|(_, value)| value.clone()).unwrap()
     };
-    let (plan, robot) = read_plan(Path::new("scenarios/plans/cut-rim.json"), None).unwrap();
+    let (plan, robot) = read_plan(&root().join("scenarios/plans/cut-rim.json"), None).unwrap();
 
     let mass_kg: f64 = of("inertial").iter().map(|inertial| get(inertial, "mass").parse::<f64>().unwrap()).sum();
     let expected_kg = moving_mass_kg(&robot) + plan.object.mass_kg;

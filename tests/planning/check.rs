@@ -1,7 +1,5 @@
 //! The check of a plan: each fault is one typed flaw with its key, and all faults are found at once.
 
-use std::path::Path;
-
 use benchdog::{
     check::{CheckedPlan, Flaw},
     human::{Human, default_tool},
@@ -11,9 +9,10 @@ use benchdog::{
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::common::{checked, root};
+
 fn load() -> (Plan, Robot) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
-    read_plan(&path, None).unwrap()
+    read_plan(&root().join("scenarios/plans/cut-rim.json"), None).unwrap()
 }
 
 /// The flaws of the plan after a change.
@@ -30,7 +29,7 @@ fn flaws(change: impl Fn(&mut Plan)) -> Vec<Flaw> {
 fn a_good_plan_has_no_flaw() {
     assert_eq!(flaws(|_| ()), []);
     let (plan, robot) = load();
-    let checked = CheckedPlan::new(&robot, &plan, &default_tool(plan.operation.kind)).unwrap();
+    let checked = checked(&robot, &plan);
     assert_eq!(checked.arms().len(), 2);
     assert_eq!(checked.first_contact(), None);
 }

@@ -1,45 +1,11 @@
 //! No command overwrites or removes one of its input files.
 
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
-    process::{Command, Output},
-};
+use std::fs;
 
-use tempfile::TempDir;
+use crate::process::{benchdog, contents, folder, stderr};
 
-const CUT: &str = include_str!("../scenarios/cut-rim.toml");
-const PLAN: &str = include_str!("../scenarios/plans/cut-rim.json");
-
-/// A folder with these files.
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        let path = folder.path().join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, text).unwrap();
-    }
-    folder
-}
-
-fn benchdog(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_benchdog")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-/// All files below a folder with their contents.
-fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.append(&mut contents(&path));
-        } else {
-            found.insert(path.clone(), fs::read(&path).unwrap());
-        }
-    }
-    found
-}
+const CUT: &str = include_str!("../../scenarios/cut-rim.toml");
+const PLAN: &str = include_str!("../../scenarios/plans/cut-rim.json");
 
 /// Asserts that a command with these files in its folder refuses to write to `file` and writes nothing.
 #[track_caller]
@@ -48,7 +14,8 @@ fn assert_refused(files: &[(&str, &str)], arguments: &[&str], file: &str) {
     let before = contents(folder.path());
     let output = benchdog(folder.path(), arguments);
     let message = format!("error: failed to write {file}: it is an input file of this command\n");
-    assert_eq!(String::from_utf8_lossy(&output.stderr), message);
+    // On Windows the folder is followed by a backslash.
+    assert_eq!(stderr(&output).replace('\\', "/"), message);
     assert_eq!(output.status.code(), Some(2));
     assert!(contents(folder.path()) == before, "{arguments:?} changed files");
 }
@@ -67,7 +34,7 @@ fn plan_does_not_overwrite_its_scenario_through_a_link() {
     std::os::unix::fs::symlink("cut.toml", folder.path().join("link.toml")).unwrap();
     for (scenario, output) in [("cut.toml", "link.toml"), ("link.toml", "cut.toml"), ("link.toml", "link.toml")] {
         let output = benchdog(folder.path(), &["plan", scenario, "-o", output]);
-        assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     }
     assert!(folder.path().join("link.toml").is_symlink());
     assert_eq!(fs::read_to_string(folder.path().join("cut.toml")).unwrap(), CUT);
@@ -114,8 +81,8 @@ fn run_does_not_overwrite_its_inputs() {
 
 #[test]
 fn the_files_of_a_robot_are_inputs() {
-    let robot = include_str!("../assets/baxter.toml");
-    let urdf = include_str!("../assets/baxter.urdf");
+    let robot = include_str!("../../assets/baxter.toml");
+    let urdf = include_str!("../../assets/baxter.urdf");
     let scenario = format!("{CUT}\n[robot]\ndescription = \"my-robot.toml\"\n");
     let files = [("cut.toml", &*scenario), ("my-robot.toml", robot), ("baxter.urdf", urdf)];
     assert_refused(&files, &["run", "cut.toml", "--junit", "my-robot.toml"], "my-robot.toml");
@@ -142,11 +109,11 @@ fn a_plan_in_the_output_folder_is_simulated_and_left_as_it_is() {
     let plan = PLAN.replacen('{', "{\n\n", 1);
     let folder = folder(&[("out/cut-rim/plan.json", &plan)]);
     let output = benchdog(folder.path(), &["simulate", "out/cut-rim/plan.json", "--record", "never"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let scenario = format!("{CUT}\n[planner]\nplan = \"out/cut-rim/plan.json\"\n");
     fs::write(folder.path().join("cut.toml"), scenario).unwrap();
     let output = benchdog(folder.path(), &["run", "cut.toml", "--record", "never"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(fs::read_to_string(folder.path().join("out/cut-rim/plan.json")).unwrap(), plan);
     assert!(folder.path().join("out/cut-rim/verdict.json").exists());
 }

@@ -1,0 +1,16 @@
+//! The binary: its commands, files, messages and exit codes.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod process;
+
+mod bad_input;
+mod commands;
+mod determinism;
+mod inputs;
+mod margin_and_export;
+mod messages;
+mod reports;
+mod reproduce;
+mod scenarios;
+mod schemas;

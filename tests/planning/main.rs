@@ -1,0 +1,10 @@
+//! The planner, the check of its plans, and searches for several plans.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod shared;
+
+mod check;
+mod comfort;
+mod planner;
+mod plans;

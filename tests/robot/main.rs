@@ -1,0 +1,11 @@
+//! The robot model: description files, kinematics and dynamics against a reference, inverse kinematics, collisions.
+
+mod chains;
+#[path = "../common/mod.rs"]
+mod common;
+
+mod collision;
+mod description;
+mod inverse_kinematics;
+mod reference;
+mod self_motion;
