@@ -39,6 +39,7 @@ pub(super) struct Plot<'a> {
 
 impl Plot<'_> {
     /// The plot as SVG.
+    #[must_use]
     pub fn svg(&self) -> String {
         let [width, height] = SIZE_PX;
         let mut body = String::new();
@@ -167,7 +168,7 @@ fn label(body: &mut String, class: &str, x: f64, y: f64, anchor: &str, text: &st
 }
 
 /// Text with the special characters of XML escaped.
-pub(super) fn escape(text: &str) -> String {
+fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
