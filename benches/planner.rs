@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use benchdog::{planner::Planner, scenario::paper};
+use benchdog::{planner::Planner, reproduce::paper};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn planner(criterion: &mut Criterion) {

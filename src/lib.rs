@@ -41,6 +41,7 @@
 //! | [`judge`] | verdict on a trace |
 //! | `record` | rerun recordings (feature `recording`) |
 //! | [`report`] | tables, HTML, JSON, CSV, JUnit |
+//! | [`reproduce`] | the paper's evaluation: operations, jobs, tables, pictures, conclusions |
 //! | `cli` | the commands (feature `cli`) |
 //!
 //! Linear algebra types are those of [`nalgebra`], which is re-exported.
@@ -117,6 +118,7 @@ pub mod planner;
 #[cfg(feature = "recording")]
 pub mod record;
 pub mod report;
+pub mod reproduce;
 pub mod robot;
 pub mod scenario;
 pub mod sim;

@@ -13,7 +13,8 @@ use crate::{
     comfort::curve::{Curve, Cut, POINTS, muscular_curve},
     human::Human,
     report,
-    scenario::{self, LoadedScenario, paper},
+    reproduce::paper,
+    scenario::{self, LoadedScenario},
 };
 
 /// Writes the curve as CSV and SVG.

@@ -22,7 +22,7 @@ pub fn fingerprint(trace: &Trace) -> String {
             visit_all(sample.p_ot_m.as_slice(), &mut |value| hasher.update(value.to_le_bytes()));
         }
     }
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    base16ct::lower::encode_string(&hasher.finalize())
 }
 
 /// True if the constants of the trace are finite.

@@ -150,7 +150,7 @@ pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{robot::Robot, scenario::paper};
+    use crate::{reproduce::paper, robot::Robot};
 
     fn domain(robot: &Robot) -> SearchDomain {
         let chains: Vec<_> = (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0)).collect();

@@ -1,6 +1,6 @@
-//! The layout on which the viewer opens: the scene and the events, the phases above the plots, the summary.
+//! The viewer's layout: scene and events on the left, phases and plots in the middle, the summary on the right.
 //!
-//! Written out by hand and not by rerun's blueprint builder, whose ids are random.
+//! Built from rerun's archetypes, not by its blueprint builder, whose ids are random.
 
 use nalgebra::Vector3;
 use rerun::{
@@ -21,28 +21,30 @@ use rerun::{
 };
 
 use super::{
-    RecordError, RecordingInput, TIMELINE,
-    chunks::Messages,
-    entity, palette,
-    plots::{FAILURE, JOINTS_SHOWN, LIMIT, LOAD, PLOTS, hardest_first, top},
+    entity::{TIMELINE, entity},
+    error::RecordError,
+    input::RecordingInput,
+    messages::Messages,
+    palette,
+    plots::{FAILURE, JOINTS_SHOWN, LIMIT, LOAD, PLOTS, by_torque, top},
     scene::POINTS,
 };
 use crate::model::verdict::CheckKind;
 
-/// A view or a container with its share of its parent's room.
-struct Placed {
+/// A view or a container, with its share of the parent's size.
+struct Panel {
     id: Uuid,
     path: EntityPath,
     share: f32,
 }
 
-/// Counts the views and containers: their numbers are their ids.
+/// The layout under construction. Views and containers are numbered; the number is the id.
 struct Layout {
     messages: Messages,
     count: u128,
 }
 
-/// The layout's messages; the last one activates it.
+/// The messages of the layout; the last one activates it.
 pub(super) fn messages(messages: Messages, input: &RecordingInput) -> Result<Vec<LogMsg>, RecordError> {
     let mut layout = Layout { messages, count: 0 };
     let left = [layout.scene(input)?, layout.events()?];
@@ -67,22 +69,22 @@ impl Layout {
         self.messages.log_static(path, what)
     }
 
-    /// A place for a view or a container, numbered by the count of those before it.
-    fn place(&mut self, kind: &str, share: f32) -> Placed {
+    /// A new view or container with the next id.
+    fn next_panel(&mut self, kind: &str, share: f32) -> Panel {
         let id = Uuid::from_u128(self.count);
         self.count += 1;
-        Placed { id, path: entity(&[kind, &id.to_string()]), share }
+        Panel { id, path: entity(&[kind, &id.to_string()]), share }
     }
 
-    /// A view of what the queries match.
+    /// A view of the entities that match the queries.
     fn view<Q: AsRef<str>>(
         &mut self,
         class: &str,
         name: &str,
         queries: &[Q],
         share: f32,
-    ) -> Result<Placed, RecordError> {
-        let view = self.place("view", share);
+    ) -> Result<Panel, RecordError> {
+        let view = self.next_panel("view", share);
         let contents = ViewContents::new(queries.iter().map(|query| query.as_ref()));
         self.log(&child(&view.path, "ViewContents"), &contents)?;
         let style = ViewBlueprint::new(class).with_display_name(name).with_space_origin("/");
@@ -90,21 +92,21 @@ impl Layout {
         Ok(view)
     }
 
-    fn container(&mut self, kind: ContainerKind, contents: &[Placed], share: f32) -> Result<Placed, RecordError> {
-        let placed = self.place("container", share);
-        let shares = contents.iter().map(|placed| placed.share);
+    fn container(&mut self, kind: ContainerKind, contents: &[Panel], share: f32) -> Result<Panel, RecordError> {
+        let panel = self.next_panel("container", share);
+        let shares = contents.iter().map(|panel| panel.share);
         let container =
-            ContainerBlueprint::new(kind).with_contents(contents.iter().map(|placed| placed.path.to_string()));
+            ContainerBlueprint::new(kind).with_contents(contents.iter().map(|panel| panel.path.to_string()));
         let container = match kind {
             ContainerKind::Horizontal => container.with_col_shares(shares),
             _ => container.with_row_shares(shares),
         };
-        self.log(&placed.path, &container)?;
-        Ok(placed)
+        self.log(&panel.path, &container)?;
+        Ok(panel)
     }
 
-    /// The scene: robot, board and person in profile.
-    fn scene(&mut self, input: &RecordingInput) -> Result<Placed, RecordError> {
+    /// The 3-D scene, seen from the side.
+    fn scene(&mut self, input: &RecordingInput) -> Result<Panel, RecordError> {
         let view = self.view("3D", "scene", &["+ /scene/**"], 0.76)?;
         let (eye, target) = eye_and_target(input);
         let controls = EyeControls3D::new()
@@ -124,8 +126,8 @@ impl Layout {
         Ok(view)
     }
 
-    /// Time, level and text; all events have the same entity.
-    fn events(&mut self) -> Result<Placed, RecordError> {
+    /// The events: level and text. The text contains the time.
+    fn events(&mut self) -> Result<Panel, RecordError> {
         let view = self.view("TextLog", "events", &["+ /events"], 0.24)?;
         let column = |kind| TextLogColumn { kind, visible: true.into() };
         let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body].map(column);
@@ -133,15 +135,15 @@ impl Layout {
         Ok(view)
     }
 
-    fn plot(&mut self, input: &RecordingInput, plot: &str, kind: CheckKind) -> Result<Placed, RecordError> {
+    fn plot(&mut self, input: &RecordingInput, plot: &str, kind: CheckKind) -> Result<Panel, RecordError> {
         let unit = kind.unit();
         let (name, queries) = match kind {
             CheckKind::TorqueRatio => {
-                let joints = hardest_first(input);
+                let joints = by_torque(input);
                 let mut queries: Vec<String> =
                     joints.iter().take(JOINTS_SHOWN).map(|(joint, _)| query(plot, &joint.name)).collect();
                 queries.extend([query(plot, LIMIT), query(plot, FAILURE)]);
-                ("joint torque / limit, hardest joints".to_owned(), queries)
+                ("joint torque / limit, most loaded joints".to_owned(), queries)
             }
             CheckKind::SlipRotation => (format!("rotation of the hands on the board, {unit}"), vec![query(plot, "**")]),
             CheckKind::Slip => (format!("slip of the hands on the board, {unit}"), vec![query(plot, "**")]),
@@ -153,19 +155,19 @@ impl Layout {
         Ok(view)
     }
 
-    /// The load that acts.
-    fn load(&mut self) -> Result<Placed, RecordError> {
+    /// The applied load factor.
+    fn load(&mut self) -> Result<Panel, RecordError> {
         let view = self.view("TimeSeries", "load factor", &[query(LOAD, "**")], 0.12)?;
         self.legend(&view)?;
         Ok(view)
     }
 
-    fn legend(&mut self, view: &Placed) -> Result<(), RecordError> {
+    fn legend(&mut self, view: &Panel) -> Result<(), RecordError> {
         self.log(&child(&view.path, "PlotLegend"), &PlotLegend::new().with_corner(Corner2D::LeftTop))
     }
 
-    /// The axis from zero to `top`.
-    fn range(&mut self, view: &Placed, top: f64) -> Result<(), RecordError> {
+    /// Sets the range of the vertical axis from zero to `top`.
+    fn range(&mut self, view: &Panel, top: f64) -> Result<(), RecordError> {
         let range = rerun::datatypes::Range1D([0.0, top]);
         self.log(&child(&view.path, "ScalarAxis"), &ScalarAxis::new().with_range(range))
     }
@@ -191,7 +193,7 @@ fn child(path: &EntityPath, name: &str) -> EntityPath {
     path.join(&entity(&[name]))
 }
 
-/// The query for one series of a plot, or for all of them.
+/// The query for one series of a plot, or for all with `**`.
 fn query(plot: &str, series: &str) -> String {
     match series {
         "**" => format!("+ {}/**", entity(&["plots", plot])),
@@ -199,12 +201,12 @@ fn query(plot: &str, series: &str) -> String {
     }
 }
 
-/// From where the scene is seen and what is looked at, in W: robot, board and person in profile, from the side to which the
-/// worked face looks, and from far enough to have all three in view.
+/// Position and target of the camera, in W, m. It sees robot, board and person from the side that the worked face of the
+/// board looks to.
 fn eye_and_target(input: &RecordingInput) -> (Vector3<f64>, Vector3<f64>) {
     let board = input.plan.object.x_wo;
     let robot = Vector3::zeros();
-    // Without a person the place in front of the board is shown.
+    // Without a person, a point in front of the board.
     let person = input.plan.human.map_or(board.translation.vector + Vector3::x() * 0.6, |human| {
         human.x_wb.translation.vector + Vector3::z() * (0.6 * human.height_m)
     });

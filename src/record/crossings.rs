@@ -1,14 +1,16 @@
-//! Where in the scene a limit was first crossed, at the time stamp of the event: by the colour of what crossed it, and by a
-//! labelled point for the first limit of all.
+//! Marks in the scene where limits were first crossed, at the time of the event: the colour of the board or the pads, and a
+//! labelled point for the first crossing of all.
 
 use nalgebra::{Point3, Vector3};
 use rerun::{Boxes3D, Color, EntityPath, Points3D};
 
 use super::{
-    RecordError, RecordingInput,
-    chunks::Messages,
-    entity, palette,
-    scene::{Frames, vec3},
+    entity::entity,
+    error::RecordError,
+    frames::{Frames, vec3},
+    input::RecordingInput,
+    messages::Messages,
+    palette,
 };
 use crate::model::{
     measures::{Event, EventKind},
@@ -19,7 +21,7 @@ use crate::model::{
 /// The entity of the labelled point.
 pub(super) const MARK: &str = "first crossing";
 
-/// The events at which a limit was crossed, with the check.
+/// The events at which a limit was crossed, with their checks.
 fn crossings<'a>(input: &RecordingInput<'a>) -> impl Iterator<Item = (&'a Event, CheckKind)> {
     input.events.iter().filter_map(|event| match event.kind {
         EventKind::LimitCrossed(check) => Some((event, check)),
@@ -27,13 +29,13 @@ fn crossings<'a>(input: &RecordingInput<'a>) -> impl Iterator<Item = (&'a Event,
     })
 }
 
-/// When a pad, or the hand that it belongs to, first crossed a limit, s.
+/// The time at which a pad or its hand first crossed a limit, s.
 pub(super) fn pad_crossed_s(input: &RecordingInput, arm: &str, pad: &str) -> Option<f64> {
     let names = [format!("{arm} hand"), format!("{arm} {pad} pad")];
     crossings(input).find(|(event, _)| names.contains(&event.what)).map(|(event, _)| event.time_s)
 }
 
-/// When the board as a whole first crossed a limit, s.
+/// The time at which the board first crossed a limit, s.
 pub(super) fn board_crossed_s(input: &RecordingInput) -> Option<f64> {
     let first = |&(event, check): &(&Event, CheckKind)| match check {
         CheckKind::Drop => true,
@@ -43,7 +45,7 @@ pub(super) fn board_crossed_s(input: &RecordingInput) -> Option<f64> {
     crossings(input).find(first).map(|(event, _)| event.time_s)
 }
 
-/// Logs the colour of boxes: their own from the beginning, that of a limit from the time at which they crossed one.
+/// Logs the colour of boxes: `own` from the start, the colour of limits from the time `crossed_s`.
 pub(super) fn log_box_colour(
     messages: &mut Messages,
     path: &EntityPath,
@@ -54,20 +56,20 @@ pub(super) fn log_box_colour(
     let Some(&start_s) = frames.times_s.first() else {
         return messages.log_static(path, &Boxes3D::update_fields().with_colors([own]));
     };
-    // What is static hides what changes, so the colour at the beginning is a change as well.
+    // Static data hides data over time, so the first colour is logged over time too.
     let changes = std::iter::once((start_s, own)).chain(crossed_s.map(|time_s| (time_s, palette::limit())));
     let (times_s, colours): (Vec<f64>, Vec<Color>) = changes.unzip();
     let colours = Boxes3D::update_fields().with_colors(colours);
     messages.log_columns(path, &times_s, colours.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-/// Logs a point with a label where the first limit of all was crossed, from that time on.
+/// Logs a labelled point at the first crossing of all, from its time on.
 pub(super) fn log_mark(messages: &mut Messages, input: &RecordingInput, arms: &[usize]) -> Result<(), RecordError> {
     let Some(failure) = &input.verdict.first_failure else { return Ok(()) };
     let Some((event, _)) = crossings(input).find(|&(_, check)| check == failure.check) else { return Ok(()) };
     let Some(sample) = input.trace.samples.iter().find(|sample| sample.time_s == event.time_s) else { return Ok(()) };
-    let place = place_w(input, sample, &event.what, arms);
-    let mark = Points3D::new([vec3(&place)])
+    let p_w_m = position_w(input, sample, &event.what, arms);
+    let mark = Points3D::new([vec3(&p_w_m)])
         .with_radii([0.02])
         .with_colors([palette::limit()])
         .with_labels([event.text.as_str()]);
@@ -75,8 +77,8 @@ pub(super) fn log_mark(messages: &mut Messages, input: &RecordingInput, arms: &[
     messages.log_columns(&path, &[event.time_s], mark.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-/// Where a hand, a pad, a joint or a link was in a sample, in W, m; the tool point when it was the board.
-fn place_w(input: &RecordingInput, sample: &Sample, what: &str, arms: &[usize]) -> Vector3<f64> {
+/// The position of a hand, pad, joint or link in a sample, in W, m; for other names the tool point.
+fn position_w(input: &RecordingInput, sample: &Sample, what: &str, arms: &[usize]) -> Vector3<f64> {
     for ((arm, state), &robot_arm) in input.trace.arms.iter().zip(&sample.arms).zip(arms) {
         if what == format!("{} hand", arm.name) {
             return (sample.x_wo * Point3::from(state.x_oc.translation.vector)).coords;

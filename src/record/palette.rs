@@ -1,18 +1,18 @@
-//! Colours with one meaning each, from Okabe and Ito's palette, which the colour-blind can tell apart.
+//! Colours with one meaning each, from the palette of Okabe and Ito, which colour-blind readers can tell apart.
 
 use rerun::Color;
 
-/// Behind the scene.
+/// Background of the scene.
 pub(super) fn background() -> Color {
     Color::from_rgb(28, 30, 34)
 }
 
-/// Any limit, and what has crossed one.
+/// Limits, and bodies that crossed one.
 pub(super) fn limit() -> Color {
     Color::from_rgb(213, 94, 0)
 }
 
-/// The board, and how far it gave way.
+/// The board and its deflection.
 pub(super) fn board() -> Color {
     Color::from_rgb(240, 228, 120)
 }
@@ -22,31 +22,31 @@ pub(super) fn load() -> Color {
     Color::from_rgb(204, 121, 167)
 }
 
-/// The person, seen through: they must not hide what they work on.
+/// The person: translucent, so that the board stays visible.
 pub(super) fn person() -> Color {
     Color::from_unmultiplied_rgba(0, 158, 115, 110)
 }
 
-/// The robot but its hands.
+/// The robot except its hands.
 pub(super) fn robot() -> Color {
     Color::from_rgb(150, 150, 150)
 }
 
-/// What belongs to the hand or the arm of this number.
+/// The hand and the joints of the arm with this index.
 pub(super) fn hand(arm: usize) -> Color {
     const HANDS: [[u8; 3]; 2] = [[86, 180, 233], [230, 159, 0]];
     let [r, g, b] = HANDS[arm % HANDS.len()];
     Color::from_rgb(r, g, b)
 }
 
-/// A shade of an arm's colour: 0 is the colour itself, larger shares are darker.
+/// A shade of an arm's colour: from 0 for the colour itself to 1 for black.
 pub(super) fn shade(arm: usize, darker: f32) -> Color {
     let [r, g, b, _] = hand(arm).to_array();
     let dim = |channel: u8| (f32::from(channel) * (1.0 - darker)) as u8;
     Color::from_rgb(dim(r), dim(g), dim(b))
 }
 
-/// The points between which distances are measured.
+/// The points of the peripersonal metric.
 pub(super) fn points() -> Color {
     Color::from_rgb(255, 255, 255)
 }

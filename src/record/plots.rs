@@ -1,29 +1,29 @@
-//! Everything over time that is no picture: the judge's series beside their limits, the phases, the events.
+//! Data over time outside the scene: the judge's series with their limits, phases, events.
 
 use rerun::{
     Scalars, SeriesLines, SeriesPoints, StateChange, StateConfiguration, TextLog, TextLogLevel, components::MarkerShape,
 };
 
-use super::{RecordError, RecordingInput, chunks::Messages, entity, palette};
+use super::{entity::entity, error::RecordError, input::RecordingInput, messages::Messages, palette};
 use crate::model::{
     measures::{EventKind, JointMeasures, Measures, axis_top},
     trace::{Phase, Sample},
     verdict::CheckKind,
 };
 
-/// How many joints the torque plot shows: those that worked hardest. The others are in the file all the same.
+/// Number of joints in the torque plot: those with the highest torque ratios. The file contains all.
 pub(super) const JOINTS_SHOWN: usize = 4;
 
-/// Name of the series that is a limit.
+/// Name of the series of a limit.
 pub(super) const LIMIT: &str = "limit";
 
-/// Name of the series that is the first crossing of a limit.
+/// Name of the series of the first crossing of a limit.
 pub(super) const FAILURE: &str = "first crossing";
 
-/// The plot of the load, which has no limit.
+/// The plot of the load factor, which has no limit.
 pub(super) const LOAD: &str = "load";
 
-/// The plots of what is judged: the folder of their series, and the check that they explain.
+/// The plots of checks: the folder of the series, and the check.
 pub(super) const PLOTS: [(&str, CheckKind); 4] = [
     ("slip", CheckKind::Slip),
     ("rotation", CheckKind::SlipRotation),
@@ -44,7 +44,7 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     if !measures.deflection_mm.is_empty() {
         series("deflection", "tool point", palette::board(), &measures.deflection_mm)?;
     }
-    for (joint, colour) in hardest_first(input) {
+    for (joint, colour) in by_torque(input) {
         series("torque", &joint.name, colour, &joint.torque_ratio)?;
     }
     if !measures.load_factor.is_empty() {
@@ -58,8 +58,8 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     log_events(messages, input)
 }
 
-/// The joints with their colours: the hardest working first, each in its arm's colour, the hardest brightest.
-pub(super) fn hardest_first<'a>(input: &RecordingInput<'a>) -> Vec<(&'a JointMeasures, rerun::Color)> {
+/// The joints by torque ratio, highest first, with shades of their arm's colour, brightest first.
+pub(super) fn by_torque<'a>(input: &RecordingInput<'a>) -> Vec<(&'a JointMeasures, rerun::Color)> {
     let peak = |joint: &JointMeasures| input.verdict.peak_torque_ratio.get(&joint.name).copied().unwrap_or(0.0);
     let mut joints: Vec<&JointMeasures> = input.measures.joints.iter().collect();
     joints.sort_by(|a, b| peak(b).total_cmp(&peak(a)));
@@ -76,7 +76,7 @@ pub(super) fn hardest_first<'a>(input: &RecordingInput<'a>) -> Vec<(&'a JointMea
         .collect()
 }
 
-/// One line of a plot; `style` is its colour, width and name.
+/// Logs a line of a plot; `style` is its colour, width and name.
 fn log_series(
     messages: &mut Messages,
     path: [&str; 2],
@@ -92,7 +92,7 @@ fn log_series(
     messages.log_columns(&path, times_s, scalars.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-/// A level line at the limit, from the reference to the trace's end.
+/// Logs a horizontal line at the limit, from the reference state to the end of the trace.
 fn log_limit(messages: &mut Messages, input: &RecordingInput, plot: &str, kind: CheckKind) -> Result<(), RecordError> {
     let (Some(check), [first_s, .., last_s]) = (input.verdict.check(kind), input.measures.time_s.as_slice()) else {
         return Ok(());
@@ -101,7 +101,7 @@ fn log_limit(messages: &mut Messages, input: &RecordingInput, plot: &str, kind: 
     log_series(messages, [plot, LIMIT], &[*first_s, *last_s], &ends, (palette::limit(), 1.5, LIMIT))
 }
 
-/// The series that a check is about, all of them.
+/// The series that a check judges.
 fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
     match kind {
         CheckKind::Slip => measures.hands.iter().map(|hand| hand.slip_mm.as_slice()).collect(),
@@ -120,13 +120,13 @@ fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
     }
 }
 
-/// The top of a plot's axis: its limit must be seen even when a board that is lost takes its series far away.
+/// The top of a plot's axis, chosen so that the limit is visible even if the values of a lost board are far above it.
 pub(super) fn top(input: &RecordingInput, kind: CheckKind) -> f64 {
     let peak = judged_series(input.measures, kind).into_iter().flatten().copied().fold(0.0, f64::max);
     axis_top(peak, input.verdict.check(kind).map(|check| check.limit))
 }
 
-/// A point where the first limit of all was crossed, on the worst of the series.
+/// Logs a point at the first crossing of all, on the series with the largest value.
 fn log_failure(
     messages: &mut Messages,
     input: &RecordingInput,
@@ -153,7 +153,7 @@ fn log_failure(
 fn log_phases(messages: &mut Messages, samples: &[Sample]) -> Result<(), RecordError> {
     let path = entity(&["phases"]);
     let phases = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release];
-    // Greys: the colours have other meanings.
+    // Greys, because the colours have other meanings.
     let greys = [90, 130, 170, 90].map(|v| rerun::Color::from_rgb(v, v, v));
     let style = StateConfiguration::new().with_values(phases.map(Phase::name)).with_colors(greys);
     messages.log_static(&path, &style)?;
@@ -176,15 +176,15 @@ fn log_events(messages: &mut Messages, input: &RecordingInput) -> Result<(), Rec
     messages.log_columns(&entity(&["events"]), &times_s, log.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-/// What parts the time from the text of an event.
+/// The separator between time and text of an event.
 const TIME_END: &str = " s  ";
 
-/// The text with its time before it: the viewer's own column of times is too narrow to be read.
+/// The text with the time in front: the viewer's own column of times is too narrow.
 fn event_text(time_s: f64, text: &str) -> String {
     format!("{time_s:.3}{TIME_END}{text}")
 }
 
-/// The text of an event without the time before it.
+/// The text of an event without the time in front.
 pub(super) fn without_time(text: &str) -> String {
     text.split_once(TIME_END).map_or(text, |(_, text)| text).to_owned()
 }

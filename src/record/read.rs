@@ -1,38 +1,26 @@
-//! The way back: what a recording says, read from the file.
+//! Reads the verdict, or the whole run, from a recording.
 
-use std::{collections::BTreeMap, io::Cursor, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
-use rerun::{
-    ComponentDescriptor,
-    external::re_log_encoding::{DecoderApp, StreamHeader},
-    log::{Chunk, LogMsg},
-};
+use rerun::log::Chunk;
 
 use super::{
-    APPLICATION, RecordError, TIMELINE, entity,
+    decode::{chunks, document, json, texts, times_s},
+    error::RecordError,
     plots::{FAILURE, LIMIT, without_time},
-    rrd, stored,
+    stored,
     summary::{ABOUT, About},
 };
 use crate::model::{FORMAT, plan::Plan, scenario::Scenario, trace::Trace, verdict::Verdict};
 
-/// The first bytes of every rerun recording that this version reads.
-const MAGIC: &[u8] = b"RRF2";
-
-/// The minor version of rerun whose files are read: its releases change what the columns mean.
-const RERUN_MINOR: u8 = 36;
-
-/// The versions of rerun whose files are read, in words.
-const RERUN: &str = "0.36";
-
-/// What a recording says.
+/// The verdict and the main figures of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedSummary {
-    /// The verdict, as it was recorded.
+    /// The recorded verdict.
     pub verdict: Verdict,
-    /// The largest value of every plotted series while the load acted.
+    /// The largest value of each series until the load was released.
     pub peaks: Peaks,
-    /// The parts of the simulation.
+    /// The phases of the simulation.
     pub phases: Vec<RecordedPhase>,
     /// Events: time, s, and text.
     pub events: Vec<(f64, String)>,
@@ -40,7 +28,7 @@ pub struct RecordedSummary {
     pub end_s: f64,
 }
 
-/// The largest values of the plotted series, from the reference to the end of the load.
+/// The largest values of the series, from the reference state until the load is released.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     /// Slip of each hand, mm.
@@ -49,62 +37,63 @@ pub struct Peaks {
     pub rotation_deg: BTreeMap<String, f64>,
     /// Deflection of the tool point, mm.
     pub deflection_mm: f64,
-    /// Torque over limit of each joint.
+    /// Torque divided by its limit, for each joint.
     pub torque_ratio: BTreeMap<String, f64>,
 }
 
-/// One part of the simulation.
+/// One phase of the simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedPhase {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its first sample, s.
+    /// Time of its first sample, s.
     pub start_s: f64,
 }
 
-/// The run that a recording holds, enough to judge it again.
+/// The run in a recording, sufficient to judge it again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedRun {
     /// The scenario under which the plan was simulated.
     pub scenario: Scenario,
     /// The plan.
     pub plan: Plan,
-    /// The verdict, as it was recorded.
+    /// The recorded verdict.
     pub verdict: Verdict,
-    /// What happened, bit by bit as the simulation had it.
+    /// The trace, equal to that of the simulation bit by bit.
     pub trace: Trace,
 }
 
-/// Reads the run that a recording of ours holds.
+/// Reads the run from a recording of Benchdog.
 ///
 /// # Errors
 /// As for [`read_summary`].
 pub fn read_run(path: &Path) -> Result<RecordedRun, RecordError> {
     read(path, |chunks| {
         let (scenario, plan) = stored::scenario_and_plan(chunks)?;
-        Ok(RecordedRun { scenario, plan, verdict: stored::json(chunks, "verdict")?, trace: stored::trace(chunks)? })
+        Ok(RecordedRun { scenario, plan, verdict: json(chunks, "verdict")?, trace: stored::trace(chunks)? })
     })
 }
 
-/// Reads what a recording of ours says.
+/// Reads the verdict and the main figures from a recording of Benchdog.
 ///
 /// # Errors
-/// When the file cannot be read, is no rerun recording, is one of another program, or was cut short.
+/// If the file cannot be read, is not a rerun recording, was written by another program or another version of the format,
+/// or is truncated.
 pub fn read_summary(path: &Path) -> Result<RecordedSummary, RecordError> {
     read(path, summary)
 }
 
-/// Reads a file, sees whether it is one of ours, and takes from it what is wanted.
-fn read<T>(path: &Path, take: impl FnOnce(&[Chunk]) -> Result<T, String>) -> Result<T, RecordError> {
+/// Reads a file, checks its format, and extracts data from it.
+fn read<T>(path: &Path, extract: impl FnOnce(&[Chunk]) -> Result<T, String>) -> Result<T, RecordError> {
     let bytes = std::fs::read(path).map_err(|source| RecordError::Read { path: path.to_owned(), source })?;
-    let taken = chunks(&bytes).and_then(|chunks| {
+    let extracted = chunks(&bytes).and_then(|chunks| {
         check_format(&chunks)?;
-        take(&chunks)
+        extract(&chunks)
     });
-    taken.map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
+    extracted.map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
 }
 
-/// The format's number is looked at before anything that may have another form in another format.
+/// Checks the format version, before any data whose form depends on it.
 fn check_format(chunks: &[Chunk]) -> Result<(), String> {
     let about = document(chunks, ABOUT).and_then(|json| serde_json::from_str::<About>(&json).ok());
     let own = env!("CARGO_PKG_VERSION");
@@ -114,12 +103,12 @@ fn check_format(chunks: &[Chunk]) -> Result<(), String> {
         Some(About { format, benchdog }) => {
             Err(format!("found a recording of format {format}, made by benchdog {benchdog}, {expected}"))
         }
-        None => Err(format!("found a recording that does not say its format, {expected}")),
+        None => Err(format!("found a recording without a format version, {expected}")),
     }
 }
 
 fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
-    let verdict = stored::json(chunks, "verdict")?;
+    let verdict = json(chunks, "verdict")?;
     let phases: Vec<RecordedPhase> = texts(chunks, "phases", &rerun::StateChange::descriptor_state())
         .map(|(start_s, name)| RecordedPhase { name, start_s })
         .collect();
@@ -135,65 +124,7 @@ fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
     })
 }
 
-/// The chunks of the recording itself, without those of its blueprint.
-pub(super) fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
-    check_header(bytes)?;
-    if !rrd::is_complete(bytes) {
-        return Err("the recording was cut short".to_owned());
-    }
-    let (mut chunks, mut ours) = (Vec::new(), false);
-    for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
-        match message.map_err(|error| format!("found a damaged recording: {error}"))? {
-            LogMsg::SetStoreInfo(info) => ours |= info.info.application_id().as_str() == APPLICATION,
-            LogMsg::ArrowMsg(store, arrow) if store.is_recording() => {
-                chunks.push(Chunk::from_arrow_msg(&arrow).map_err(|error| format!("found damaged data: {error}"))?);
-            }
-            LogMsg::ArrowMsg(..) | LogMsg::BlueprintActivationCommand(_) => {}
-        }
-    }
-    if ours { Ok(chunks) } else { Err("found no recording of benchdog, expected one".to_owned()) }
-}
-
-/// The header says whether this is a rerun recording, and of which version.
-fn check_header(bytes: &[u8]) -> Result<(), String> {
-    let no_recording = "found no rerun recording, expected a file that starts with \"RRF2\"";
-    let header = bytes.get(..StreamHeader::ENCODED_SIZE_BYTES).ok_or(no_recording)?;
-    let (magic, [major, minor, patch, _]) = (&header[..4], [header[4], header[5], header[6], header[7]]);
-    let found = || format!("found a recording of rerun {major}.{minor}.{patch}, expected one of {RERUN}");
-    match magic {
-        MAGIC if (major, minor) == (0, RERUN_MINOR) => Ok(()),
-        MAGIC => Err(found()),
-        // RRF0, RRF1: files of rerun before 0.23.
-        [b'R', b'R', b'F', _] => Err(found()),
-        _ => Err(no_recording.to_owned()),
-    }
-}
-
-fn of<'a>(chunks: &'a [Chunk], path: &str) -> impl Iterator<Item = &'a Chunk> {
-    let path = entity(&[path]);
-    chunks.iter().filter(move |chunk| *chunk.entity_path() == path)
-}
-
-/// The text of a document.
-pub(super) fn document(chunks: &[Chunk], path: &str) -> Option<String> {
-    let component = rerun::TextDocument::descriptor_text().component;
-    let batch = |chunk: &Chunk| chunk.component_batch::<rerun::Text>(component, 0)?.ok()?.pop();
-    of(chunks, path).find_map(batch).map(|text| text.to_string())
-}
-
-/// Times and texts of a component.
-fn texts(chunks: &[Chunk], path: &str, descriptor: &ComponentDescriptor) -> impl Iterator<Item = (f64, String)> {
-    let component = descriptor.component;
-    of(chunks, path).flat_map(move |chunk| {
-        let row = move |(index, time_s): (usize, f64)| {
-            let text = chunk.component_batch::<rerun::Text>(component, index)?.ok()?.pop()?;
-            Some((time_s, text.to_string()))
-        };
-        times_s(chunk).into_iter().enumerate().filter_map(row)
-    })
-}
-
-/// The largest values of all series before `end_s`.
+/// The largest values of all series before the time `end_s`.
 fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
     let mut peaks = Peaks::default();
     for chunk in chunks {
@@ -215,7 +146,7 @@ fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
     peaks
 }
 
-/// The largest scalar of a chunk before `end_s`; none in a chunk without scalars.
+/// The largest scalar of a chunk before the time `end_s`; `None` in a chunk without scalars.
 fn peak(chunk: &Chunk, end_s: f64) -> Option<f64> {
     let component = rerun::Scalars::descriptor_scalars().component;
     let values = chunk.iter_slices::<f64>(component).map(|slice| slice.first().copied());
@@ -225,10 +156,4 @@ fn peak(chunk: &Chunk, end_s: f64) -> Option<f64> {
         .filter(|(time_s, _)| *time_s < end_s)
         .filter_map(|(_, value)| value)
         .reduce(f64::max)
-}
-
-/// The times of a chunk's rows, s.
-fn times_s(chunk: &Chunk) -> Vec<f64> {
-    let column = chunk.timelines().get(&TIMELINE.into());
-    column.map_or(Vec::new(), |column| column.times_raw().iter().map(|&nanos| nanos as f64 / 1e9).collect())
 }

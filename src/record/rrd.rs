@@ -1,4 +1,4 @@
-//! Messages as the bytes of an `.rrd` file.
+//! Encodes messages as an `.rrd` file.
 
 use rerun::{
     external::{
@@ -11,25 +11,25 @@ use rerun::{
     log::LogMsg,
 };
 
-use super::RecordError;
+use super::error::RecordError;
 
-/// The index of a file as it stands in the file.
+/// The encoded index of a file.
 type FooterRecord = <RrdFooter as ToTransport>::Output;
 
-/// The file of these messages: equal messages, equal bytes.
+/// The file of these messages. Equal messages give equal bytes.
 pub(super) fn bytes(messages: impl IntoIterator<Item = LogMsg>) -> Result<Vec<u8>, RecordError> {
     let mut bytes = Encoder::encode(messages.into_iter().map(Ok)).map_err(RecordError::encode)?;
     sort_index(&mut bytes).map_err(RecordError::encode)?;
     Ok(bytes)
 }
 
-/// True when the file ends as a whole one does: with the place of its index.
+/// True if the file ends with the position of its index, as every complete file does.
 pub(super) fn is_complete(bytes: &[u8]) -> bool {
     StreamFooter::from_rrd_bytes(bytes).is_ok()
 }
 
-/// The encoder lists stores and columns of the index in the order of hash maps, which differs from run to run. Here the
-/// index is written again in the order of names.
+/// Rewrites the index in the order of names. The encoder lists stores and columns in the order of hash maps, which differs
+/// from run to run.
 fn sort_index(bytes: &mut Vec<u8>) -> Result<(), CodecError> {
     let StreamFooter { entries, .. } = StreamFooter::from_rrd_bytes(bytes)?;
     let [StreamFooterEntry { rrd_footer_byte_span_from_start_excluding_header: span, .. }] = *entries else {

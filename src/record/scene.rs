@@ -6,43 +6,39 @@ use rerun::{
     Transform3D, ViewCoordinates,
 };
 
-use super::{Capsule, RecordError, RecordingInput, chunks::Messages, crossings, entity, palette};
+use super::{
+    crossings,
+    entity::entity,
+    error::RecordError,
+    frames::{Frames, arm_indices, frames, quaternion, vec3},
+    input::{Capsule, RecordingInput},
+    messages::Messages,
+    palette,
+};
 use crate::{
     model::{
         frames::Pose,
         operation::{Operation, OperationKind},
         trace::Sample,
     },
-    robot::{ArmState, PlacedShape, Robot, Shape},
+    robot::{PlacedShape, Robot, Shape},
 };
 
-/// Length of a force's arrow, m/N: the 30 N of a grip are as long as a hand is wide.
+/// Length of a force's arrow, m/N: 30 N are 0.12 m.
 pub(super) const ARROW_M_PER_N: f64 = 0.004;
 
-/// Time between two pictures, s.
-const FRAME_S: f64 = 0.02;
-
-/// Thickness of the plate that marks a pad, m: to be seen, no property of the gripper.
+/// Thickness of the plates that show pads, m; chosen for visibility.
 const PAD_PLATE_M: f64 = 0.004;
 
-/// Radius of the tool's parts, m: to be seen, no property of the tool.
+/// Radius of the tool's parts, m; chosen for visibility.
 const TOOL_RADIUS_M: f64 = 0.008;
 
-/// The folder of the points between which distances are measured; the layout hides it.
+/// The folder of the points of the peripersonal metric, which the layout hides.
 pub(super) const POINTS: &str = "points";
 
-/// Radius of the ring that marks a hole, m, and half the length of the line that marks a cut.
+/// Radius of the ring that marks a hole, and half the length of the line that marks a cut, m.
 const HOLE_RADIUS_M: f64 = 0.012;
 const HALF_CUT_M: f64 = 0.05;
-
-/// The samples that become pictures, and the poses of the robot's links in them.
-pub(super) struct Frames<'a> {
-    samples: Vec<&'a Sample>,
-    /// Their times, s.
-    pub times_s: Vec<f64>,
-    /// One entry a frame, in it one entry a link.
-    x_wl: Vec<Vec<Pose>>,
-}
 
 /// Logs the scene.
 pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
@@ -58,43 +54,6 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
         log_pads(messages, input, &frames, arm, robot_arm)?;
     }
     log_load(messages, &frames)
-}
-
-/// For each arm of the trace its index in the robot.
-fn arm_indices(input: &RecordingInput) -> Result<Vec<usize>, RecordError> {
-    let names = || input.robot.arms.iter().map(|arm| format!("\"{}\"", arm.name)).collect::<Vec<_>>().join(", ");
-    let index = |name: &String| {
-        let unknown = || RecordError::UnknownArm { found: name.clone(), expected: names() };
-        input.robot.arm_index(name).ok_or_else(unknown)
-    };
-    input.trace.arms.iter().map(|arm| index(&arm.name)).collect()
-}
-
-fn frames<'a>(input: &RecordingInput<'a>, arms: &[usize]) -> Frames<'a> {
-    let mut samples: Vec<&Sample> = Vec::new();
-    for sample in &input.trace.samples {
-        // Half a millisecond early counts: sums of steps are not exact.
-        if samples.last().is_none_or(|last| sample.time_s - last.time_s > FRAME_S - 5e-4) {
-            samples.push(sample);
-        }
-    }
-    let link_poses = |sample: &Sample| {
-        let states: Vec<ArmState> = arms
-            .iter()
-            .zip(&sample.arms)
-            .map(|(&arm, state)| ArmState {
-                arm,
-                q_rad: &state.q_rad,
-                finger_travel_m: std::array::from_fn(|finger| state.finger_m.get(finger).copied().unwrap_or(0.0)),
-            })
-            .collect();
-        input.robot.link_poses(&input.robot.positions(&states))
-    };
-    Frames {
-        times_s: samples.iter().map(|sample| sample.time_s).collect(),
-        x_wl: samples.iter().map(|sample| link_poses(sample)).collect(),
-        samples,
-    }
 }
 
 fn log_robot(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Result<(), RecordError> {
@@ -116,7 +75,7 @@ fn log_robot(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Result<
     Ok(())
 }
 
-/// The shapes of one link, those of each kind together.
+/// Logs the shapes of a link, grouped by kind.
 fn log_shapes(messages: &mut Messages, path: &EntityPath, shapes: &[PlacedShape]) -> Result<(), RecordError> {
     let (mut boxes, mut cylinders, mut spheres) = (Vec::new(), Vec::new(), Vec::new());
     for placed in shapes {
@@ -173,8 +132,8 @@ fn log_board(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -
     messages.log_static(&entity(&["scene", "board", "operation", "mark"]), &marks)
 }
 
-/// What the operation leaves on the board, in O: rings on both faces where it drills, a line along the blade where it cuts,
-/// nothing for a mere wrench.
+/// Lines that show the operation on the board, in O, m: rings on both faces for a drill, a line along the blade for a cut,
+/// nothing for a wrench.
 fn marks_o(operation: &Operation, thickness_m: f64) -> Vec<Vec<Point3<f64>>> {
     let on_board = |x: f64, y: f64, z: f64| operation.x_ot * Point3::new(x, y, z);
     match operation.kind {
@@ -186,7 +145,7 @@ fn marks_o(operation: &Operation, thickness_m: f64) -> Vec<Vec<Point3<f64>>> {
                 };
                 (0..=24).map(point).collect()
             };
-            // z_T points into the board; a line in a face would be half hidden in it.
+            // z_T points into the board. The rings are 1 mm outside the faces, or the board would hide half of them.
             vec![ring(-0.001), ring(thickness_m + 0.001)]
         }
         OperationKind::Cut => vec![vec![on_board(-HALF_CUT_M, 0.0, -0.001), on_board(HALF_CUT_M, 0.0, -0.001)]],
@@ -194,14 +153,14 @@ fn marks_o(operation: &Operation, thickness_m: f64) -> Vec<Vec<Point3<f64>>> {
     }
 }
 
-/// The points of body and robot between which the peripersonal metric measures.
+/// Logs the points of person and robot of the peripersonal metric (`docs/method.md#51-point-sets`).
 fn log_points(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
     let points = |points_w: Vec<[f32; 3]>| Points3D::new(points_w).with_radii([0.01]).with_colors([palette::points()]);
     if let Some(person) = input.person {
         let body = points(person.points_w.iter().map(|point| vec3(&point.coords)).collect());
         messages.log_static(&entity(&["scene", POINTS, "person"]), &body)?;
     }
-    // Where the plan has them: the metric is one of the planned pose.
+    // In the planned pose, for which the metric is computed.
     let Some(x_wl) = frames.x_wl.first() else { return Ok(()) };
     let point_w = |point: &crate::robot::BodyPoint| vec3(&(x_wl[point.link] * point.p_l).coords);
     let robot = points(input.robot.body_points.iter().map(point_w).collect());
@@ -214,7 +173,7 @@ pub(super) fn operation_label(operation: &Operation) -> String {
     format!("{kind}, {:.0} N", operation.wrench_o.force_n.norm())
 }
 
-/// The person, and the tool as two sticks: along z_T from the tip to beside the palm, and from there to the palm.
+/// Logs the person, and the tool as two rods: from the tip along z_T to the height of the palm, and from there to the palm.
 fn log_person(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
     let Some(person) = input.person else { return Ok(()) };
     let body = capsules(&person.capsules).with_colors([palette::person()]);
@@ -222,15 +181,15 @@ fn log_person(messages: &mut Messages, input: &RecordingInput) -> Result<(), Rec
     let x_wt = input.plan.object.x_wo * input.plan.operation.x_ot;
     let tip = Point3::from(x_wt.translation.vector);
     let axis = x_wt.rotation * Vector3::z();
-    let elbow = tip + axis * axis.dot(&(person.palm_w - tip));
-    let stick = |ends_w| Capsule { ends_w, radius_m: TOOL_RADIUS_M };
-    let tool = capsules(&[stick([tip, elbow]), stick([elbow, person.palm_w])]).with_colors([palette::load()]);
+    let corner = tip + axis * axis.dot(&(person.palm_w - tip));
+    let rod = |ends_w| Capsule { ends_w, radius_m: TOOL_RADIUS_M };
+    let tool = capsules(&[rod([tip, corner]), rod([corner, person.palm_w])]).with_colors([palette::load()]);
     messages.log_static(&entity(&["scene", "tool"]), &tool)
 }
 
 fn capsules(capsules: &[Capsule]) -> Capsules3D {
     let along = |capsule: &Capsule| capsule.ends_w[1] - capsule.ends_w[0];
-    // Opposite to z every turn about any axis across it will do.
+    // For -z the axis of rotation is any that is orthogonal to z.
     let from_z = |direction: Vector3<f64>| {
         UnitQuaternion::rotation_between(&Vector3::z(), &direction)
             .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
@@ -244,7 +203,7 @@ fn capsules(capsules: &[Capsule]) -> Capsules3D {
     .with_fill_mode(FillMode::Solid)
 }
 
-/// The pads of one hand as plates, and the forces with which they push on the board.
+/// Logs the pads of a hand as plates, and their forces on the board.
 fn log_pads(
     messages: &mut Messages,
     input: &RecordingInput,
@@ -276,7 +235,7 @@ fn log_pads(
     Ok(())
 }
 
-/// The tool's force at the tool point of the moving board.
+/// Logs the tool's force at the tool point of the moving board.
 fn log_load(messages: &mut Messages, frames: &Frames) -> Result<(), RecordError> {
     let tool_point_w = |sample: &Sample| (sample.x_wo * Point3::from(sample.p_ot_m)).coords;
     let forces = frames.samples.iter().map(|sample| (tool_point_w(sample), sample.tool_wrench_w.force_n));
@@ -284,7 +243,7 @@ fn log_load(messages: &mut Messages, frames: &Frames) -> Result<(), RecordError>
     log_forces(messages, &entity(&["scene", "forces", "tool"]), &frames.times_s, forces, &style)
 }
 
-/// Forces as arrows that end where the force acts, so that they do not vanish in the board; labelled in newtons.
+/// Logs forces as arrows, labelled in newtons. An arrow ends at the point of application, outside the board.
 fn log_forces(
     messages: &mut Messages,
     path: &EntityPath,
@@ -318,14 +277,4 @@ fn log_poses(
 
 fn transform(pose: &Pose) -> Transform3D {
     Transform3D::new().with_translation(vec3(&pose.translation.vector)).with_quaternion(quaternion(&pose.rotation))
-}
-
-/// rerun's numbers are single precision.
-pub(super) fn vec3(vector: &Vector3<f64>) -> [f32; 3] {
-    vector.map(|v| v as f32).into()
-}
-
-fn quaternion(rotation: &UnitQuaternion<f64>) -> rerun::Quaternion {
-    let [x, y, z, w] = rotation.coords.map(|v| v as f32).into();
-    rerun::Quaternion::from_xyzw([x, y, z, w])
 }

@@ -1,7 +1,7 @@
-//! The run itself, number by number, so that it can be judged again from the file alone: the trace in columns of 64-bit
-//! numbers on the entities `trace/...`, scenario and plan as JSON.
+//! Stores the whole run in the recording, so that it can be judged again from the file alone: the trace as columns of
+//! 64-bit numbers on the entities `trace/...`, scenario and plan as JSON.
 //!
-//! Columns and not one block of bytes: rerun's own dataframes read them too.
+//! Columns instead of one block of bytes can also be read by rerun's dataframes.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -15,9 +15,9 @@ use rerun::{
     },
     log::Chunk,
 };
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 
-use super::{RecordError, RecordingInput, chunks::Messages, entity, read};
+use super::{decode::json, entity::entity, error::RecordError, input::RecordingInput, messages::Messages};
 use crate::model::{
     frames::Pose,
     plan::Plan,
@@ -29,22 +29,22 @@ use crate::model::{
 /// The folder of the columns.
 const TRACE: &str = "trace";
 
-/// The archetype that the columns name as theirs.
+/// The archetype of the columns.
 const ARCHETYPE: &str = "benchdog.Trace";
 
-/// The column of the person's distance: a row of none where the plan has no person.
+/// The column of the person's distance; its rows are empty if the plan has no person.
 const PERSON_DISTANCE: &str = "person_distance_m";
 
-/// The phases in the order of time: a phase is stored as its place here.
+/// The phases in order of time. A phase is stored as its index.
 const PHASES: [Phase; 4] = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release];
 
-/// What stays the same during a simulation.
+/// Data of the trace that does not depend on time.
 #[derive(Serialize, Deserialize)]
 struct Constants {
     arms: Vec<ArmConstants>,
     p_ot_m: [f64; 3],
     broke_down: Option<String>,
-    /// The body and the part of the person.
+    /// The body that touched the person, and the part of the person.
     #[serde(default)]
     person_touch: Option<[String; 2]>,
 }
@@ -58,7 +58,7 @@ struct ArmConstants {
     grip_force_n: f64,
 }
 
-/// Stores trace, scenario and plan. The plan goes without the times that its search took: equal runs are equal files.
+/// Stores trace, scenario and plan. The durations of the search are left out of the plan, so equal runs give equal files.
 pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
     let mut plan = input.plan.clone();
     if let Some(planner) = &mut plan.planner {
@@ -133,7 +133,7 @@ fn wrench(wrench: &Wrench) -> Vec<f64> {
     wrench.to_vector().as_slice().to_vec()
 }
 
-/// The figures in the order of their declaration.
+/// The values in order of declaration.
 fn self_check(check: &StepCheck) -> Vec<f64> {
     let StepCheck { penetration_m, force_residual_n, coupling_m, contact_energy_j } = *check;
     vec![penetration_m, force_residual_n, coupling_m, contact_energy_j]
@@ -143,7 +143,7 @@ fn self_check_of([penetration_m, force_residual_n, coupling_m, contact_energy_j]
     StepCheck { penetration_m, force_residual_n, coupling_m, contact_energy_j }
 }
 
-/// Position, then the quaternion with its scalar last.
+/// Position, then the quaternion with the scalar last.
 fn pose(pose: &Pose) -> Vec<f64> {
     pose.translation.vector.iter().chain(pose.rotation.coords.iter()).copied().collect()
 }
@@ -152,7 +152,7 @@ fn descriptor(name: &'static str) -> ComponentDescriptor {
     ComponentDescriptor { archetype: Some(ARCHETYPE.into()), component: name.into(), component_type: None }
 }
 
-/// A column with a list of numbers in every row.
+/// A column with a list of numbers per row.
 fn column(name: &'static str, rows: impl Iterator<Item = Vec<f64>>) -> SerializedComponentColumn {
     let rows: Vec<Vec<f64>> = rows.collect();
     let offsets = OffsetBuffer::from_lengths(rows.iter().map(Vec::len));
@@ -161,18 +161,12 @@ fn column(name: &'static str, rows: impl Iterator<Item = Vec<f64>>) -> Serialize
     SerializedComponentColumn::new(ListArray::new(item, offsets, Arc::new(numbers), None), descriptor(name))
 }
 
-/// A JSON document of a recording.
-pub(super) fn json<T: DeserializeOwned>(chunks: &[Chunk], path: &str) -> Result<T, String> {
-    let text = read::document(chunks, path).ok_or_else(|| format!("found no {path}, expected one"))?;
-    serde_json::from_str(&text).map_err(|error| format!("found a malformed {path}: {error}"))
-}
-
 /// The scenario and the plan of a recording.
 pub(super) fn scenario_and_plan(chunks: &[Chunk]) -> Result<(Scenario, Plan), String> {
     Ok((json(chunks, "scenario")?, json(chunks, "plan")?))
 }
 
-/// The trace of a recording, bit by bit as it was stored.
+/// The trace of a recording, equal to the stored one bit by bit.
 pub(super) fn trace(chunks: &[Chunk]) -> Result<Trace, String> {
     let constants: Constants = json(chunks, TRACE)?;
     let arms: Vec<ArmTrace> = constants.arms.into_iter().map(arm_trace).collect();
@@ -208,7 +202,7 @@ fn arm_trace(arm: ArmConstants) -> ArmTrace {
     ArmTrace { name, joints, effort_nm, pads, grip_force_n }
 }
 
-/// An arm's part of every sample.
+/// The samples of one arm.
 fn arm_series(chunks: &[Chunk], arm: &ArmTrace, count: usize) -> Result<std::vec::IntoIter<ArmSample>, String> {
     let columns = Columns::new(chunks, entity(&[TRACE, "arms", &arm.name]));
     let pads: Vec<_> =
@@ -242,7 +236,7 @@ fn wrench_of(numbers: [f64; 6]) -> Wrench {
     Wrench::from(numbers)
 }
 
-/// The pose as it was stored: normalising it again would change its last bits.
+/// The stored pose, not normalised again, because that would change its last bits.
 fn pose_of([x, y, z, i, j, k, w]: [f64; 7]) -> Pose {
     Isometry3::from_parts(Vector3::new(x, y, z).into(), UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)))
 }
@@ -271,7 +265,7 @@ impl<'a> Columns<'a> {
 
     fn row(&self, name: &str, index: usize) -> Result<&'a [f64], String> {
         let row = self.rows(name).get(index).copied();
-        row.ok_or_else(|| format!("found no row {index} of {name} in {}, expected one a sample", self.path))
+        row.ok_or_else(|| format!("found no row {index} of {name} in {}, expected one per sample", self.path))
     }
 
     fn numbers<const N: usize>(&self, name: &str, index: usize) -> Result<[f64; N], String> {

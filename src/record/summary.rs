@@ -1,4 +1,4 @@
-//! The summary in Markdown, and the verdict's JSON for the way back.
+//! The summary in Markdown; format version and verdict as JSON.
 
 use std::fmt::Write as _;
 
@@ -6,22 +6,23 @@ use rerun::TextDocument;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    RecordError, RecordingInput,
-    chunks::Messages,
-    entity,
+    entity::entity,
+    error::RecordError,
+    input::RecordingInput,
+    messages::Messages,
     scene::{ARROW_M_PER_N, operation_label},
 };
 use crate::model::{FORMAT, plan::Plan, verdict::Verdict};
 
-/// The entity that says what the file is.
+/// The entity of the format version.
 pub(super) const ABOUT: &str = "about";
 
-/// What a file is, for readers of other versions.
+/// The format of a file, readable by all versions.
 #[derive(Serialize, Deserialize)]
 pub(super) struct About {
-    /// The format's number.
+    /// The format version.
     pub format: u32,
-    /// The version of Benchdog that made it.
+    /// The version of Benchdog that wrote it.
     pub benchdog: String,
 }
 
@@ -36,7 +37,7 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     messages.log_static(&entity(&["verdict"]), &TextDocument::new(json).with_media_type("application/json"))
 }
 
-/// What a reviewer reads first.
+/// The summary.
 pub(super) fn markdown(plan: &Plan, verdict: &Verdict) -> String {
     let mut text = format!("# {}: {}\n\n", verdict.name, verdict.verdict);
     let met = if verdict.met { "as expected" } else { "**not as expected**" };
@@ -61,15 +62,15 @@ pub(super) fn markdown(plan: &Plan, verdict: &Verdict) -> String {
 fn colours(text: &mut String, plan: &Plan) {
     let scale_mm = ARROW_M_PER_N * 1e3;
     push(text, format_args!("\n**Colours**"));
-    // As many as the palette has for hands, in its order; further arms have the same colours again.
+    // The colours of the palette for hands in order; further arms repeat them.
     for (index, arm) in plan.arms.iter().enumerate() {
         push(text, format_args!("- {}: {} hand", ["blue", "orange"][index % 2], arm.name));
     }
     push(text, format_args!("- yellow: board"));
     push(text, format_args!("- violet: tool and load"));
     push(text, format_args!("- green: person"));
-    push(text, format_args!("- red: limits, and what has crossed one"));
-    push(text, format_args!("- white: points of body and robot between which distances are measured; hidden at first"));
+    push(text, format_args!("- red: limits, and bodies that crossed one"));
+    push(text, format_args!("- white: points of person and robot of the peripersonal metric; hidden at first"));
     push(
         text,
         format_args!("\nArrows are forces on the board, {scale_mm:.0} mm/N: 10 N are {:.0} mm.", 10.0 * scale_mm),
@@ -97,7 +98,7 @@ fn checks(text: &mut String, verdict: &Verdict) {
     }
 }
 
-/// What was planned, and what was predicted of it.
+/// The plan and its predictions.
 fn figures(text: &mut String, plan: &Plan) {
     let [x_m, y_m, _] = plan.operation.x_ot.translation.vector.into();
     let grips: Vec<_> = plan.arms.iter().map(|arm| format!("{} {:.0} N", arm.name, arm.grip_force_n)).collect();
@@ -121,6 +122,6 @@ fn figures(text: &mut String, plan: &Plan) {
 }
 
 fn push(text: &mut String, paragraph: std::fmt::Arguments) {
-    // Writing into a string cannot fail.
+    // Writing to a string does not fail.
     let _ = writeln!(text, "{paragraph}  ");
 }

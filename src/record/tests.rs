@@ -2,21 +2,28 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, UnitQuaternion, Vector3};
 
-use super::*;
+use rerun::{StoreId, StoreKind};
+
+use super::{
+    entity::{APPLICATION, TIMELINE, entity},
+    messages::Messages,
+    *,
+};
 use crate::{
     model::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
-        measures::{EventKind, HandMeasures, JointMeasures},
+        measures::{Event, EventKind, HandMeasures, JointMeasures, Measures},
         operation::Operation,
-        plan::{ArmHold, PlacedObject},
-        trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck},
-        verdict::{Check, CheckKind, Failure, VerdictKind},
+        plan::{ArmHold, PlacedObject, Plan},
+        scenario::Scenario,
+        trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
+        verdict::{Check, CheckKind, Failure, Verdict, VerdictKind},
         wrench::Wrench,
     },
-    robot::{Chain, InverseKinematics},
+    robot::{Chain, InverseKinematics, Robot},
 };
 
 const STEP_S: f64 = 0.002;
@@ -361,7 +368,7 @@ fn the_time_that_a_search_took_is_not_recorded() {
 /// The times of an entity's rows, ns, and how many there are of this component.
 fn times_ns(bytes: &[u8], path: &[&str], component: &str) -> Vec<i64> {
     let path = entity(path);
-    let chunks = read::chunks(bytes).unwrap();
+    let chunks = decode::chunks(bytes).unwrap();
     let rows = chunks.iter().filter(|chunk| *chunk.entity_path() == path);
     rows.filter(|chunk| chunk.components_identifiers().any(|found| found.as_str() == component))
         .filter_map(|chunk| chunk.timelines().get(&TIMELINE.into()))

@@ -1,26 +1,29 @@
-//! The console: a line a scenario, and the figures of a single one. Plain text, so that it can be piped and compared.
+//! Console output: a table of all scenarios, and the details of one. Plain text without colours, so that it can be piped
+//! and compared.
 
 use std::path::Path;
+
+use comfy_table::{CellAlignment, Table, presets};
 
 use super::{Outcome, Status, explanation, number_of};
 use crate::model::verdict::{Check, CheckKind, Verdict};
 
-/// What a table says where there is nothing to say.
-const NOTHING: &str = "-";
+/// The cell of a figure that does not exist.
+const NO_FIGURE: &str = "-";
 
-/// What happened, in one line: `FAIL  cut-03: expected holds, found deflects: ...`.
+/// One outcome in a line: `FAIL  cut-03: expected holds, found deflects: ...`.
 pub fn line(outcome: &Outcome) -> String {
-    let told = match outcome {
+    let text = match outcome {
         Outcome::Judged { verdict, .. } if verdict.met => format!("{}: {}", verdict.verdict, explanation(verdict)),
         _ => outcome.sentence(),
     };
-    format!("{:<5} {}: {told}", outcome.status().mark(), outcome.name())
+    format!("{:<5} {}: {text}", outcome.status().mark(), outcome.name())
 }
 
-/// One line a scenario, then a line for every one that was not as expected, then the count.
+/// One line per scenario, then one per failure or error, then the count.
 ///
-/// The load column is the multiple of the operation that the plan predicts compliant arms to hold; `wall_s` is how long each
-/// outcome took, s, as far as it is known.
+/// The column `load` is the predicted compliant load factor of the plan. `wall_s` is the duration of each scenario, s, if
+/// known.
 pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     let header = [
         "scenario",
@@ -45,8 +48,8 @@ pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     text
 }
 
-/// The figures of one verdict: every check with value, limit and margin, the hardest working joints, and where the
-/// recording is.
+/// The details of one verdict: every check with value, limit and margin, the joints with the highest torque ratios, and the
+/// path of the recording.
 pub fn details(verdict: &Verdict, recording: Option<&Path>) -> String {
     let mut text = format!("{}: {}, expected {}: {}\n", verdict.name, verdict.verdict, verdict.expected, met(verdict));
     if !verdict.checks.is_empty() {
@@ -55,7 +58,7 @@ pub fn details(verdict: &Verdict, recording: Option<&Path>) -> String {
         text.push_str(&aligned(&rows, 2));
     }
     let mut notes = vec![vec!["because".to_owned(), explanation(verdict)]];
-    if let Some(joints) = hardest_joints(verdict) {
+    if let Some(joints) = highest_torques(verdict) {
         notes.push(vec!["torque peaks".to_owned(), joints]);
     }
     if let Some(path) = recording {
@@ -70,10 +73,10 @@ fn met(verdict: &Verdict) -> &'static str {
 }
 
 fn row(outcome: &Outcome, wall_s: Option<f64>) -> Vec<String> {
-    let figure = |value: Option<f64>| value.map_or(NOTHING.to_owned(), |value| format!("{value:.2}"));
-    let time = wall_s.map_or(NOTHING.to_owned(), |wall_s| format!("{wall_s:.1}"));
+    let figure = |value: Option<f64>| value.map_or(NO_FIGURE.to_owned(), |value| format!("{value:.2}"));
+    let time = wall_s.map_or(NO_FIGURE.to_owned(), |wall_s| format!("{wall_s:.1}"));
     let Outcome::Judged { verdict, predicted_load_factor, .. } = outcome else {
-        let mut row = vec![NOTHING.to_owned(); 9];
+        let mut row = vec![NO_FIGURE.to_owned(); 9];
         outcome.name().clone_into(&mut row[0]);
         outcome.status().mark().clone_into(&mut row[3]);
         row.push(time);
@@ -109,35 +112,28 @@ fn check_row(check: &Check) -> Vec<String> {
 /// `5 scenarios: 1 ok, 2 failed, 1 crashed, 1 skipped`.
 pub fn count(outcomes: &[Outcome]) -> String {
     let parts = Status::ALL.map(|status| (number_of(outcomes, status), status.name()));
-    let told: Vec<_> =
+    let counts: Vec<_> =
         parts.iter().filter(|part| part.0 > 0).map(|(number, what)| format!("{number} {what}")).collect();
     let plural = if outcomes.len() == 1 { "" } else { "s" };
-    let tail = if told.is_empty() { String::new() } else { format!(": {}", told.join(", ")) };
+    let tail = if counts.is_empty() { String::new() } else { format!(": {}", counts.join(", ")) };
     format!("{} scenario{plural}{tail}\n", outcomes.len())
 }
 
-/// The three hardest working joints, hardest first.
-fn hardest_joints(verdict: &Verdict) -> Option<String> {
+/// The three joints with the highest torque ratios, highest first.
+fn highest_torques(verdict: &Verdict) -> Option<String> {
     let mut joints: Vec<_> = verdict.peak_torque_ratio.iter().collect();
     joints.sort_by(|a, b| b.1.total_cmp(a.1));
-    let told: Vec<_> = joints.iter().take(3).map(|(joint, ratio)| format!("{joint} {ratio:.2}")).collect();
-    (!told.is_empty()).then(|| told.join(", "))
+    let list: Vec<_> = joints.iter().take(3).map(|(joint, ratio)| format!("{joint} {ratio:.2}")).collect();
+    (!list.is_empty()).then(|| list.join(", "))
 }
 
-/// Rows as text with two spaces between columns: the first `left` columns aligned left, the others right.
+/// Rows as text with two spaces between columns: the first `left` columns are aligned left, the others right.
 pub(crate) fn aligned(rows: &[Vec<String>], left: usize) -> String {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
-    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
-    let mut text = String::new();
-    for row in rows {
-        let cell = |(column, cell): (usize, &String)| match column < left {
-            true => format!("{cell:<0$}", widths[column]),
-            false => format!("{cell:>0$}", widths[column]),
-        };
-        let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
-        text.push_str(cells.join("  ").trim_end());
-        text.push('\n');
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).add_rows(rows.iter().cloned());
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 2));
+        column.set_cell_alignment(if index < left { CellAlignment::Left } else { CellAlignment::Right });
     }
-    text
+    format!("{}\n", table.trim_fmt())
 }

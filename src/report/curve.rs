@@ -1,11 +1,14 @@
-//! The muscular curve as a table for programs and a plot for readers.
+//! Muscular comfort along the circle (`docs/method.md#411-muscular-comfort-along-a-circle`), as CSV and as a plot.
 
 use std::fmt::Write as _;
 
-use super::picture::{document, label, line};
+use super::{
+    csv_text::csv_text,
+    picture::{document, label, line},
+};
 use crate::comfort::curve::{Curve, CurvePoint, POINTS, Span};
 
-/// How the person stands, as the files name it, with the colour of its bars and their offset from a point's tick, px.
+/// One way of standing: its name in the CSV, its legend, and the colour of its bars and their offset from the tick, px.
 struct Series {
     name: &'static str,
     legend: &'static str,
@@ -14,15 +17,9 @@ struct Series {
     span: fn(&CurvePoint) -> Option<Span>,
 }
 
-/// Two colours that the colour-blind tell apart.
+/// Blue and vermilion of the palette of Okabe and Ito, which colour-blind readers can tell apart.
 const SERIES: [Series; 2] = [
-    Series {
-        name: "free",
-        legend: "standing wherever it is best or worst",
-        colour: "#0072b2",
-        offset_px: -7.0,
-        span: |point| point.free,
-    },
+    Series { name: "free", legend: "standing anywhere", colour: "#0072b2", offset_px: -7.0, span: |point| point.free },
     Series {
         name: "fixed",
         legend: "standing in one place for all points",
@@ -32,33 +29,38 @@ const SERIES: [Series; 2] = [
     },
 ];
 
-/// The curve as CSV: a row a point and way of standing; empty figures where the person has no solution.
+/// The curve as CSV: one row per point and way of standing; the figures are empty if the person has no solution.
 pub fn csv(curve: &Curve) -> String {
-    let mut text = String::from(
-        "point,angle_deg,standing,reachable,worst_regularised,best_regularised,worst_printed,best_printed\n",
-    );
-    for (index, point) in curve.points.iter().enumerate() {
-        for series in &SERIES {
-            let figures = (series.span)(point).map_or_else(
-                || "false,,,,".to_owned(),
-                |Span { worst, best }| {
-                    let [a, b, c, d] = [worst.regularised, best.regularised, worst.printed, best.printed];
-                    format!("true,{a:.4},{b:.4},{c:.4},{d:.4}")
-                },
-            );
+    let header = [
+        "point",
+        "angle_deg",
+        "standing",
+        "reachable",
+        "worst_regularised",
+        "best_regularised",
+        "worst_printed",
+        "best_printed",
+    ];
+    let rows = curve.points.iter().enumerate().flat_map(|(index, point)| {
+        SERIES.iter().map(move |series| {
+            let span = (series.span)(point);
+            let figures = span.map_or_else(Default::default, |Span { worst, best }| {
+                [worst.regularised, best.regularised, worst.printed, best.printed]
+                    .map(|comfort| format!("{comfort:.4}"))
+            });
             let angle_deg = point.angle_rad.to_degrees();
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{},{angle_deg:.1},{},{figures}", index + 1, series.name);
-        }
-    }
-    text
+            let place = [(index + 1).to_string(), format!("{angle_deg:.1}"), series.name.to_owned()];
+            place.into_iter().chain([span.is_some().to_string()]).chain(figures).collect()
+        })
+    });
+    csv_text(&header, rows)
 }
 
-/// The plot's area inside the picture, px: left, right, top, bottom.
+/// The edges of the plot's axes, px: left, right, top, bottom.
 const AREA_PX: [f64; 4] = [64.0, 784.0, 64.0, 360.0];
 
-/// The curve as a picture: a bar from the worst to the best comfort for each point and way of standing, a cross where the
-/// person has no solution.
+/// The curve as SVG: for each point and way of standing a bar from the worst to the best comfort, or a cross if the person
+/// has no solution.
 pub fn svg(curve: &Curve) -> String {
     let [left, right, top, bottom] = AREA_PX;
     let highest = curve.points.iter().flat_map(|point| [point.free, point.fixed]).flatten();
@@ -93,7 +95,7 @@ pub fn svg(curve: &Curve) -> String {
     document(&body, [800.0, 410.0])
 }
 
-/// A round distance of grid lines: at most eight of them.
+/// The distance of grid lines, a round number for at most eight lines.
 fn grid_step(highest: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| highest <= 8.0 * step).unwrap_or(20.0)
 }
@@ -109,9 +111,7 @@ fn legend(body: &mut String) {
     label(body, left + 548.0, 46.0, "start", "no solution");
 }
 
-// Writing to a string does not fail, so the results below say nothing.
-
-/// A bar with both ends marked, at least a pixel high.
+/// A bar, at least one pixel high.
 fn bar(body: &mut String, x: f64, top: f64, bottom: f64, colour: &str) {
     let height = (bottom - top).max(1.0);
     let x = x - 4.5;

@@ -1,4 +1,4 @@
-//! Files that are written whole or not at all.
+//! Writes files atomically.
 
 use std::{
     fs, io,
@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why a file or a folder could not be written.
+/// A file or folder cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[error("failed to write {}: {source}", path.display())]
 pub struct WriteError {
@@ -16,34 +16,34 @@ pub struct WriteError {
     pub source: io::Error,
 }
 
-/// Writes a file whole or not at all: beside its place under another name, then renamed. Directories that do not exist
-/// are made; a file that does is replaced.
+/// Writes a file atomically: to a temporary file in the same folder, which is then renamed. Creates missing folders and
+/// replaces an existing file.
 ///
 /// # Errors
-/// When the disk refuses; the file is then as it was before.
+/// If the file cannot be written; an existing file is then unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })
 }
 
-/// Makes a folder and finds out whether files can be written into it, before the work whose results go there.
+/// Creates a folder and checks that files can be written to it. Called before a long computation whose results go there.
 ///
 /// # Errors
-/// When the folder cannot be made or nothing can be written into it.
+/// If the folder cannot be created or written to.
 pub fn check_folder(folder: &Path) -> Result<(), WriteError> {
     let probe = || {
         if folder.exists() && !folder.is_dir() {
             return Err(io::Error::other("found a file, expected a folder"));
         }
         fs::create_dir_all(folder)?;
-        beside().tempfile_in(folder).map(drop)
+        temporary().tempfile_in(folder).map(drop)
     };
     probe().map_err(|source| WriteError { path: folder.to_owned(), source })
 }
 
-/// Removes a file, if it is there: what an earlier run left must not be taken for this one's.
+/// Removes a file if it exists, so that results of an earlier run are not mistaken for those of this one.
 ///
 /// # Errors
-/// When it is there and cannot be removed.
+/// If it exists and cannot be removed.
 pub fn remove(path: &Path) -> Result<(), WriteError> {
     match fs::remove_file(path) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => Err(WriteError { path: path.to_owned(), source }),
@@ -57,16 +57,16 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         _ => Path::new("."),
     };
     fs::create_dir_all(directory)?;
-    let mut file = beside().tempfile_in(directory)?;
+    let mut file = temporary().tempfile_in(directory)?;
     file.write_all(bytes)?;
     file.persist(path)?;
     Ok(())
 }
 
-/// A temporary file that becomes readable to whom the user's umask allows, as any file that a program writes; left to
-/// itself the tempfile crate keeps it from all others.
+/// A temporary file with the permissions of the user's umask. The default of the tempfile crate is readable by the owner
+/// only.
 #[cfg(unix)]
-fn beside() -> tempfile::Builder<'static, 'static> {
+fn temporary() -> tempfile::Builder<'static, 'static> {
     use std::os::unix::fs::PermissionsExt as _;
     let mut builder = named();
     builder.permissions(fs::Permissions::from_mode(0o666));
@@ -74,11 +74,11 @@ fn beside() -> tempfile::Builder<'static, 'static> {
 }
 
 #[cfg(not(unix))]
-fn beside() -> tempfile::Builder<'static, 'static> {
+fn temporary() -> tempfile::Builder<'static, 'static> {
     named()
 }
 
-/// What a killed process leaves behind is hidden and says what it is.
+/// If the process is killed, a hidden file with a telling name is left.
 fn named() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".benchdog-").suffix(".part");

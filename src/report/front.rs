@@ -1,27 +1,26 @@
-//! A Pareto front as a table for programs, a plot and a table for readers.
-
-use std::fmt::Write as _;
+//! A Pareto front as CSV, plot and console table.
 
 use super::{
     console::aligned,
+    csv_text::csv_text,
     picture::{circle, document, label, line, number, ticks},
 };
 
-/// A hold on the front, or the one of the scenario's own weights.
+/// A plan on the front, or the plan for the scenario's own weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// Share of the peripersonal comfort in the weights, each over its own optimum.
+    /// Weight of the peripersonal comfort, from 0 to 1; both comforts are divided by their optima.
     pub share: f64,
     /// Regularised muscular comfort.
     pub muscular: f64,
     /// Peripersonal comfort, m.
     pub peripersonal_m: f64,
-    /// True for the hold of the scenario's own weights.
+    /// True for the plan for the scenario's own weights.
     pub own: bool,
 }
 
 impl Row {
-    /// What it keeps of each optimum, from 0 to 1.
+    /// Muscular and peripersonal comfort over their optima, from 0 to 1.
     fn kept(&self, optima: [f64; 2]) -> [f64; 2] {
         [self.muscular / optima[0], self.peripersonal_m / optima[1]]
     }
@@ -31,26 +30,24 @@ impl Row {
     }
 }
 
-/// The front as CSV: a row a hold, named like its plan's file.
+/// The front as CSV: one row per plan, named like the plan's file.
 pub fn csv(rows: &[Row], optima: [f64; 2]) -> String {
-    let mut text =
-        String::from("plan,share_peripersonal,muscular_regularised,peripersonal_m,muscular_kept,peripersonal_kept\n");
-    for (index, row) in rows.iter().enumerate() {
-        let [muscular, peripersonal] = row.kept(optima);
-        // Writing to a string does not fail.
-        let _ = writeln!(
-            text,
-            "{},{:.4},{:.6},{:.6},{muscular:.4},{peripersonal:.4}",
+    let header =
+        ["plan", "share_peripersonal", "muscular_regularised", "peripersonal_m", "muscular_kept", "peripersonal_kept"];
+    let lines = rows.iter().enumerate().map(|(index, row)| {
+        let kept = row.kept(optima).map(|kept| format!("{kept:.4}"));
+        let figures = [
             row.name(index),
-            row.share,
-            row.muscular,
-            row.peripersonal_m
-        );
-    }
-    text
+            format!("{:.4}", row.share),
+            format!("{:.6}", row.muscular),
+            format!("{:.6}", row.peripersonal_m),
+        ];
+        figures.into_iter().chain(kept).collect()
+    });
+    csv_text(&header, lines)
 }
 
-/// The front for the console: each hold with what it keeps of the two optima, per cent.
+/// The front for the console, with the comforts over their optima in per cent.
 pub fn table(rows: &[Row], optima: [f64; 2]) -> String {
     let header = ["plan", "share", "muscular", "peripersonal m", "muscular kept %", "peripersonal kept %"];
     let mut lines = vec![header.map(str::to_owned).to_vec()];
@@ -63,20 +60,20 @@ pub fn table(rows: &[Row], optima: [f64; 2]) -> String {
     aligned(&lines, 1)
 }
 
-/// The plot's area inside the picture, px: left, right, top, bottom.
+/// The edges of the plot's axes, px: left, right, top, bottom.
 const AREA_PX: [f64; 4] = [64.0, 620.0, 56.0, 380.0];
 const FRONT: &str = "#0072b2";
 const OWN: &str = "#d55e00";
 
-/// The front as a picture: muscular comfort to the right, peripersonal comfort upward.
+/// The front as SVG: muscular comfort on the horizontal axis, peripersonal comfort on the vertical one.
 pub fn svg(rows: &[Row], optima: [f64; 2]) -> String {
     let [left, right, top, bottom] = AREA_PX;
     let range = |value: fn(&Row) -> f64| {
         let low = rows.iter().map(value).fold(f64::INFINITY, f64::min);
         let high = rows.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
-        // Room about the points; a front of one point still has an axis.
-        let room = (0.06 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
-        [low - room, high + room]
+        // A margin around the points; a front of one point also needs an axis.
+        let margin = (0.06 * (high - low)).max(1e-3 * high.abs()).max(1e-9);
+        [low - margin, high + margin]
     };
     let (xs, ys) = (range(|row| row.muscular), range(|row| row.peripersonal_m));
     let x_px = |muscular: f64| left + (right - left) * (muscular - xs[0]) / (xs[1] - xs[0]);
@@ -92,7 +89,7 @@ pub fn svg(rows: &[Row], optima: [f64; 2]) -> String {
     }
     let front: Vec<&Row> = rows.iter().filter(|row| !row.own).collect();
     for pair in front.windows(2) {
-        // A corner, not a slope: between two holds there is no mixture of them.
+        // A step, not a slope: a mixture of two plans is not a plan.
         let [a, b] = [pair[0], pair[1]].map(|row| [x_px(row.muscular), y_px(row.peripersonal_m)]);
         line(&mut body, [a[0], a[1], b[0], a[1]], FRONT, 1.5);
         line(&mut body, [b[0], a[1], b[0], b[1]], FRONT, 1.5);
@@ -120,8 +117,8 @@ fn legend(body: &mut String, rows: &[Row], optima: [f64; 2]) {
     let Some(own) = rows.iter().find(|row| row.own) else { return };
     let [muscular, peripersonal] = own.kept(optima).map(|kept| 100.0 * kept);
     circle(body, left + 78.0, top - 17.0, 6.0, OWN, true);
-    let told = format!("the scenario's weights: {muscular:.0} % muscular, {peripersonal:.0} % peripersonal kept");
-    label(body, left + 92.0, top - 13.0, "start", &told);
+    let text = format!("the scenario's weights: {muscular:.0} % muscular, {peripersonal:.0} % peripersonal kept");
+    label(body, left + 92.0, top - 13.0, "start", &text);
 }
 
 #[cfg(test)]
@@ -146,13 +143,13 @@ mod tests {
     }
 
     #[test]
-    fn the_picture_has_every_hold_inside_its_axes() {
+    fn the_picture_has_every_plan_inside_its_axes() {
         let text = svg(&rows(), [80.0, 1.25]);
-        // Three holds of the front and the scenario's own, and one of each in the legend.
+        // Three plans of the front and the scenario's own, and one of each in the legend.
         assert_eq!(text.matches("<circle").count(), 6);
-        // Two corners between three holds.
+        // Two steps between three plans.
         assert_eq!(text.matches("stroke-width=\"1.5\"").count(), 4);
-        // The best muscular hold stands 6 parts of 112 from the right end of its axis.
+        // The plan with the best muscular comfort is 6 parts of 112 from the right end of the axis.
         let x = 620.0 - (620.0 - 64.0) * 0.06 / 1.12;
         assert!(text.contains(&format!("cx=\"{x:.1}\"")), "{text}");
     }

@@ -1,4 +1,4 @@
-//! The report of a run as one page: readable offline, on light and dark ground, on paper; no script, nothing fetched.
+//! The report of a run as one HTML page. It works offline, in light and dark mode and in print, and contains no scripts.
 
 use std::fmt::Write as _;
 
@@ -12,17 +12,16 @@ use crate::model::{
     verdict::{Check, CheckKind, Verdict},
 };
 
-/// How many joints the torque plot shows: those that worked hardest.
+/// Number of joints in the torque plot: those with the highest torque ratios.
 const JOINTS_SHOWN: usize = 3;
 
-/// The classes of a plot's lines, by arm.
+/// The CSS classes of lines, by arm.
 const HANDS: [&str; 2] = ["hand-0", "hand-1"];
 
-/// The classes of the hardest joints' lines, hardest first.
+/// The CSS classes of the joints' lines, highest torque ratio first.
 const JOINTS: [&str; JOINTS_SHOWN] = ["joint-0", "joint-1", "joint-2"];
 
-/// The whole page: the table of all scenarios, then each with its checks and plots. Those that did not go as expected are
-/// open.
+/// The page: a table of all scenarios, then a section for each with checks and plots. Sections of failures are open.
 pub fn page(outcomes: &[Outcome]) -> String {
     let count = console::count(outcomes);
     let mut body = String::new();
@@ -62,7 +61,7 @@ fn row(body: &mut String, outcome: &Outcome) {
     let (name, status) = (escape(outcome.name()), outcome.status());
     let (class, mark) = (status.name(), status.mark());
     let verdict = outcome.verdict();
-    let word = |value: Option<String>| format!("<td>{}</td>", value.unwrap_or_else(|| "–".to_owned()));
+    let text = |value: Option<String>| format!("<td>{}</td>", value.unwrap_or_else(|| "–".to_owned()));
     let figure = |value: Option<f64>| {
         format!("<td class=\"n\">{}</td>", value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}")))
     };
@@ -74,14 +73,14 @@ fn row(body: &mut String, outcome: &Outcome) {
     let cells = [
         format!("<td class=\"name\"><a href=\"#{name}\">{name}</a></td>"),
         format!("<td class=\"{class}\">{mark}</td>"),
-        word(verdict.map(|verdict| verdict.verdict.to_string())),
-        word(verdict.map(|verdict| verdict.expected.to_string())),
+        text(verdict.map(|verdict| verdict.verdict.to_string())),
+        text(verdict.map(|verdict| verdict.expected.to_string())),
         checked(CheckKind::Slip),
         checked(CheckKind::SlipRotation),
         checked(CheckKind::Deflection),
         checked(CheckKind::TorqueRatio),
         figure(load),
-        word(recording_link(outcome).map(|link| format!("<a href=\"{}\">.rrd</a>", escape(&link)))),
+        text(recording_link(outcome).map(|link| format!("<a href=\"{}\">.rrd</a>", escape(&link)))),
     ];
     push(body, format_args!("<tr>{}</tr>", cells.concat()));
 }
@@ -135,14 +134,14 @@ fn plots(body: &mut String, verdict: &Verdict, measures: &Measures) {
         measures.hands.iter().enumerate().map(line).collect::<Vec<_>>()
     };
     let deflection = Line { name: "tool point", class: "board", values: &measures.deflection_mm };
-    let load = Line { name: "multiple of the operation", class: "load", values: &measures.load_factor };
-    let joints = hardest_first(verdict, measures).into_iter().zip(JOINTS);
+    let load = Line { name: "multiple of the load", class: "load", values: &measures.load_factor };
+    let joints = by_torque(verdict, measures).into_iter().zip(JOINTS);
     let joints = joints.map(|(joint, class)| Line { name: &joint.name, class, values: &joint.torque_ratio });
     let plots = [
         ("slip of the hands on the board, mm", Some(CheckKind::Slip), hands(|hand| &hand.slip_mm)),
         ("rotation of the hands on the board, deg", Some(CheckKind::SlipRotation), hands(|hand| &hand.slip_deg)),
         ("deflection of the tool point, mm", Some(CheckKind::Deflection), vec![deflection]),
-        ("joint torque / limit, hardest joints", Some(CheckKind::TorqueRatio), joints.collect()),
+        ("joint torque / limit, most loaded joints", Some(CheckKind::TorqueRatio), joints.collect()),
         ("load factor", None, vec![load]),
     ];
     for (title, kind, lines) in plots {
@@ -154,7 +153,7 @@ fn plots(body: &mut String, verdict: &Verdict, measures: &Measures) {
     push(body, format_args!("</div>"));
 }
 
-fn hardest_first<'a>(verdict: &Verdict, measures: &'a Measures) -> Vec<&'a JointMeasures> {
+fn by_torque<'a>(verdict: &Verdict, measures: &'a Measures) -> Vec<&'a JointMeasures> {
     let peak = |joint: &JointMeasures| verdict.peak_torque_ratio.get(&joint.name).copied().unwrap_or(0.0);
     let mut joints: Vec<_> = measures.joints.iter().collect();
     joints.sort_by(|a, b| peak(b).total_cmp(&peak(a)));

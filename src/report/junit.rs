@@ -1,14 +1,13 @@
-//! JUnit XML, for a CI job: a failed expectation is a failure, a crash an error, a filtered case skipped.
+//! JUnit XML for CI: an unexpected verdict is a failure, a crash is an error, a filtered scenario is skipped.
 
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
 use super::Outcome;
 
-/// The outcomes of a run as one test suite. Times are left out: they are the one thing that two equal runs do not
-/// share.
+/// The outcomes of a run as one test suite, without durations, so that equal runs give equal files.
 ///
 /// # Errors
-/// When the XML writer fails.
+/// If the XML writer fails.
 pub fn document(outcomes: &[Outcome]) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new("benchdog");
     suite.add_test_cases(outcomes.iter().map(test_case));

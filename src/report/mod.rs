@@ -1,12 +1,11 @@
-//! What a run tells its reader: a table for the console, a page with plots for a reviewer, JSON and CSV for programs,
-//! JUnit for a CI job. One file a format. How long something took is told on the console alone: all that goes to a file is
-//! the same for equal runs.
+//! Reports of a run: console tables, an HTML page with plots, JSON and CSV for programs, JUnit for CI. One file per format.
 //!
-//! Pure functions from outcomes to text; only [`mod@file`] touches the disk. Nothing here may change a verdict, print, or
-//! look at a clock.
+//! All functions are pure, from outcomes to text, except those of [`mod@file`], which write to the disk. Nothing here
+//! changes a verdict, prints, or reads a clock. Durations are shown on the console only, so equal runs write equal files.
 
 pub mod circle;
 pub mod console;
+pub(crate) mod csv_text;
 pub mod curve;
 pub mod file;
 pub mod front;
@@ -17,7 +16,6 @@ pub mod junit;
 mod picture;
 pub mod plans;
 mod plot;
-pub mod reproduce;
 pub mod summary;
 #[cfg(test)]
 mod tests;
@@ -29,32 +27,32 @@ use crate::model::{
     verdict::{CheckKind, Verdict, VerdictKind},
 };
 
-/// What became of one scenario or plan.
+/// The outcome of one scenario or plan.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// It was planned and judged, or proved to have no plan.
+    /// It was planned and judged, or no plan was found.
     Judged {
         /// The verdict.
         verdict: Box<Verdict>,
-        /// The compliant load factor that the plan predicts; none for a plan without one.
+        /// The compliant load factor that the plan predicts; `None` for a plan without a prediction.
         predicted_load_factor: Option<f64>,
-        /// The judge's series; none when nothing was simulated.
+        /// The judge's time series; `None` if nothing was simulated.
         measures: Option<Box<Measures>>,
-        /// Where the recording was written.
+        /// The recording's file, if one was written.
         recording: Option<PathBuf>,
     },
-    /// It could not be judged: bad input, or a bug.
+    /// It could not be judged, because of invalid input or a bug.
     Crashed {
         /// The scenario's name or file.
         name: String,
-        /// What went wrong.
+        /// The error message.
         message: String,
     },
     /// It was not run.
     Skipped {
         /// The scenario's name.
         name: String,
-        /// Why not.
+        /// The reason.
         reason: SkipReason,
     },
 }
@@ -64,9 +62,9 @@ pub enum Outcome {
 pub enum SkipReason {
     /// `--filter` left it out.
     Filtered,
-    /// `--fail-fast`, and another failed before its turn.
+    /// Another scenario failed first, with `--fail-fast`.
     AfterFailure,
-    /// The run was interrupted before its turn.
+    /// The run was interrupted first.
     Interrupted,
 }
 
@@ -80,12 +78,12 @@ impl std::fmt::Display for SkipReason {
     }
 }
 
-/// How an outcome counts.
+/// The kind of an outcome, by which outcomes are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// As expected.
+    /// Judged, with the expected verdict.
     Ok,
-    /// Judged, and not as expected.
+    /// Judged, with another verdict than expected.
     Failed,
     /// It could not be judged.
     Crashed,
@@ -94,10 +92,10 @@ pub enum Status {
 }
 
 impl Status {
-    /// All, in the order of tables.
+    /// All values, in the order of tables.
     pub const ALL: [Self; 4] = [Self::Ok, Self::Failed, Self::Crashed, Self::Skipped];
 
-    /// The name in files, and in the count of a table.
+    /// The name in files and in the summary line of a table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ok => "ok",
@@ -107,7 +105,7 @@ impl Status {
         }
     }
 
-    /// The word in a table, loud where something is wrong.
+    /// The word in a table, in capitals for failures and errors.
     pub fn mark(self) -> &'static str {
         match self {
             Self::Ok => "ok",
@@ -127,7 +125,7 @@ impl Outcome {
         }
     }
 
-    /// How it counts.
+    /// The status.
     pub fn status(&self) -> Status {
         match self {
             Self::Judged { verdict, .. } if verdict.met => Status::Ok,
@@ -137,7 +135,7 @@ impl Outcome {
         }
     }
 
-    /// The verdict, where there is one.
+    /// The verdict, if it was judged.
     pub fn verdict(&self) -> Option<&Verdict> {
         match self {
             Self::Judged { verdict, .. } => Some(verdict),
@@ -145,7 +143,7 @@ impl Outcome {
         }
     }
 
-    /// What a reader must know of it, in a line: `expected holds, found slips: ...` of a failure.
+    /// The outcome in one line, such as `expected holds, found slips: ...`.
     pub fn sentence(&self) -> String {
         match self {
             Self::Judged { verdict, .. } if verdict.met => explanation(verdict),
@@ -158,12 +156,12 @@ impl Outcome {
     }
 }
 
-/// How many outcomes have this status.
+/// The number of outcomes with this status.
 fn number_of(outcomes: &[Outcome], status: Status) -> usize {
     outcomes.iter().filter(|outcome| outcome.status() == status).count()
 }
 
-/// What decided the verdict, in words: `deflection 16.20 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of the
+/// The check that decided the verdict, such as `deflection 16.20 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of the
 /// load`.
 pub fn explanation(verdict: &Verdict) -> String {
     if let Some(reason) = &verdict.reason {
@@ -182,7 +180,7 @@ pub fn explanation(verdict: &Verdict) -> String {
     format!("{figures}, first crossed at {:.3} s under {:.2} of the load", failure.time_s, failure.load_factor)
 }
 
-/// The unit after a space; nothing for a ratio.
+/// The unit after a space; empty for a ratio.
 fn unit_suffix(kind: CheckKind) -> String {
     match kind.unit() {
         "1" => String::new(),

@@ -1,10 +1,10 @@
-//! The strokes of a picture that stands alone as a file.
+//! Elements of SVG files.
 
 use std::fmt::Write as _;
 
 pub(super) use super::plot::{number, ticks};
 
-/// A picture of this size, px, on white ground.
+/// An SVG file of this size, px, with a white background.
 pub(super) fn document(body: &str, [width, height]: [f64; 2]) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
@@ -13,7 +13,7 @@ pub(super) fn document(body: &str, [width, height]: [f64; 2]) -> String {
     )
 }
 
-// Writing to a string does not fail, so the results below say nothing.
+// Writing to a string does not fail, so the results are ignored.
 
 /// A line from one point to another.
 pub(super) fn line(body: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, width_px: f64) {
@@ -24,12 +24,12 @@ pub(super) fn line(body: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, 
     );
 }
 
-/// A text; `anchor` says which part of it stands at the point.
+/// A text; `anchor` is the part of it that is at the point: `start`, `middle` or `end`.
 pub(super) fn label(body: &mut String, x: f64, y: f64, anchor: &str, text: &str) {
     let _ = writeln!(body, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
 }
 
-/// A dot, or a ring when it is hollow.
+/// A filled or a hollow circle.
 pub(super) fn circle(body: &mut String, x: f64, y: f64, radius_px: f64, colour: &str, hollow: bool) {
     let fill = if hollow { "none" } else { colour };
     let _ = writeln!(

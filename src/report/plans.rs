@@ -1,30 +1,30 @@
-//! Several plans of one scenario, side by side.
+//! A table of several plans of one scenario.
 
 use super::console::aligned;
 use crate::model::{grasp::Edge, plan::Plan};
 
-/// A line a plan: comforts, load factors, and which arm holds which edge.
+/// One line per plan: the edges that the arms hold, comforts, load factors.
 pub fn table(plans: &[Plan]) -> String {
     let header = ["plan", "edges", "objective", "muscular", "peripersonal m", "load", "compliant load"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for (index, plan) in plans.iter().enumerate() {
         let comfort = |figure: fn(&crate::model::plan::Comfort) -> f64| plan.comfort.as_ref().map(figure);
         let stability = |figure: fn(&crate::model::plan::Stability) -> f64| plan.stability.as_ref().map(figure);
-        let told = |figure: Option<f64>, digits| figure.map_or("-".to_owned(), |figure| format!("{figure:.digits$}"));
+        let cell = |figure: Option<f64>, digits| figure.map_or("-".to_owned(), |figure| format!("{figure:.digits$}"));
         rows.push(vec![
             (index + 1).to_string(),
             edges(plan),
-            told(comfort(|comfort| comfort.objective), 2),
-            told(comfort(|comfort| comfort.muscular_regularised), 2),
-            told(comfort(|comfort| comfort.peripersonal_m), 3),
-            told(stability(|stability| stability.load_factor), 2),
-            told(stability(|stability| stability.compliant_load_factor), 2),
+            cell(comfort(|comfort| comfort.objective), 2),
+            cell(comfort(|comfort| comfort.muscular_regularised), 2),
+            cell(comfort(|comfort| comfort.peripersonal_m), 3),
+            cell(stability(|stability| stability.load_factor), 2),
+            cell(stability(|stability| stability.compliant_load_factor), 2),
         ]);
     }
     aligned(&rows, 2)
 }
 
-/// Which arm holds which edge: `left +x, right -x`.
+/// The edges that the arms hold: `left +x, right -x`.
 pub fn edges(plan: &Plan) -> String {
     let edge = |x_og| Edge::of(x_og, plan.object.size_m).map_or("-".to_owned(), |edge| edge.to_string());
     let holds: Vec<_> = plan.arms.iter().map(|arm| format!("{} {}", arm.name, edge(&arm.x_og))).collect();

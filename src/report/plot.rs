@@ -1,4 +1,4 @@
-//! A series over time as inline SVG: coloured by the page's style sheet, so that it is readable on light and dark ground.
+//! Plots over time as inline SVG. The style sheet of the page sets the colours, for light and dark mode.
 
 use std::fmt::Write as _;
 
@@ -7,38 +7,38 @@ use crate::model::measures::axis_top;
 /// Size of a plot, px.
 const SIZE_PX: [f64; 2] = [460.0, 200.0];
 
-/// The plot's area inside the picture, px: left, right, top, bottom.
+/// The edges of the plot's axes, px: left, right, top, bottom.
 const AREA_PX: [f64; 4] = [44.0, 450.0, 26.0, 172.0];
 
-/// How many columns a series is thinned to; each keeps its smallest and its largest value, so no peak is lost.
+/// A series is reduced to this number of columns. Each keeps its smallest and its largest value, so no peak is lost.
 const COLUMNS: usize = 203;
 
 /// One line of a plot.
 pub(super) struct Line<'a> {
     /// Its name in the legend.
     pub name: &'a str,
-    /// The class of the style sheet that colours it.
+    /// The CSS class that sets its colour.
     pub class: &'static str,
-    /// One value a time.
+    /// One value for each time.
     pub values: &'a [f64],
 }
 
 /// A plot of several lines over the same times, s.
 pub(super) struct Plot<'a> {
-    /// What is plotted, with its unit.
+    /// The plotted quantity and its unit.
     pub title: &'a str,
     /// The times, s.
     pub time_s: &'a [f64],
     /// The lines.
     pub lines: Vec<Line<'a>>,
-    /// The limit that is drawn across.
+    /// The limit, drawn as a horizontal line.
     pub limit: Option<f64>,
-    /// When this limit was the first to be crossed, s.
+    /// The time at which the limit was crossed, s, if it was the first one crossed.
     pub failed_s: Option<f64>,
 }
 
 impl Plot<'_> {
-    /// The picture.
+    /// The plot as SVG.
     pub fn svg(&self) -> String {
         let [width, height] = SIZE_PX;
         let mut body = String::new();
@@ -48,7 +48,7 @@ impl Plot<'_> {
         let scale = Scale { start_s, end_s: end_s.max(start_s + f64::EPSILON), top };
         scale.grid(&mut body);
         label(&mut body, "title", AREA_PX[0], 16.0, "start", self.title);
-        // Writing to a string does not fail.
+        // Writing to a string does not fail, so the results are ignored.
         let [left, right, above, below] = AREA_PX;
         let (w, h) = (right - left, below - above);
         let _ = write!(
@@ -84,13 +84,13 @@ impl Plot<'_> {
             let _ =
                 write!(body, "<line class=\"{class}\" x1=\"{x:.1}\" x2=\"{:.1}\" y1=\"{y}\" y2=\"{y}\"/>", x + 14.0);
             label(body, "key", x + 18.0, y + 4.0, "start", name);
-            // As wide as the text is in a common sans-serif of 11 px, and a gap.
+            // The width of the text in a common sans-serif font of 11 px, plus a gap.
             x += 34.0 + 5.6 * name.chars().count() as f64;
         }
     }
 }
 
-/// From times and values to pixels.
+/// Converts times and values to pixels.
 struct Scale {
     start_s: f64,
     end_s: f64,
@@ -105,7 +105,7 @@ impl Scale {
 
     fn y_px(&self, value: f64) -> f64 {
         let [.., above, below] = AREA_PX;
-        // What lies far above is clipped; the bound keeps the coordinates short.
+        // Values far above are clipped by the viewport; the bound keeps the coordinates short.
         below - (below - above) * (value / self.top).clamp(-1.0, 10.0)
     }
 
@@ -121,7 +121,7 @@ impl Scale {
         }
     }
 
-    /// The coordinates of a line, thinned to the smallest and the largest value of each column.
+    /// The coordinates of a line, reduced to the smallest and the largest value of each column.
     fn points(&self, time_s: &[f64], line: &Line) -> String {
         let samples: Vec<(f64, f64)> =
             time_s.iter().copied().zip(line.values.iter().copied()).filter(|(_, value)| value.is_finite()).collect();
@@ -143,18 +143,18 @@ impl Scale {
     }
 }
 
-/// Round values from `from` to `to`: three to seven of them.
+/// Three to eight round values between `from` and `to`.
 pub(super) fn ticks(from: f64, to: f64) -> Vec<f64> {
     let rough = (to - from) / 6.0;
     let decade = 10_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade).into_iter().find(|step| *step >= rough);
     let step = step.unwrap_or(rough);
-    // A tick within a rounding of the end is one.
+    // A tick at the end counts in spite of rounding errors.
     let first = (from / step - 1e-9).ceil();
     (0..=8).map(|k| (first + f64::from(k)) * step).take_while(|value| *value <= to + 1e-9 * step).collect()
 }
 
-/// A tick's number without the zeros that rounding leaves.
+/// The label of a tick, without trailing zeros.
 pub(super) fn number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -166,7 +166,7 @@ fn label(body: &mut String, class: &str, x: f64, y: f64, anchor: &str, text: &st
     let _ = write!(body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
 }
 
-/// Text as it may stand in an element or an attribute.
+/// Text with the special characters of XML escaped.
 pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

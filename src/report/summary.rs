@@ -1,4 +1,4 @@
-//! The summary of a run for programs: a row or an object a scenario, whatever became of it.
+//! The summary of a run as JSON and CSV, with one entry per scenario.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use crate::model::{
     verdict::{CheckKind, Failure, VerdictKind},
 };
 
-/// The checks that a summary lists, with the name of their column.
+/// The checks in a summary, with the names of their columns.
 const FIGURES: [(&str, CheckKind); 5] = [
     ("slip_mm", CheckKind::Slip),
     ("slip_deg", CheckKind::SlipRotation),
@@ -26,7 +26,7 @@ struct Summary<'a> {
     failed: usize,
     crashed: usize,
     skipped: usize,
-    /// True when the run was interrupted before all scenarios had their turn.
+    /// True if the run was interrupted before all scenarios had started.
     interrupted: bool,
     outcomes: Vec<Entry<'a>>,
 }
@@ -45,11 +45,11 @@ struct Entry<'a> {
     predicted_load_factor: Option<f64>,
     first_failure: Option<&'a Failure>,
     explanation: String,
-    /// The recording's path from the folder of the summary.
+    /// The recording's path relative to the folder of the summary.
     recording: Option<String>,
 }
 
-/// `summary.json`: counts, and an object a scenario with its figures; null where there is none.
+/// `summary.json`: counts, and an object with figures per scenario; missing figures are null.
 pub fn json(outcomes: &[Outcome]) -> String {
     let [ok, failed, crashed, skipped] = Status::ALL.map(|status| number_of(outcomes, status));
     pretty(&Summary {
@@ -98,7 +98,7 @@ fn predicted_load_factor(outcome: &Outcome) -> Option<f64> {
     }
 }
 
-/// The path of the recording from the folder that the reports are written to, always with `/`.
+/// The path of the recording relative to the folder of the reports, with `/` on every platform.
 pub(super) fn recording_link(outcome: &Outcome) -> Option<String> {
     match outcome {
         Outcome::Judged { verdict, recording: Some(path), .. } => {
@@ -108,10 +108,10 @@ pub(super) fn recording_link(outcome: &Outcome) -> Option<String> {
     }
 }
 
-/// `summary.csv`: a row a scenario; empty where there is no figure.
+/// `summary.csv`: one row per scenario; missing figures are empty.
 ///
 /// # Errors
-/// When the CSV writer fails.
+/// If the CSV writer fails.
 pub fn csv(outcomes: &[Outcome]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let (first, last) = (["scenario", "status", "verdict", "expected"], ["predicted_load_factor"]);

@@ -1,4 +1,4 @@
-//! What the user reads, to the letter.
+//! Reports compared word for word.
 
 use std::{collections::BTreeMap, fs, path::Path};
 

@@ -9,7 +9,6 @@ pub mod file;
 pub mod load_section;
 mod locate;
 pub mod material;
-pub mod paper;
 pub mod plan_file;
 mod resolve;
 

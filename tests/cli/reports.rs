@@ -1,4 +1,4 @@
-//! The files that a run leaves for reviewers, CI jobs and programs, and what is left when it is stopped.
+//! The report files of a run, also of a run that was stopped.
 
 use std::{
     fs,
@@ -13,14 +13,14 @@ use crate::process::{benchdog, command, json, printed_json, slipping_scenario, s
 
 const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
 
-/// Writes scenarios of a plan that slips, each with its expectation.
+/// Writes scenarios whose plan slips, each with an expected verdict.
 fn scenarios(folder: &Path, names: &[(&str, &str)]) {
     for (name, expected) in names {
         slipping_scenario(folder, name, expected);
     }
 }
 
-/// Writes so many scenarios that a run can be stopped in the middle; returns their names.
+/// Writes 20 scenarios, enough to stop a run in the middle; returns their names.
 fn many(folder: &Path) -> Vec<String> {
     let names: Vec<_> = (0..20).map(|number| format!("hold-{number:02}")).collect();
     names.iter().for_each(|name| drop(slipping_scenario(folder, name, "slips")));
@@ -56,8 +56,8 @@ fn every_scenario_is_in_every_report() {
     assert_page(&out, 3);
 }
 
-/// What the JUnit format asks for (the schema of the Jenkins xUnit plugin, with properties of a case as its successors have
-/// them): elements and attributes that may be where they are, those that must be, and counts that agree with the cases.
+/// Checks the JUnit format (the schema of the Jenkins xUnit plugin, and properties of a case as in its successors): allowed
+/// elements and attributes, required attributes, and counts that agree with the cases.
 fn assert_junit(text: &str, [tests, failures, errors, skipped]: [usize; 4]) {
     let document = roxmltree::Document::parse(text).unwrap();
     let root = document.root_element();
@@ -87,12 +87,12 @@ fn assert_junit(text: &str, [tests, failures, errors, skipped]: [usize; 4]) {
             "failure" | "error" => may_have(node, &["message", "type"], &[]),
             "skipped" => may_have(node, &["message"], &[]),
             "testsuites" | "properties" => {}
-            other => panic!("found <{other}>, which JUnit does not know"),
+            other => panic!("found <{other}>, which is not part of JUnit"),
         }
     }
 }
 
-/// The page is well-formed, needs nothing but itself, and its links lead somewhere.
+/// The page is well-formed and self-contained, and its links have targets.
 fn assert_page(out: &Path, scenarios: usize) {
     let text = fs::read_to_string(out.join("report.html")).unwrap();
     for fetched in ["http:", "https:", "//", "<script", "<link", "@import", "url(", "src="] {
@@ -112,14 +112,14 @@ fn assert_page(out: &Path, scenarios: usize) {
     let plots = |section: &roxmltree::Node| {
         section.descendants().filter(|node| node.attribute("class") == Some("plot")).count()
     };
-    // Slip, rotation, deflection, torque and load of what was simulated.
+    // Slip, rotation, deflection, torque and load of each simulated scenario.
     assert_eq!(sections.iter().map(plots).collect::<Vec<_>>(), [5, 5, 0]);
-    // Only what went wrong is open.
+    // Only the section of the failure is open.
     assert_eq!(sections.iter().filter(|node| node.has_attribute("open")).count(), 1);
 }
 
 #[test]
-fn equal_runs_leave_equal_reports() {
+fn equal_runs_write_equal_reports() {
     let folder = tempfile::tempdir().unwrap();
     scenarios(folder.path(), &[("a", "slips"), ("b", "holds")]);
     benchdog(folder.path(), &["run", ".", "--jobs", "1", "--out", "one"]);
@@ -131,7 +131,7 @@ fn equal_runs_leave_equal_reports() {
 }
 
 #[test]
-fn after_a_failure_nothing_is_begun_on_request() {
+fn fail_fast_skips_the_scenarios_after_a_failure() {
     let folder = tempfile::tempdir().unwrap();
     scenarios(folder.path(), &[("a", "slips"), ("b", "holds"), ("c", "slips")]);
     let output = benchdog(folder.path(), &["run", ".", "--fail-fast", "--jobs", "1", "--record", "never"]);
@@ -142,7 +142,7 @@ fn after_a_failure_nothing_is_begun_on_request() {
     assert!(!folder.path().join("out/c").exists());
 }
 
-/// A run of many scenarios, after its first has ended.
+/// Starts a run of many scenarios and waits for the end of the first.
 fn in_the_middle(folder: &Path) -> (Child, impl BufRead + use<>) {
     let mut child =
         command(folder, &["run", ".", "--jobs", "1"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -158,7 +158,7 @@ fn a_killed_run_leaves_only_whole_files_and_no_report() {
     let folder = tempfile::tempdir().unwrap();
     let names = many(folder.path());
     let out = folder.path().join("out");
-    // An earlier run's results, which must not be taken for this one's.
+    // Results of an earlier run.
     for report in REPORTS {
         fs::create_dir_all(&out).unwrap();
         fs::write(out.join(report), "old").unwrap();
@@ -193,17 +193,17 @@ fn a_killed_run_leaves_only_whole_files_and_no_report() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_run_ends_cleanly_with_what_is_done() {
+fn an_interrupted_run_reports_the_finished_scenarios() {
     let folder = tempfile::tempdir().unwrap();
     many(folder.path());
     let (child, mut stderr) = in_the_middle(folder.path());
     let signalled = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(signalled.success());
-    let mut told = String::new();
-    std::io::Read::read_to_string(&mut stderr, &mut told).unwrap();
+    let mut messages = String::new();
+    std::io::Read::read_to_string(&mut stderr, &mut messages).unwrap();
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("interrupted: the scenarios in progress are finished and reported"), "{told}");
+    assert_eq!(output.status.code(), Some(130), "{messages}");
+    assert!(messages.contains("interrupted: the scenarios in progress are finished and reported"), "{messages}");
 
     let summary = json(&folder.path().join("out/summary.json"));
     assert_eq!(summary["interrupted"], true);
@@ -213,7 +213,7 @@ fn an_interrupted_run_ends_cleanly_with_what_is_done() {
     assert!(String::from_utf8_lossy(&output.stdout).contains(&format!("20 scenarios: {ok} ok, {skipped} skipped")));
 }
 
-/// A limit on the size of files stands in for a disk that is full: both let a write fail.
+/// A limit on the size of files has the same effect as a full disk: writing fails.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_is_one_clear_error() {
@@ -247,13 +247,13 @@ fn a_recording_is_judged_again_from_the_file_alone() {
         let output = benchdog(elsewhere.path(), &[&["inspect", "moved.rrd", "--format", "json"], more].concat());
         (printed_json(&output), output.status.code())
     };
-    let (told, exit) = inspect(&[]);
-    assert_eq!((&told["verdict"], &told["judged_again"], exit), (&verdict, &Value::Null, Some(0)));
-    // Under its own limits the stored trace is judged as it was.
-    let (told, exit) = inspect(&["--check"]);
-    assert_eq!((&told["judged_again"], exit), (&verdict, Some(0)));
-    // A hold that slips far still turns: with slip allowed, rotation decides, and the exit code says that slip was expected.
-    let (told, exit) = inspect(&["--slip-mm", "2000"]);
-    assert_eq!((told["judged_again"]["verdict"].as_str(), exit), (Some("pivots"), Some(1)));
-    assert_eq!(told["verdict"], verdict);
+    let (output, exit) = inspect(&[]);
+    assert_eq!((&output["verdict"], &output["judged_again"], exit), (&verdict, &Value::Null, Some(0)));
+    // With the same limits the stored trace gets the same verdict.
+    let (output, exit) = inspect(&["--check"]);
+    assert_eq!((&output["judged_again"], exit), (&verdict, Some(0)));
+    // If slip is allowed, the rotation decides. The exit code is 1 because `slips` was expected.
+    let (output, exit) = inspect(&["--slip-mm", "2000"]);
+    assert_eq!((output["judged_again"]["verdict"].as_str(), exit), (Some("pivots"), Some(1)));
+    assert_eq!(output["verdict"], verdict);
 }

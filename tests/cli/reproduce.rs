@@ -1,8 +1,8 @@
-//! The evidence: the committed results bear out what the paper concludes from its own, every comfortable hold stands in
-//! simulation, and what the program does today are the figures that are committed.
+//! The committed results confirm the paper's conclusions, every plan of the comfort planner holds in simulation, and the
+//! program still computes the committed figures.
 //!
-//! When the last of these fails because planner or simulation were changed on purpose, `cargo run --release -- reproduce`
-//! writes the results again; then the claims are put to the test on the new figures.
+//! If the last test fails because planner or simulation were changed on purpose, `cargo run --release -- reproduce` updates
+//! the results; the other tests then check the new figures.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -16,7 +16,7 @@ use crate::{
     process::{Files, argument, benchdog, contents, stderr},
 };
 
-/// Half a step of the last digit that the files have.
+/// Half a step of the last digit in the files.
 const ROUNDING: f64 = 0.5e-6;
 
 const PLANNERS: [&str; 4] = ["comfort", "peripersonal", "muscular", "random"];
@@ -25,7 +25,7 @@ fn results() -> PathBuf {
     root().join("results")
 }
 
-/// A CSV file by its header.
+/// The rows of a CSV file, by column name.
 struct Table {
     rows: Vec<BTreeMap<String, String>>,
 }
@@ -38,7 +38,7 @@ impl Table {
         Self { rows: reader.deserialize().map(Result::unwrap).collect() }
     }
 
-    /// The figures of a column in the rows where another says so.
+    /// The figures of a column in the rows that pass a filter.
     fn figures(&self, column: &str, wanted: impl Fn(&BTreeMap<String, String>) -> bool) -> Vec<f64> {
         self.rows.iter().filter(|row| wanted(row)).map(|row| row[column].parse().unwrap()).collect()
     }
@@ -104,7 +104,7 @@ fn the_table_is_the_mean_of_the_plans_over_the_mean_of_the_random_ones() {
             };
             let (muscular, peripersonal) = match planner {
                 "random" => (muscular_random, peripersonal_random),
-                // 64 points of the body.
+                // 64 body points.
                 _ => (own("muscular"), 64.0 * own("peripersonal_m")),
             };
             let same = |column, value: f64, rounding: f64| {
@@ -113,15 +113,15 @@ fn the_table_is_the_mean_of_the_plans_over_the_mean_of_the_random_ones() {
             };
             same("muscular", muscular, 2.0 * ROUNDING);
             same("peripersonal_scaled", peripersonal, 65.0 * ROUNDING);
-            // Ratios below a hundred of figures above one.
+            // Ratios below 100 of figures above 1.
             same("muscular_normalised", muscular / muscular_random, 100.0 * ROUNDING);
             same("peripersonal_normalised", peripersonal / peripersonal_random, 100.0 * ROUNDING);
         }
     }
 }
 
-/// The most that was found of the objective: by the budget `exhaustive`, a hundred times the work, with two other seeds, and by
-/// whatever else was tried. Half a turn of the board makes one cut of another and one hole of another.
+/// The best known objectives, found with the budget `exhaustive` (about 100 times the work), two other seeds and other
+/// attempts. The operations of a pair are equal up to half a turn of the board.
 const BEST_KNOWN: [(&str, &str, f64); 13] = [
     ("cut-01", "cut-09", 138.837),
     ("cut-02", "cut-10", 136.776),
@@ -139,14 +139,14 @@ const BEST_KNOWN: [(&str, &str, f64); 13] = [
 ];
 
 #[test]
-fn every_comfort_plan_is_near_the_best_that_is_known() {
+fn every_comfort_plan_is_near_the_best_known() {
     let plans = plans();
     for (one, other, best_known) in BEST_KNOWN {
         for operation in [one, other] {
             let of = |row: &BTreeMap<String, String>| row["operation"] == operation && row["planner"] == "comfort";
             let objective = plans.figures("objective", of)[0];
             assert!(objective >= 0.99 * best_known, "{operation}: {objective}, known {best_known}");
-            // What is better by more than rounding is to be written down here.
+            // If a plan is better by more than rounding, update the table above.
             assert!(
                 objective <= 1.002 * best_known,
                 "{operation}: {objective} is better than the best known {best_known}"
@@ -155,7 +155,7 @@ fn every_comfort_plan_is_near_the_best_that_is_known() {
     }
 }
 
-/// The paper's table: the comfort planner has 11.19 of the muscular planner's 15.66 in cutting, 19.24 of 22.45 in drilling.
+/// Muscular comfort of the comfort planner over that of the muscular planner in the paper's Table I.
 const PAPERS_MUSCULAR_SHARE: [(&str, f64); 2] = [("cutting", 11.19 / 15.66), ("drilling", 19.24 / 22.45)];
 
 #[test]
@@ -168,7 +168,7 @@ fn the_comfort_planner_is_near_both_planners_of_one_comfort() {
             muscular >= papers_share.max(0.9),
             "{task}: {muscular} of the muscular planner's, in the paper {papers_share}"
         );
-        // In the paper 2.08 of 2.09 and 2.55 of 2.51; ours gives up some hundredths for muscular comfort. Aimed at: 0.95.
+        // In the paper 2.08 of 2.09 and 2.55 of 2.51. Ours trades some hundredths for muscular comfort.
         let peripersonal = share("peripersonal_scaled", "peripersonal");
         assert!(peripersonal >= 0.95, "{task}: {peripersonal} of the peripersonal planner's");
     }
@@ -178,7 +178,7 @@ fn the_comfort_planner_is_near_both_planners_of_one_comfort() {
 fn a_planner_of_one_comfort_is_poor_in_the_other() {
     let table = table1();
     for (task, _) in PAPERS_MUSCULAR_SHARE {
-        // What a planner gains over random, as a share of what the comfort planner gains.
+        // The planner's gain over random as a share of the comfort planner's gain.
         let gain = |planner, column| {
             let value = |planner| of(&table, task, planner, column);
             (value(planner) - value("random")) / (value("comfort") - value("random"))
@@ -186,8 +186,8 @@ fn a_planner_of_one_comfort_is_poor_in_the_other() {
         let (of_muscular, of_peripersonal) =
             (gain("peripersonal", "muscular"), gain("muscular", "peripersonal_scaled"));
         assert!(of_muscular < 0.5, "{task}: the peripersonal planner gains {of_muscular} of muscular comfort");
-        // In drilling both planners stand at the upper bound of muscular comfort, so it hardly tells holds apart, and which of
-        // them the muscular planner takes is chance: 61 % were found, and the report says that the claim fails.
+        // In drilling both planners reach the upper bound of muscular comfort. It hardly distinguishes plans there, so the
+        // choice of the muscular planner is arbitrary: its gain is 61 %, and the report says that the conclusion fails.
         let saturated = of(&table, task, "comfort", "muscular") > 99.5;
         let bound = if saturated { 0.7 } else { 0.5 };
         assert!(
@@ -203,12 +203,13 @@ fn random_is_the_worst_in_both_comforts_together() {
     for (task, _) in PAPERS_MUSCULAR_SHARE {
         let sum = |planner| of(&table, task, planner, "muscular") + of(&table, task, planner, "peripersonal_scaled");
         for planner in ["comfort", "peripersonal", "muscular"] {
-            // Drilling's peripersonal planner gives up nearly all muscular comfort, where random's person still answers as
-            // well as they can: its sum is 1 % less than random's, and the report says that the claim fails.
+            // In drilling the peripersonal planner gives up nearly all muscular comfort, while the person's response to a
+            // random plan is still the best one. Its sum is 1 % less than random's, and the report says that the
+            // conclusion fails.
             let least = if (task, planner) == ("drilling", "peripersonal") { 0.97 } else { 1.0 };
             assert!(least * sum("random") < sum(planner), "{task} {planner}");
         }
-        // And no seed of it, had it been the only one, comes up to the comfort planner in either comfort.
+        // The mean of each single seed is below the comfort planner in both comforts.
         let kind = if task == "cutting" { "cut-" } else { "drill-" };
         for seed in (1..=20).map(|seed| seed.to_string()) {
             for column in ["muscular", "peripersonal_scaled"] {
@@ -219,7 +220,7 @@ fn random_is_the_worst_in_both_comforts_together() {
     }
 }
 
-/// What the report denies, the page on the reproduction explains.
+/// `docs/reproduction.md` explains every conclusion that the report does not confirm.
 #[test]
 fn claims_that_fail_are_explained() {
     let report = fs::read_to_string(results().join("report.md")).unwrap();
@@ -232,13 +233,13 @@ fn claims_that_fail_are_explained() {
 }
 
 #[test]
-fn the_order_of_the_planners_stays_under_every_assumption() {
+fn the_order_of_the_planners_is_the_same_under_every_assumption() {
     let table = Table::read(
         "sensitivity.csv",
         "assumption,task,planner,plans,muscular,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
     );
     let assumptions: BTreeSet<_> = table.rows.iter().map(|row| row["assumption"].clone()).collect();
-    assert_eq!(assumptions.len(), 11, "as reproduced, and ten that differ: {assumptions:?}");
+    assert_eq!(assumptions.len(), 11, "as reproduced, and ten changes: {assumptions:?}");
     for assumption in &assumptions {
         for (task, _) in PAPERS_MUSCULAR_SHARE {
             let of = |planner, column| {
@@ -258,43 +259,43 @@ fn the_order_of_the_planners_stays_under_every_assumption() {
 }
 
 #[test]
-fn every_hold_of_the_comfort_planner_stands_in_simulation() {
+fn every_plan_of_the_comfort_planner_holds_in_simulation() {
     let physics = physics();
     let of_comfort: Vec<_> = physics.rows.iter().filter(|row| row["planner"] == "comfort").collect();
     assert_eq!(of_comfort.len(), 25);
     for row in of_comfort {
         assert_eq!(row["verdict"], "holds", "{}", row["operation"]);
         let factor: f64 = row["load_factor_simulated"].parse().unwrap();
-        assert!(factor >= 1.0, "{}: what holds under its load holds up to it at least", row["operation"]);
+        assert!(factor >= 1.0, "{}: a plan that holds has a load factor of at least 1", row["operation"]);
     }
 }
 
 #[test]
-fn the_best_case_alone_is_no_proof() {
+fn the_best_case_alone_is_not_enough() {
     let text = fs::read_to_string(results().join("best_case.csv")).unwrap();
     let verdicts: Vec<_> = text.lines().skip(1).map(|line| line.split(',').nth(2).unwrap()).collect();
     assert_eq!(verdicts.len(), 25);
-    // Planned for the best case, most holds fail; planned for compliant arms none does (the test above).
+    // Most plans for the best case fail; those for compliant arms do not (the test above).
     assert!(verdicts.iter().filter(|&&verdict| verdict == "holds").count() < 13, "{verdicts:?}");
 }
 
 #[test]
-fn simulated_holds_are_as_predicted() {
+fn simulations_agree_with_predictions() {
     let (plans, physics) = (plans(), physics());
     for (plan, row) in plans.rows.iter().zip(&physics.rows) {
         let hold = format!("{} {}", row["operation"], row["planner"]);
         assert_eq!((&plan["operation"], &plan["planner"]), (&row["operation"], &row["planner"]));
         let figure = |row: &BTreeMap<String, String>, column: &str| row[column].parse::<f64>().unwrap();
-        // The prediction is elastic and knows neither the pads' own give nor the swing after the ramp. The planner's reserve is
-        // a tenth; half as much again is where it would no longer do.
+        // The prediction is static and ignores the compliance of the pads and the oscillation after the ramp. The planner's
+        // safety factor is 1.1; the bound is 1.5 times that margin.
         let deflection = figure(row, "deflection_mm") / figure(row, "predicted_deflection_mm");
         assert!((0.85..1.15).contains(&deflection), "{hold}: deflection {deflection} of the predicted");
         let load = figure(row, "load_factor_simulated") / figure(plan, "compliant_load_factor");
-        assert!(load > 0.85, "{hold}: stands {load} of the predicted load");
-        // The certificate bounds what any forces can do, with the pads in their planned place: ones that have turned by the
-        // two degrees that are allowed have lever arms that differ by sin 2 deg = 3.5 %.
+        assert!(load > 0.85, "{hold}: resists {load} of the predicted load");
+        // The certificate bounds the load for all contact forces with the pads in their planned poses. A rotation by the
+        // two degrees that are allowed changes lever arms by sin 2 deg = 3.5 %.
         let bound = figure(row, "load_factor_simulated") / figure(plan, "load_factor");
-        assert!(bound < 1.035, "{hold}: stands {bound} of what any forces could hold");
+        assert!(bound < 1.035, "{hold}: resists {bound} of the certified load");
     }
 }
 
@@ -302,42 +303,41 @@ fn reproduce(arguments: &[&str], out: &Path) -> Output {
     benchdog(root(), &[&["reproduce", "--quick", "--out", argument(out)], arguments].concat())
 }
 
-/// All that a run leaves to be committed, by its path.
+/// The files of a run that are committed, by path.
 fn written(folder: &Path) -> Files {
-    let kept = |path: &Path| ["work", "recordings", "timing.csv"].iter().any(|name| path.starts_with(name));
-    contents(folder).into_iter().filter(|(path, _)| !kept(path)).collect()
+    let left_out = |path: &Path| ["work", "recordings", "timing.csv"].iter().any(|name| path.starts_with(name));
+    contents(folder).into_iter().filter(|(path, _)| !left_out(path)).collect()
 }
 
-/// A cut and a hole: threads finish them in any order.
+/// A cut and a hole, which threads finish in any order.
 const TWO_OPERATIONS: [&str; 4] = ["--filter", "cut-05", "--filter", "drill-5"];
 
 #[test]
-fn two_runs_agree_with_each_other_and_with_what_is_committed() {
+fn two_runs_agree_with_each_other_and_with_the_committed_results() {
     let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let first = reproduce(&[&TWO_OPERATIONS[..], &["--jobs", "1"]].concat(), one.path());
     assert_eq!(first.status.code(), Some(0), "{}", stderr(&first));
     let second = reproduce(&[&TWO_OPERATIONS[..], &["--jobs", "2"]].concat(), two.path());
     assert_eq!(second.status.code(), Some(0));
     let files = written(one.path());
-    // Report, five tables, four pictures of each kind, and the curve twice.
+    // The report, five tables, four pictures of each kind, and the curve as CSV and SVG.
     assert_eq!(files.len(), 16, "{:?}", files.keys());
     assert!(files == written(two.path()), "the same files whatever the number of threads");
     for operation in ["cut-05", "drill-5"] {
         committed_rows_agree(one.path(), operation);
     }
-    a_second_start_goes_on(one.path());
-    assert!(files == written(one.path()), "the same files from what was kept");
+    a_second_run_continues(one.path());
+    assert!(files == written(one.path()), "the same files from the cache");
 }
 
-/// The rows of an operation are those of the committed tables; what `--quick` does not look for is empty.
+/// The rows of an operation equal those of the committed tables; failing loads are empty with `--quick`.
 fn committed_rows_agree(out: &Path, operation: &str) {
     let of_operation = format!("{operation},");
     let rows = |folder: &Path, name: &str| {
         let text = fs::read_to_string(folder.join(name)).unwrap();
         text.lines().filter(|line| line.starts_with(&of_operation)).map(str::to_owned).collect::<Vec<_>>()
     };
-    let again =
-        "the program has other results than are committed: `cargo run --release -- reproduce` writes them again";
+    let again = "the results differ from the committed ones: `cargo run --release -- reproduce` updates them";
     assert_eq!(rows(out, "plans.csv"), rows(&results(), "plans.csv"), "{again}");
     let draws = rows(&results(), "random.csv");
     assert_eq!(rows(out, "random.csv"), draws[..3], "{again}");
@@ -348,13 +348,13 @@ fn committed_rows_agree(out: &Path, operation: &str) {
     }
 }
 
-/// Only what is not there, or is not whole, is done again.
-fn a_second_start_goes_on(out: &Path) {
+/// Only missing or damaged results are computed again.
+fn a_second_run_continues(out: &Path) {
     let work = out.join("work");
     assert_eq!(
         fs::read_dir(&work).unwrap().count(),
         13,
-        "three planners and three random draws an operation, a folder of the best case"
+        "per operation three planners and three random plans; a folder for the best case"
     );
     fs::remove_file(work.join("drill-5-comfort-1.json")).unwrap();
     let damaged = work.join("drill-5-random-1.json");
@@ -365,7 +365,7 @@ fn a_second_start_goes_on(out: &Path) {
 }
 
 #[test]
-fn an_operation_that_is_none_is_refused_before_anything_is_written() {
+fn an_unknown_operation_is_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let output = reproduce(&["--filter", "saw"], &out);

@@ -7,7 +7,7 @@ use benchdog::{
         scenario::{Budget, Optima, PlannerKind, Scenario, StabilityKind},
     },
     planner::{Outcome, Planner},
-    scenario::paper,
+    reproduce::paper,
 };
 use rayon::prelude::*;
 

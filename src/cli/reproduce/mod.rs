@@ -1,10 +1,9 @@
-//! `benchdog reproduce`: the paper's evaluation, planned, simulated and reported.
+//! `benchdog reproduce`: plans, simulates and reports the paper's evaluation.
 //!
-//! What is done stands in [`jobs`], what else it is done under in [`sensitivity`]; this file asks for it and writes what the
-//! report makes of it. All that is committed is the same for equal runs; times go to `timing.csv` and the console.
+//! [`crate::reproduce`] lists the jobs and makes tables, pictures and conclusions from their results; [`runner`] runs a job
+//! and caches its result. Equal runs write equal files, except `timing.csv`; durations are also printed.
 
-mod jobs;
-mod sensitivity;
+mod runner;
 
 use std::{
     path::{Path, PathBuf},
@@ -22,64 +21,50 @@ use super::{
 };
 use crate::{
     model::{operation::OperationKind, scenario::PlannerKind},
-    report::{
-        self, file,
-        reproduce::{self as evaluation, Hold, KINDS, Reproduction, Variant, claims, markdown, picture},
+    report::{self, file},
+    reproduce::{
+        claims, csv_files,
+        evaluation::{HoldRow, KINDS, Reproduction},
+        jobs::Job,
+        markdown, paper, picture,
+        schedule::{Schedule, Scope},
+        timing,
     },
     robot::Robot,
-    scenario::{LoadedScenario, paper},
+    scenario::LoadedScenario,
 };
-use jobs::{Job, Work, Workshop};
+use runner::JobRunner;
 
-/// How much of the evaluation is done.
-struct Extent {
-    /// Seeds of the random planner.
-    random_seeds: u64,
-    /// Seeds of the random planner in the sensitivity analysis; none when it is left out.
-    sensitivity_seeds: Option<u64>,
-    /// What is done with the hold of the first seed.
-    first: Work,
-}
-
-impl Extent {
-    fn of(args: &ReproduceArgs) -> Self {
-        if args.quick {
-            Self { random_seeds: 3, sensitivity_seeds: None, first: Work::Simulate }
-        } else {
-            // METHOD section 3 asks for twenty at least. The analysis compares variants that share their seeds, so few do.
-            Self { random_seeds: 20, sensitivity_seeds: Some(4), first: Work::FailingLoad }
-        }
-    }
-}
-
-/// Reproduces the paper's evaluation.
+/// Runs the evaluation and writes its results.
 pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let operations = operations(&args.filter)?;
     let Some(first) = operations.first() else { return Ok(Exit::Met) };
     let out = args.folder();
     file::check_folder(&out)?;
-    interrupt::listen("what is done is kept, and the same command goes on from there")?;
-    let extent = Extent::of(args);
-    let tasks = Tasks::new(&operations, &extent);
-    let workshop = Workshop::new(&first.robot, &out, args.record)?;
-    let Some(holds) = threads::with_threads(args.jobs, || work_off(&workshop, &tasks.jobs))?? else {
-        let folder = workshop.folder();
+    interrupt::listen("finished results are kept, and the same command continues from them")?;
+    let scope = args.scope();
+    let schedule = Schedule::new(&operations, &scope);
+    let runner = JobRunner::new(&first.robot, &out, args.record)?;
+    let Some(rows) = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs))?? else {
+        let folder = runner.folder();
         let folder = folder.display();
-        output::message(&format!("stopped: what is done is kept in {folder}, and the same command goes on from there"));
+        output::message(&format!(
+            "stopped: finished results are kept in {folder}, and the same command continues from them"
+        ));
         return Ok(Exit::Interrupted);
     };
-    let reproduction = tasks.reproduction(holds, &extent, left_out(args, operations.len()));
+    let reproduction = schedule.reproduction(rows, &scope, left_out(args, operations.len()));
     write_results(&reproduction, &operations, &first.robot, &out)?;
-    output::print(&for_people(&reproduction, &out))?;
+    output::print(&summary(&reproduction, &out))?;
     Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
 }
 
-/// What a hold means for the exit code.
-fn exit_of(hold: &Hold) -> Exit {
-    hold.verdict.as_ref().map_or(Exit::Infeasible, Exit::of)
+/// The exit code for one result.
+fn exit_of(row: &HoldRow) -> Exit {
+    row.verdict.as_ref().map_or(Exit::Infeasible, Exit::of)
 }
 
-/// The operations that the filters let through.
+/// The operations that pass a filter, or all without one.
 fn operations(filters: &[String]) -> Result<Vec<LoadedScenario>, CliError> {
     let asked = filters.join(", ");
     let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
@@ -96,107 +81,51 @@ fn operations(filters: &[String]) -> Result<Vec<LoadedScenario>, CliError> {
     Ok(operations)
 }
 
-/// All that is to be done, in this order: the evaluation, operation by operation; the comfort planner's holds again, with the
-/// paper's stability alone; the sensitivity analysis.
-struct Tasks {
-    jobs: Vec<Job>,
-    evaluation: usize,
-    best_case: usize,
-    /// The name of each variant and how many jobs it has.
-    variants: Vec<(&'static str, usize)>,
-}
-
-impl Tasks {
-    fn new(operations: &[LoadedScenario], extent: &Extent) -> Self {
-        let scenarios = || operations.iter().map(|operation| &operation.scenario);
-        let mut jobs: Vec<Job> =
-            scenarios().flat_map(|scenario| jobs::jobs_of(scenario, extent.random_seeds, extent.first)).collect();
-        let evaluation = jobs.len();
-        jobs.extend(scenarios().map(jobs::best_case));
-        let mut variants = Vec::new();
-        for variant in extent.sensitivity_seeds.map_or(&[][..], |_| &sensitivity::VARIANTS) {
-            let before = jobs.len();
-            for scenario in scenarios().filter(|scenario| sensitivity::looks_at(&scenario.name)) {
-                jobs.extend(variant.jobs(scenario, extent.sensitivity_seeds.unwrap_or(0)));
-            }
-            variants.push((variant.name, jobs.len() - before));
-        }
-        Self { jobs, evaluation, best_case: operations.len(), variants }
-    }
-
-    /// What the report is made from; `holds` are those of the jobs in their order.
-    fn reproduction(&self, holds: Vec<Hold>, extent: &Extent, left_out: Option<String>) -> Reproduction {
-        let mut rest = holds.into_iter();
-        let mut next = |count: usize| rest.by_ref().take(count).collect::<Vec<_>>();
-        let (holds, best_case) = (next(self.evaluation), next(self.best_case));
-        let mut sensitivity = Vec::new();
-        if let Some(seeds) = extent.sensitivity_seeds {
-            // The default's are the evaluation's own holds.
-            let own = holds.iter().filter(|hold| hold.seed <= seeds && sensitivity::looks_at(&hold.operation));
-            let default = ("as reproduced", own.cloned().collect::<Vec<_>>());
-            let others = self.variants.iter().map(|&(name, count)| (name, next(count)));
-            sensitivity = std::iter::once(default)
-                .chain(others)
-                .filter(|(_, holds)| !holds.is_empty())
-                .map(|(name, holds)| Variant { name: name.to_owned(), holds })
-                .collect();
-        }
-        Reproduction {
-            holds,
-            random_seeds: extent.random_seeds,
-            best_case,
-            sensitivity,
-            sensitivity_seeds: extent.sensitivity_seeds.unwrap_or(0),
-            left_out,
-        }
-    }
-}
-
-/// The holds of all jobs in their order; none when the user asked for an end before all had their turn.
-fn work_off(workshop: &Workshop<'_>, jobs: &[Job]) -> Result<Option<Vec<Hold>>, CliError> {
+/// Runs all jobs and returns their results in order; `None` if the user stopped the run.
+fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job]) -> Result<Option<Vec<HoldRow>>, CliError> {
     let progress = Progress::new(jobs.len());
-    // A full disk is full for all: after the first error nothing more is begun.
-    let broken: Mutex<Option<CliError>> = Mutex::new(None);
-    workshop.prepare(jobs);
-    let holds = threads::map_in_parallel(jobs, |job| {
-        if interrupt::requested() || broken.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
+    // An error such as a full disk would repeat, so no job starts after the first one.
+    let first_error: Mutex<Option<CliError>> = Mutex::new(None);
+    runner.prepare(jobs);
+    let rows = threads::map_in_parallel(jobs, |job| {
+        if interrupt::requested() || first_error.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
             return None;
         }
         progress.begins(&job.name());
-        match workshop.hold(job) {
-            Ok(done) => {
-                progress.advances(done.line(job).as_deref());
-                Some(done.hold)
+        match runner.run(job) {
+            Ok(result) => {
+                progress.advances(result.line(job).as_deref());
+                Some(result.row)
             }
             Err(error) => {
-                broken.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                first_error.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
                 None
             }
         }
     });
     progress.finish();
-    match broken.into_inner().unwrap_or_else(PoisonError::into_inner) {
+    match first_error.into_inner().unwrap_or_else(PoisonError::into_inner) {
         Some(error) => Err(error),
-        None => Ok(holds.into_iter().collect()),
+        None => Ok(rows.into_iter().collect()),
     }
 }
 
-/// What a run that is not whole lacks, in words.
+/// What this run leaves out of the whole evaluation; `None` if nothing.
 fn left_out(args: &ReproduceArgs, operations: usize) -> Option<String> {
-    let mut lacks = Vec::new();
+    let mut parts = Vec::new();
     if args.quick {
-        let seeds = Extent::of(args).random_seeds;
-        lacks.push(format!(
-            "{seeds} seeds of the random planner, no search for failing loads and no sensitivity (`--quick`)"
+        let seeds = args.scope().random_seeds;
+        parts.push(format!(
+            "{seeds} seeds of the random planner, no search for failing loads and no sensitivity analysis (`--quick`)"
         ));
     }
     if operations < paper::CUTS + paper::DRILLS {
-        lacks.push(format!("{operations} of the operations (`--filter`)"));
+        parts.push(format!("only {operations} of the operations (`--filter`)"));
     }
-    (!lacks.is_empty()).then(|| lacks.join("; "))
+    (!parts.is_empty()).then(|| parts.join("; "))
 }
 
-/// Writes everything; the report last of all, so that where it stands all else does.
+/// Writes all files, the report last: if it exists, the others are complete.
 fn write_results(
     reproduction: &Reproduction,
     operations: &[LoadedScenario],
@@ -205,15 +134,15 @@ fn write_results(
 ) -> Result<(), CliError> {
     let write = |name: &str, text: &str| file::write_whole(&out.join(name), text.as_bytes());
     file::remove(&out.join("report.md"))?;
-    write("table1.csv", &evaluation::tables::table1(reproduction))?;
-    write("plans.csv", &evaluation::tables::plans(reproduction))?;
-    write("physics.csv", &evaluation::tables::physics(reproduction.first_seeds()))?;
-    write("best_case.csv", &evaluation::tables::physics(reproduction.best_case.iter()))?;
-    write("random.csv", &evaluation::tables::random(reproduction))?;
-    write("timing.csv", &evaluation::tables::timing(reproduction))?;
+    write("table1.csv", &csv_files::table1(reproduction))?;
+    write("plans.csv", &csv_files::plans(reproduction))?;
+    write("physics.csv", &csv_files::physics(reproduction.first_seeds()))?;
+    write("best_case.csv", &csv_files::physics(reproduction.best_case.iter()))?;
+    write("random.csv", &csv_files::random(reproduction))?;
+    write("timing.csv", &csv_files::timing(reproduction))?;
     match reproduction.sensitivity.is_empty() {
         true => file::remove(&out.join("sensitivity.csv"))?,
-        false => write("sensitivity.csv", &evaluation::tables::sensitivity(reproduction))?,
+        false => write("sensitivity.csv", &csv_files::sensitivity(reproduction))?,
     }
     for kind in KINDS {
         write_pictures(reproduction, kind, robot, &out.join("pictures"))?;
@@ -223,7 +152,7 @@ fn write_results(
     Ok(())
 }
 
-/// A picture a planner, for one operation of a kind.
+/// Writes one picture per planner, for one operation of this kind.
 fn write_pictures(
     reproduction: &Reproduction,
     kind: OperationKind,
@@ -231,16 +160,16 @@ fn write_pictures(
     folder: &Path,
 ) -> Result<(), CliError> {
     let Some(operation) = reproduction.drawn(kind) else { return Ok(()) };
-    for hold in PlannerKind::ALL.iter().filter_map(|&planner| reproduction.hold(operation, planner)) {
-        if let Some(plan) = &hold.plan {
-            let svg = picture::svg(plan, robot, &markdown::picture_title(hold))?;
-            file::write_whole(&folder.join(markdown::picture_name(hold)), svg.as_bytes())?;
+    for row in PlannerKind::ALL.iter().filter_map(|&planner| reproduction.hold(operation, planner)) {
+        if let Some(plan) = &row.plan {
+            let svg = picture::svg(plan, robot, &markdown::picture_title(row))?;
+            file::write_whole(&folder.join(markdown::picture_name(row)), svg.as_bytes())?;
         }
     }
     Ok(())
 }
 
-/// The muscular curve, of whichever cut is at hand: they all lie on one circle.
+/// Writes the muscular comfort along the circle. Any cut will do: all of them are on one circle.
 fn write_curve(operations: &[LoadedScenario], out: &Path) -> Result<(), CliError> {
     let Some(cut) = operations.iter().find(|o| o.scenario.operation.kind == OperationKind::Cut) else { return Ok(()) };
     let curve = curve::curve_of(cut)?;
@@ -249,12 +178,12 @@ fn write_curve(operations: &[LoadedScenario], out: &Path) -> Result<(), CliError
     Ok(())
 }
 
-/// What is printed in the end.
-fn for_people(reproduction: &Reproduction, out: &Path) -> String {
+/// The text that is printed at the end.
+fn summary(reproduction: &Reproduction, out: &Path) -> String {
     let claims = claims::claims(reproduction);
     let (simulated, held) = reproduction
         .first_seeds()
-        .fold((0, 0), |(simulated, held), hold| (simulated + 1, held + usize::from(claims::holds(hold))));
+        .fold((0, 0), |(simulated, held), row| (simulated + 1, held + usize::from(claims::holds(row))));
     let mut text = String::new();
     for claim in &claims {
         text.push_str(&format!(
@@ -264,14 +193,18 @@ fn for_people(reproduction: &Reproduction, out: &Path) -> String {
             claim.figures
         ));
     }
-    text.push_str(&format!("{held} of {simulated} holds stand in simulation\n\n"));
-    text.push_str(&evaluation::timing::summary(reproduction));
+    text.push_str(&format!("{held} of {simulated} plans hold in simulation\n\n"));
+    text.push_str(&timing::summary(reproduction));
     text.push_str(&format!("\nwritten: {}\n", out.join("report.md").display()));
     text
 }
 
 impl ReproduceArgs {
-    /// Where the results go: a quick run does not take the place of the whole one.
+    fn scope(&self) -> Scope {
+        if self.quick { Scope::quick() } else { Scope::full() }
+    }
+
+    /// The folder of the results. By default a quick run does not overwrite those of a whole run.
     fn folder(&self) -> PathBuf {
         let default = if self.quick { "out/reproduce-quick" } else { "results" };
         self.out.clone().unwrap_or_else(|| default.into())

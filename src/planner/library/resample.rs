@@ -122,7 +122,7 @@ fn arms_of(robot: &GraspingRobot, violation: &Violation) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{planner::library::GraspLibrary, scenario::paper};
+    use crate::{planner::library::GraspLibrary, reproduce::paper};
 
     fn library() -> GraspLibrary {
         let loaded = paper::operations()[0].load().unwrap();

@@ -224,7 +224,7 @@ mod tests {
         super::linearization::simple_margins,
         *,
     };
-    use crate::{model::scenario::Budget, scenario::paper};
+    use crate::{model::scenario::Budget, reproduce::paper};
 
     /// The gradients against differences of the figures themselves, on starts of a search for a cut and a drill.
     #[test]

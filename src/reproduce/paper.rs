@@ -1,27 +1,28 @@
-//! The operations of the paper's evaluation as scenario files: a circle that is cut in sixteen places and a grid of nine
-//! holes (METHOD section 2). The paper gives no sizes; board, pitch and radius are those of its reproduction, and everything
-//! that a text leaves out is the format's default.
+//! The 25 operations of the paper's evaluation: 16 cuts of a circle (`docs/method.md#23-cutting`) and a grid of nine holes
+//! (`docs/method.md#22-drilling`). The paper states no sizes; board, pitch and radius are assumptions.
 //!
-//! They are texts like anybody's, so that they pass the same checks and can be run by themselves.
+//! The operations are texts of scenario files, so they pass the same checks. All other keys have the format's defaults.
 
 use std::{f64::consts::TAU, path::Path};
 
-use super::{InputError, LoadedScenario, load_text};
-use crate::model::operation::OperationKind;
+use crate::{
+    model::operation::OperationKind,
+    scenario::{InputError, LoadedScenario, load_text},
+};
 
-/// How many places of the circle are cut.
+/// Number of cuts.
 pub const CUTS: usize = 16;
 
-/// How many holes are drilled: three rows of three.
+/// Number of holes, in three rows of three.
 pub const DRILLS: usize = 9;
 
-/// Radius of the circle that is cut, m (assumed, METHOD section 2).
+/// Radius of the circle, m. An assumption, see `docs/method.md#23-cutting`.
 const RADIUS_M: f64 = 0.12;
 
 /// Force of a cut, N.
 const CUT_N: f64 = 30.0;
 
-/// Distance between neighbouring holes, m (assumed, METHOD section 2).
+/// Distance between neighbouring holes, m. An assumption, see `docs/method.md#22-drilling`.
 const PITCH_M: f64 = 0.10;
 
 /// Thrust of a drill, N.
@@ -34,22 +35,22 @@ pub struct PaperOperation {
     pub name: String,
     /// Cut or drill.
     pub kind: OperationKind,
-    /// Its scenario file.
+    /// The text of its scenario file.
     pub text: String,
 }
 
 impl PaperOperation {
-    /// The scenario, completed with defaults as a file would be.
+    /// The resolved scenario.
     ///
     /// # Errors
-    /// As [`load_text`]; the operations themselves are sound.
+    /// As [`load_text`]. The operations of [`operations`] are valid.
     pub fn load(&self) -> Result<LoadedScenario, InputError> {
         load_text(Path::new(&self.name), &self.text)
     }
 }
 
-/// All 25 operations, in the order of tables: the cuts counter-clockwise as the person sees them, from +x_O; the holes row by
-/// row from (-x_O, -y_O).
+/// All operations in the order of tables: the cuts counter-clockwise about +z_O, starting at +x_O; the holes row by row from
+/// (-x_O, -y_O).
 pub fn operations() -> Vec<PaperOperation> {
     (1..=CUTS).map(cut).chain((1..=DRILLS).map(drill)).collect()
 }
@@ -59,7 +60,7 @@ fn cut(k: usize) -> PaperOperation {
     let (sin, cos) = libm::sincos(TAU * (k - 1) as f64 / CUTS as f64);
     let (x_m, y_m) = (RADIUS_M * cos, RADIUS_M * sin);
     let name = format!("cut-{k:02}");
-    // `{:?}` writes every digit that tells a number from its neighbours.
+    // `{:?}` writes the shortest decimal that reads back as the same number.
     let text = format!(
         "format = 1\nname = \"{name}\"\n\n[operation]\nkind = \"cut\"\npoint_m = [{x_m:?}, {y_m:?}]\n\
          direction_o = [{:?}, {cos:?}, 0.0]\nforce_n = {CUT_N:?}\n",
@@ -84,14 +85,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cuts_run_round_a_circle_and_close_it() {
+    fn cuts_are_on_a_circle_and_along_its_tangent() {
         let cuts: Vec<_> = operations().into_iter().filter(|o| o.kind == OperationKind::Cut).collect();
         assert_eq!(cuts.len(), CUTS);
         for (index, operation) in cuts.iter().enumerate() {
             let cut = operation.load().unwrap().scenario.operation;
             let (p_ot, force_n) = (cut.x_ot.translation.vector, cut.wrench_o.force_n);
-            // On the circle, along its tangent, so that the moment about z_O is positive: counter-clockwise from +z_O. A few
-            // roundings of numbers below 30.
+            // On the circle and along its tangent, with a positive moment about z_O: counter-clockwise. The tolerances are a few
+            // rounding errors of numbers below 30.
             assert!((p_ot.xy().norm() - 0.12).abs() < 1e-15 && (force_n.norm() - 30.0).abs() < 1e-13, "{index}");
             assert!((p_ot.cross(&force_n).z - 0.12 * 30.0).abs() < 1e-13, "{index}");
             let angle_rad = libm::atan2(p_ot.y, p_ot.x).rem_euclid(TAU);
@@ -100,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_stand_in_rows_from_the_lower_left() {
+    fn holes_are_in_rows_from_the_lower_left() {
         let holes: Vec<_> = operations().into_iter().filter(|o| o.kind == OperationKind::Drill).collect();
         let points: Vec<_> = holes
             .iter()

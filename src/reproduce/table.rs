@@ -1,34 +1,37 @@
-//! The paper's Table I of any set of holds, and the figures of statistics that it and its neighbours need.
+//! The paper's Table I, for any set of results.
 
-use super::{Hold, KINDS};
+use super::{
+    evaluation::{HoldRow, KINDS},
+    statistics::{mean, quantile},
+};
 use crate::model::{operation::OperationKind, scenario::PlannerKind};
 
-/// One planner on one kind of operation. A figure is none where no hold has it.
+/// One planner and one kind of operation. A figure is `None` if no result has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Cut or drill.
     pub kind: OperationKind,
     /// The planner.
     pub planner: PlannerKind,
-    /// How many plans the averages are over.
+    /// Number of plans.
     pub plans: usize,
-    /// Mean of the candidates that the search for a plan looked at.
+    /// Mean number of candidates that a search evaluated.
     pub candidates: Option<f64>,
-    /// Mean of the regularised muscular comfort, [`Hold::muscular`].
+    /// Mean of the regularised muscular comfort, [`HoldRow::muscular`].
     pub muscular: Option<f64>,
-    /// Median of the postures' muscular comfort as printed in the paper: it has no bound, so a mean of it says nothing.
+    /// Median of the muscular comfort as printed in the paper, which is unbounded, so its mean has no meaning.
     pub muscular_printed_median: Option<f64>,
-    /// Mean of the peripersonal comfort, as a sum over the body's points.
+    /// Mean of the peripersonal comfort as a sum over the body points.
     pub peripersonal_scaled: Option<f64>,
-    /// `muscular` over that of the random planner.
+    /// `muscular` divided by that of the random planner.
     pub muscular_normalised: Option<f64>,
-    /// `peripersonal_scaled` over that of the random planner.
+    /// `peripersonal_scaled` divided by that of the random planner.
     pub peripersonal_normalised: Option<f64>,
 }
 
-/// The table of a set of holds: kind by kind, planner by planner; kinds without holds are left out. As in the paper the
-/// averages are normalised, not the single figures.
-pub fn rows<'a>(holds: impl Iterator<Item = &'a Hold> + Clone) -> Vec<Row> {
+/// The rows by kind of operation and planner; kinds without results are left out. As in the paper, the means are normalised,
+/// not the single figures.
+pub fn rows<'a>(holds: impl Iterator<Item = &'a HoldRow> + Clone) -> Vec<Row> {
     let mut rows = Vec::new();
     for kind in KINDS {
         let of_kind = holds.clone().filter(move |hold| hold.kind == kind);
@@ -48,16 +51,16 @@ pub fn rows<'a>(holds: impl Iterator<Item = &'a Hold> + Clone) -> Vec<Row> {
     rows
 }
 
-fn row<'a>(kind: OperationKind, planner: PlannerKind, holds: impl Iterator<Item = &'a Hold> + Clone) -> Row {
-    let comforts = || holds.clone().filter_map(Hold::comfort);
+fn row<'a>(kind: OperationKind, planner: PlannerKind, holds: impl Iterator<Item = &'a HoldRow> + Clone) -> Row {
+    let comforts = || holds.clone().filter_map(HoldRow::comfort);
     Row {
         kind,
         planner,
         plans: comforts().count(),
         candidates: mean(holds.clone().filter_map(|hold| Some(hold.plan.as_ref()?.planner?.evaluations as f64))),
-        muscular: mean(holds.clone().filter_map(Hold::muscular)),
+        muscular: mean(holds.clone().filter_map(HoldRow::muscular)),
         muscular_printed_median: quantile(comforts().map(|comfort| comfort.muscular).collect(), 0.5),
-        peripersonal_scaled: mean(holds.clone().filter_map(Hold::peripersonal_scaled)),
+        peripersonal_scaled: mean(holds.clone().filter_map(HoldRow::peripersonal_scaled)),
         muscular_normalised: None,
         peripersonal_normalised: None,
     }
@@ -67,36 +70,13 @@ fn ratio(value: Option<f64>, by: Option<f64>) -> Option<f64> {
     Some(value? / by?)
 }
 
-/// The mean; none of nothing.
-pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (count, sum) = values.fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
-    (count > 0).then(|| sum / f64::from(count))
-}
-
-/// The standard deviation of a sample, `sqrt(sum (x - mean)^2 / (n - 1))`; none of fewer than two.
-pub fn standard_deviation(values: &[f64]) -> Option<f64> {
-    let mean = mean(values.iter().copied())?;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
-}
-
-/// The quantile at `share` from 0 to 1, between neighbours by linear interpolation; none of nothing.
-pub fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let last = values.len().checked_sub(1)?;
-    let place = share * last as f64;
-    let below = (place as usize).min(last);
-    let above = (below + 1).min(last);
-    Some(values[below] + (values[above] - values[below]) * (place - below as f64))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{model::plan::MeanComfort, report::reproduce::testing::hold};
+    use crate::{model::plan::MeanComfort, reproduce::testing::hold};
 
     #[test]
-    fn averages_are_normalised_by_the_random_planners() {
+    fn means_are_divided_by_those_of_the_random_planner() {
         use PlannerKind::{Comfort, Random};
         let holds = [
             hold("cut-01", Comfort, 1, 40.0, 0.5),
@@ -116,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_person_answers_by_a_mean_the_table_averages_it() {
+    fn the_table_uses_the_mean_response_if_there_is_one() {
         let mut holds =
             [hold("drill-1", PlannerKind::Comfort, 1, 40.0, 0.5), hold("drill-2", PlannerKind::Comfort, 1, 20.0, 0.75)];
         let comfort = holds[0].plan.as_mut().and_then(|plan| plan.comfort.as_mut()).unwrap();
@@ -125,19 +105,5 @@ mod tests {
         let row = rows.iter().find(|row| row.planner == PlannerKind::Comfort).unwrap();
         // (10 + 20) / 2; 64 points times (1/4 + 3/4) / 2.
         assert_eq!((row.muscular, row.peripersonal_scaled), (Some(15.0), Some(32.0)));
-    }
-
-    #[test]
-    fn quantiles_are_between_neighbours() {
-        let values = || vec![4.0, 1.0, 2.0, 3.0];
-        assert_eq!(quantile(values(), 0.5), Some(2.5));
-        assert_eq!((quantile(values(), 0.0), quantile(values(), 1.0)), (Some(1.0), Some(4.0)));
-        assert_eq!((quantile(vec![7.0], 0.9), quantile(Vec::new(), 0.5)), (Some(7.0), None));
-    }
-
-    #[test]
-    fn the_deviation_is_that_of_a_sample() {
-        assert_eq!(standard_deviation(&[1.0, 3.0]), Some(2.0_f64.sqrt()));
-        assert_eq!(standard_deviation(&[1.0]), None);
     }
 }

@@ -1,12 +1,11 @@
-//! How long planning took, beside the paper. The one part of the report that two runs do not share: it is printed, never
-//! committed by a run.
+//! Durations of planning and simulation. They differ between runs, so they are printed and not part of `report.md`.
 
 use std::fmt::Write as _;
 
-use super::{Reproduction, printed, table};
+use super::{evaluation::Reproduction, printed, statistics};
 use crate::model::scenario::PlannerKind;
 
-/// Mean, standard deviation and percentiles of the planning times, planner by planner, and of the simulations.
+/// Mean, standard deviation and percentiles of the durations of planning, by planner, and of simulation.
 pub fn summary(reproduction: &Reproduction) -> String {
     let mut text = String::from("time, ms      n    mean      sd     p50     p90     max\n");
     for planner in PlannerKind::ALL {
@@ -18,7 +17,7 @@ pub fn summary(reproduction: &Reproduction) -> String {
     let paper = printed::plan_time();
     // Writing to a string does not fail.
     let _ =
-        writeln!(text, "the paper     a plan in {} s, standard deviation {} s", paper.mean, paper.standard_deviation);
+        writeln!(text, "the paper     {} s per plan, standard deviation {} s", paper.mean, paper.standard_deviation);
     text
 }
 
@@ -26,10 +25,10 @@ fn line(text: &mut String, name: &str, times_ms: Vec<f64>) {
     if times_ms.is_empty() {
         return;
     }
-    let quantile = |share| table::quantile(times_ms.clone(), share);
+    let quantile = |share| statistics::quantile(times_ms.clone(), share);
     let figures = [
-        table::mean(times_ms.iter().copied()),
-        table::standard_deviation(&times_ms),
+        statistics::mean(times_ms.iter().copied()),
+        statistics::standard_deviation(&times_ms),
         quantile(0.5),
         quantile(0.9),
         quantile(1.0),

@@ -1,24 +1,20 @@
-//! The CSV files: a row a fact, empty where there is none. Text is the same for equal runs.
+//! The CSV files. Missing figures are empty. Equal runs give equal text, except `timing.csv`.
 
-use super::{FIRST_SEED, Hold, Reproduction, table, task};
-use crate::model::{scenario::PlannerKind, verdict::CheckKind};
+use super::{
+    evaluation::{FIRST_SEED, HoldRow, Reproduction, task},
+    table,
+};
+use crate::{
+    model::{scenario::PlannerKind, verdict::CheckKind},
+    report::csv_text::csv_text,
+};
 
-/// Six digits behind the point: what two machines must agree on to have made the same table.
+/// Six decimals, to which results of different machines must agree.
 pub(super) fn cell(value: Option<f64>) -> String {
     value.map(|value| format!("{value:.6}")).unwrap_or_default()
 }
 
-/// Joins cells to lines. Names, planners and verdicts have no commas or quotes, so nothing is escaped.
-fn lines(header: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
-    let mut text = format!("{header}\n");
-    for row in rows {
-        text.push_str(&row.join(","));
-        text.push('\n');
-    }
-    text
-}
-
-/// `table1.csv`: the paper's table. The random planner's figures are over all of its seeds.
+/// `table1.csv`: the paper's Table I. The random planner's figures are means over all seeds.
 pub fn table1(reproduction: &Reproduction) -> String {
     let rows = table::rows(reproduction.holds.iter()).into_iter().map(|row| {
         vec![
@@ -31,13 +27,21 @@ pub fn table1(reproduction: &Reproduction) -> String {
             cell(row.peripersonal_normalised),
         ]
     });
-    lines(
-        "task,planner,muscular,muscular_printed_median,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+    csv_text(
+        &[
+            "task",
+            "planner",
+            "muscular",
+            "muscular_printed_median",
+            "peripersonal_scaled",
+            "muscular_normalised",
+            "peripersonal_normalised",
+        ],
         rows,
     )
 }
 
-/// `plans.csv`: each hold that is simulated. `muscular` is the regularised comfort.
+/// `plans.csv`: the plans with the first seed. `muscular` is the regularised comfort.
 pub fn plans(reproduction: &Reproduction) -> String {
     let rows = reproduction.first_seeds().map(|hold| {
         let (comfort, stability) = (hold.comfort(), hold.plan.as_ref().and_then(|plan| plan.stability.as_ref()));
@@ -51,12 +55,15 @@ pub fn plans(reproduction: &Reproduction) -> String {
             cell(stability.map(|stability| stability.compliant_load_factor)),
         ]
     });
-    lines("operation,planner,muscular,peripersonal_m,objective,load_factor,compliant_load_factor", rows)
+    csv_text(
+        &["operation", "planner", "muscular", "peripersonal_m", "objective", "load_factor", "compliant_load_factor"],
+        rows,
+    )
 }
 
-/// `physics.csv` and `best_case.csv`: what became of each hold in simulation. `load_factor_simulated` is the largest multiple
-/// of the load that holds; empty where it was not looked for.
-pub fn physics<'a>(holds: impl Iterator<Item = &'a Hold>) -> String {
+/// `physics.csv` and `best_case.csv`: the simulated plans. `load_factor_simulated` is the largest load factor that holds;
+/// empty if it was not searched.
+pub fn physics<'a>(holds: impl Iterator<Item = &'a HoldRow>) -> String {
     let rows = holds.map(|hold| {
         let predicted_mm = hold.plan.as_ref().and_then(|plan| Some(plan.stability.as_ref()?.predicted_deflection_mm));
         vec![
@@ -71,14 +78,23 @@ pub fn physics<'a>(holds: impl Iterator<Item = &'a Hold>) -> String {
             cell(hold.load_factor_simulated),
         ]
     });
-    lines(
-        "operation,planner,verdict,slip_mm,slip_deg,deflection_mm,predicted_deflection_mm,torque_ratio,\
-         load_factor_simulated",
+    csv_text(
+        &[
+            "operation",
+            "planner",
+            "verdict",
+            "slip_mm",
+            "slip_deg",
+            "deflection_mm",
+            "predicted_deflection_mm",
+            "torque_ratio",
+            "load_factor_simulated",
+        ],
         rows,
     )
 }
 
-/// `random.csv`: every draw of the random planner.
+/// `random.csv`: every plan of the random planner.
 pub fn random(reproduction: &Reproduction) -> String {
     let draws = reproduction.holds.iter().filter(|hold| hold.planner == PlannerKind::Random).map(|hold| {
         let comfort = hold.comfort();
@@ -90,10 +106,10 @@ pub fn random(reproduction: &Reproduction) -> String {
             cell(hold.peripersonal_scaled()),
         ]
     });
-    lines("operation,seed,muscular,muscular_printed,peripersonal_scaled", draws)
+    csv_text(&["operation", "seed", "muscular", "muscular_printed", "peripersonal_scaled"], draws)
 }
 
-/// `sensitivity.csv`: the paper's table under each assumption.
+/// `sensitivity.csv`: Table I under each assumption.
 pub fn sensitivity(reproduction: &Reproduction) -> String {
     let rows = reproduction.sensitivity.iter().flat_map(|variant| {
         table::rows(variant.holds.iter()).into_iter().map(|row| {
@@ -109,15 +125,24 @@ pub fn sensitivity(reproduction: &Reproduction) -> String {
             ]
         })
     });
-    lines(
-        "assumption,task,planner,plans,muscular,peripersonal_scaled,muscular_normalised,peripersonal_normalised",
+    csv_text(
+        &[
+            "assumption",
+            "task",
+            "planner",
+            "plans",
+            "muscular",
+            "peripersonal_scaled",
+            "muscular_normalised",
+            "peripersonal_normalised",
+        ],
         rows,
     )
 }
 
-/// `timing.csv`: how long planning and simulating took. Not the same in two runs.
+/// `timing.csv`: durations of planning and simulation. They differ between runs.
 pub fn timing(reproduction: &Reproduction) -> String {
-    let of = |hold: &Hold| {
+    let of = |hold: &HoldRow| {
         vec![
             hold.operation.clone(),
             hold.planner.to_string(),
@@ -126,5 +151,5 @@ pub fn timing(reproduction: &Reproduction) -> String {
         ]
     };
     let rows = reproduction.holds.iter().filter(|hold| hold.seed == FIRST_SEED).map(of);
-    lines("operation,planner,plan_ms,simulate_ms", rows)
+    csv_text(&["operation", "planner", "plan_ms", "simulate_ms"], rows)
 }

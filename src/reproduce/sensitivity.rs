@@ -1,71 +1,71 @@
-//! What the paper does not state and the reproduction assumes, changed one at a time.
+//! Assumptions that the paper does not state, changed one at a time.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::jobs::{self, Job, Work};
+use super::jobs::{self, Job, Stage};
 use crate::model::{
     frames::rotation_from_xyzw,
     operation::OperationKind,
     scenario::{Optima, ResponseKind, Scenario},
 };
 
-/// An assumption that differs.
-pub struct VariantOf {
-    /// In words, without commas: a cell of `sensitivity.csv`.
+/// A changed assumption.
+pub struct Assumption {
+    /// Its name in `sensitivity.csv`, without commas.
     pub name: &'static str,
-    /// Puts it into a scenario.
+    /// Changes a scenario.
     pub change: fn(&mut Scenario),
 }
 
-impl VariantOf {
-    /// The plans of one operation under this assumption.
+impl Assumption {
+    /// The jobs for one operation under this assumption.
     pub fn jobs(&self, scenario: &Scenario, random_seeds: u64) -> Vec<Job> {
         let mut scenario = scenario.clone();
         (self.change)(&mut scenario);
-        let jobs = jobs::jobs_of(&scenario, random_seeds, Work::Plan).into_iter();
+        let jobs = jobs::jobs_of(&scenario, random_seeds, Stage::Plan).into_iter();
         jobs.map(|job| Job { variant: Some(self.name), ..job }).collect()
     }
 }
 
-/// The operations that are looked at: a quarter of the circle apart, and two corners and the middle of the grid.
+/// The operations of the analysis: four cuts a quarter of the circle apart, two corners and the middle of the grid.
 const OPERATIONS: [&str; 7] = ["cut-01", "cut-05", "cut-09", "cut-13", "drill-1", "drill-5", "drill-9"];
 
-/// How much farther the tip is, m.
+/// Added length of the tool, m.
 const LONGER_M: f64 = 0.05;
 
-/// How far the tool is turned, degrees.
+/// Tilt of the tool, degrees.
 const TILT_DEG: f64 = 30.0;
 
-/// All of them.
-pub const VARIANTS: [VariantOf; 10] = [
-    VariantOf {
-        name: "the mean of the person's answers in place of the best",
+/// All changed assumptions.
+pub const VARIANTS: [Assumption; 10] = [
+    Assumption {
+        name: "the mean of the person's responses instead of the best",
         change: |scenario| scenario.comfort.person = ResponseKind::Mean,
     },
-    VariantOf { name: "strength: 5th percentile", change: |scenario| scenario.human.percentile = 5.0 },
-    VariantOf { name: "strength: 95th percentile", change: |scenario| scenario.human.percentile = 95.0 },
-    VariantOf {
-        name: "peripersonal weight 16 in place of 64",
+    Assumption { name: "strength: 5th percentile", change: |scenario| scenario.human.percentile = 5.0 },
+    Assumption { name: "strength: 95th percentile", change: |scenario| scenario.human.percentile = 95.0 },
+    Assumption {
+        name: "peripersonal weight 16 instead of 64",
         change: |scenario| scenario.comfort.weight_peripersonal = 16.0,
     },
-    VariantOf { name: "peripersonal weight 256", change: |scenario| scenario.comfort.weight_peripersonal = 256.0 },
-    VariantOf { name: "each comfort over its own optimum in equal shares", change: normalise },
-    VariantOf { name: "tool 5 cm longer", change: lengthen_tool },
-    VariantOf { name: "tool tilted by 30 degrees in the hand", change: tilt_tool },
-    VariantOf {
-        name: "board 0.40 x 0.32 m in place of 0.50 x 0.40",
+    Assumption { name: "peripersonal weight 256", change: |scenario| scenario.comfort.weight_peripersonal = 256.0 },
+    Assumption { name: "each comfort divided by its optimum with equal weights", change: normalise },
+    Assumption { name: "tool 5 cm longer", change: lengthen_tool },
+    Assumption { name: "tool tilted by 30 degrees in the hand", change: tilt_tool },
+    Assumption {
+        name: "board 0.40 x 0.32 m instead of 0.50 x 0.40",
         change: |scenario| resize(scenario, [0.40, 0.32]),
     },
-    VariantOf { name: "board 0.60 x 0.48 m", change: |scenario| resize(scenario, [0.60, 0.48]) },
+    Assumption { name: "board 0.60 x 0.48 m", change: |scenario| resize(scenario, [0.60, 0.48]) },
 ];
 
-/// True for an operation that is looked at.
-pub fn looks_at(operation: &str) -> bool {
+/// True for an operation of the analysis.
+pub fn includes(operation: &str) -> bool {
     OPERATIONS.contains(&operation)
 }
 
-/// What the planners of either comfort alone reach on average (`results/table1.csv`), for cuts and for holes: the same for all
-/// planners, so that their objectives can be compared.
+/// Sets the optima of both comforts to the means that the muscular and the peripersonal planner reach (`results/table1.csv`),
+/// for cuts and for holes. They are the same for all planners, so that their objectives can be compared.
 fn normalise(scenario: &mut Scenario) {
     let [muscular_regularised, peripersonal_m] =
         if scenario.operation.kind == OperationKind::Cut { [61.6, 1.28] } else { [100.0, 1.30] };
@@ -73,7 +73,7 @@ fn normalise(scenario: &mut Scenario) {
     scenario.comfort.peripersonal_share = Some(0.5);
 }
 
-/// Moves the tip along the tool's axis z_T.
+/// Moves the tip by 5 cm along the tool's axis z_T.
 fn lengthen_tool(scenario: &mut Scenario) {
     let axis_h = rotation_ht(scenario) * Vector3::z();
     for (tip, along) in scenario.tool.tip_h_m.iter_mut().zip(axis_h.iter()) {
@@ -81,7 +81,7 @@ fn lengthen_tool(scenario: &mut Scenario) {
     }
 }
 
-/// Turns the tool about y_T; the tip stays.
+/// Turns the tool about y_T; the tip does not move.
 fn tilt_tool(scenario: &mut Scenario) {
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), TILT_DEG.to_radians());
     scenario.tool.rotation_xyzw = (rotation_ht(scenario) * tilt).into_inner().coords.into();
@@ -89,11 +89,11 @@ fn tilt_tool(scenario: &mut Scenario) {
 
 /// R_HT.
 fn rotation_ht(scenario: &Scenario) -> UnitQuaternion<f64> {
-    // The scenario has passed the checks of `scenario`, which ask for a rotation.
+    // `scenario` has checked that it is a rotation.
     rotation_from_xyzw(scenario.tool.rotation_xyzw).expect("a checked scenario's tool has a rotation")
 }
 
-/// Width and height of the board; thickness and density stay, so the operations do.
+/// Sets width and height of the board; thickness, density and operations do not change.
 fn resize(scenario: &mut Scenario, [width_m, height_m]: [f64; 2]) {
     scenario.object.size_m = [width_m, height_m, scenario.object.size_m[2]];
 }
@@ -101,11 +101,11 @@ fn resize(scenario: &mut Scenario, [width_m, height_m]: [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::paper;
+    use crate::reproduce::paper;
 
     #[test]
-    fn every_variant_changes_every_operation_that_is_looked_at() {
-        let operations: Vec<_> = paper::operations().into_iter().filter(|o| looks_at(&o.name)).collect();
+    fn every_variant_changes_every_operation_of_the_analysis() {
+        let operations: Vec<_> = paper::operations().into_iter().filter(|o| includes(&o.name)).collect();
         assert_eq!(operations.len(), OPERATIONS.len());
         for operation in operations {
             let scenario = operation.load().unwrap().scenario;
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn the_name_of_every_variant_is_one_cell_and_its_own() {
+    fn the_name_of_every_variant_is_unique_and_one_cell() {
         for (index, variant) in VARIANTS.iter().enumerate() {
             assert!(!variant.name.contains([',', '"', '|']), "{}", variant.name);
             assert!(VARIANTS[..index].iter().all(|other| other.name != variant.name), "{}", variant.name);
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_of_the_answers_is_asked_of_every_planner() {
+    fn the_mean_response_is_used_by_every_planner() {
         let variant = VARIANTS.iter().find(|variant| variant.name.starts_with("the mean")).unwrap();
         let jobs = variant.jobs(&paper::operations()[16].load().unwrap().scenario, 2);
         assert_eq!(jobs.len(), 5, "three planners and two draws");
@@ -140,7 +140,7 @@ mod tests {
         let before = scenario.tool.tip_h_m;
         lengthen_tool(&mut scenario);
         let moved = Vector3::from(scenario.tool.tip_h_m) - Vector3::from(before);
-        // The drill's axis is -z_H (METHOD section 4).
+        // The drill's axis is -z_H (docs/method.md#44-tools-in-the-hand).
         assert!((moved - Vector3::new(0.0, 0.0, -0.05)).norm() < 1e-15);
     }
 }

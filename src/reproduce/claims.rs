@@ -1,28 +1,32 @@
-//! What the paper concludes from its table, put to the test on ours.
+//! The paper's conclusions from its Table I, tested on ours.
 
-use super::{Hold, Reproduction, printed, table, table::Row, task};
+use super::{
+    evaluation::{HoldRow, KINDS, Reproduction, task},
+    printed,
+    table::{self, Row},
+};
 use crate::model::{operation::OperationKind, scenario::PlannerKind, verdict::VerdictKind};
 
-/// Largest loss of peripersonal comfort against the planner of that comfort alone that still counts as near: in the paper
-/// the comfort planner loses less than a hundredth; ours may lose as much as a twentieth.
+/// Smallest ratio of peripersonal comfort, comfort planner over peripersonal planner, that counts as near. In the paper it is
+/// above 0.99.
 pub const NEAR_PERIPERSONAL: f64 = 0.95;
 
-/// A sentence, and whether our figures bear it out.
+/// A conclusion, and whether our figures confirm it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
-    /// The sentence.
+    /// The conclusion.
     pub sentence: String,
-    /// The figures that decide, in words.
+    /// The deciding figures.
     pub figures: String,
-    /// True when they bear it out.
+    /// True if they confirm it.
     pub holds: bool,
 }
 
-/// All claims that there are figures for.
+/// All claims for which there are figures.
 pub fn claims(reproduction: &Reproduction) -> Vec<Claim> {
     let rows = table::rows(reproduction.holds.iter());
     let mut claims = Vec::new();
-    for kind in super::KINDS {
+    for kind in KINDS {
         let row = |planner| rows.iter().find(|row| row.kind == kind && row.planner == planner).and_then(Figures::of);
         if let (Some(comfort), Some(peripersonal), Some(muscular), Some(random)) = (
             row(PlannerKind::Comfort),
@@ -38,7 +42,7 @@ pub fn claims(reproduction: &Reproduction) -> Vec<Claim> {
     claims
 }
 
-/// A row of the table: mean muscular comfort and mean peripersonal comfort as a sum.
+/// The mean comforts of a row of the table.
 #[derive(Clone, Copy)]
 struct Figures {
     muscular: f64,
@@ -55,17 +59,17 @@ impl Figures {
     }
 }
 
-/// The comfort planner beside those that look at one comfort alone.
+/// The comfort planner compared with the planners of one comfort.
 fn near(kind: OperationKind, comfort: Figures, peripersonal: Figures, muscular: Figures) -> Vec<Claim> {
     let share = comfort.muscular / muscular.muscular;
     let in_paper = |planner| printed::table(kind, planner).map_or(f64::NAN, |row| row.muscular);
     let papers_share = in_paper(PlannerKind::Comfort) / in_paper(PlannerKind::Muscular);
     let near_muscular = Claim {
         sentence: format!(
-            "{}: the comfort planner is as near to the muscular planner's muscular comfort as in the paper, or nearer",
+            "{}: the comfort planner reaches as much of the muscular planner's muscular comfort as in the paper",
             task(kind)
         ),
-        figures: format!("{share:.2} of it; in the paper {papers_share:.2}"),
+        figures: format!("{share:.2} of it; {papers_share:.2} in the paper"),
         holds: share >= papers_share,
     };
     let share = comfort.peripersonal / peripersonal.peripersonal;
@@ -74,13 +78,13 @@ fn near(kind: OperationKind, comfort: Figures, peripersonal: Figures, muscular: 
             "{}: the comfort planner is near the peripersonal planner's peripersonal comfort",
             task(kind)
         ),
-        figures: format!("{share:.3} of it; at least {NEAR_PERIPERSONAL} asked for"),
+        figures: format!("{share:.3} of it; at least {NEAR_PERIPERSONAL} required"),
         holds: share >= NEAR_PERIPERSONAL,
     };
     vec![near_muscular, near_peripersonal]
 }
 
-/// What the planners of one comfort do to the other, and what chance does to both.
+/// The planners of one comfort are poor in the other, and the random planner is the worst in the sum.
 fn one_sided(
     kind: OperationKind,
     comfort: Figures,
@@ -88,13 +92,13 @@ fn one_sided(
     muscular: Figures,
     random: Figures,
 ) -> Vec<Claim> {
-    // Of what the comfort planner gains over chance.
+    // As a share of the comfort planner's gain over the random planner.
     let gain = |value: f64, of: f64, from: f64| (value - from) / (of - from);
     let of_peripersonal = gain(muscular.peripersonal, comfort.peripersonal, random.peripersonal);
     let of_muscular = gain(peripersonal.muscular, comfort.muscular, random.muscular);
     let poor = |subject: &str, what: &str, share: f64| Claim {
         sentence: format!("{}: the {subject} planner is poor in {what} comfort", task(kind)),
-        figures: format!("{:.0} % of the comfort planner's gain over random; less than half asked for", 100.0 * share),
+        figures: format!("{:.0} % of the comfort planner's gain over random; less than half required", 100.0 * share),
         holds: share < 0.5,
     };
     let least = comfort.sum().min(peripersonal.sum()).min(muscular.sum());
@@ -106,19 +110,19 @@ fn one_sided(
     vec![poor("muscular", "peripersonal", of_peripersonal), poor("peripersonal", "muscular", of_muscular), worst]
 }
 
-/// Not the paper's, but what this project adds to it.
+/// All plans of the comfort planner hold in simulation. Not a conclusion of the paper.
 fn simulated(reproduction: &Reproduction) -> Option<Claim> {
     let of_comfort = || reproduction.first_seeds().filter(|hold| hold.planner == PlannerKind::Comfort);
-    let all = of_comfort().count();
+    let count = of_comfort().count();
     let held = of_comfort().filter(|hold| holds(hold)).count();
-    (all > 0).then(|| Claim {
-        sentence: "every hold of the comfort planner holds in simulation".to_owned(),
-        figures: format!("{held} of {all}"),
-        holds: held == all,
+    (count > 0).then(|| Claim {
+        sentence: "every plan of the comfort planner holds in simulation".to_owned(),
+        figures: format!("{held} of {count}"),
+        holds: held == count,
     })
 }
 
-/// True when a hold was simulated and held.
-pub fn holds(hold: &Hold) -> bool {
+/// True if the plan was simulated and its verdict is `holds`.
+pub fn holds(hold: &HoldRow) -> bool {
     hold.verdict.as_ref().is_some_and(|verdict| verdict.verdict == VerdictKind::Holds)
 }

@@ -1,4 +1,4 @@
-//! The messages of one store, with ids that are counted and not drawn from the clock.
+//! The messages of one rerun store, with sequential ids instead of ids from the clock.
 
 use rerun::{
     AsComponents, EntityPath, SerializedComponentColumn, StoreId, StoreKind, TimeColumn, TimePoint, Timeline,
@@ -10,16 +10,16 @@ use rerun::{
     time::TimeInt,
 };
 
-use super::{RecordError, TIMELINE};
+use super::{entity::TIMELINE, error::RecordError};
 
-/// Messages in the order in which they were logged.
+/// Messages in the order of logging.
 pub(super) struct Messages {
     store_id: StoreId,
     messages: Vec<LogMsg>,
 }
 
 impl Messages {
-    /// A store that has been announced and is empty.
+    /// An empty store, with the message that announces it.
     pub fn new(store_id: StoreId) -> Self {
         let info = StoreInfo::new(store_id.clone(), StoreSource::Other("benchdog".to_owned()));
         let announcement = LogMsg::SetStoreInfo(SetStoreInfo { row_id: id(0), info });
@@ -36,11 +36,11 @@ impl Messages {
         self.messages
     }
 
-    /// Logs what holds at all times; in a blueprint, at its only time.
+    /// Logs data without time; in a blueprint, at its only time.
     pub fn log_static(&mut self, entity: &EntityPath, what: &dyn AsComponents) -> Result<(), RecordError> {
         let time = match self.store_id.kind() {
             StoreKind::Recording => TimePoint::default(),
-            // The viewer looks for a blueprint on this timeline.
+            // The viewer reads blueprints on this timeline.
             StoreKind::Blueprint => TimePoint::default().with(Timeline::new_sequence("blueprint"), TimeInt::ZERO),
         };
         let id = self.next_id();
@@ -51,7 +51,7 @@ impl Messages {
         self.push(&chunk)
     }
 
-    /// Logs what changes: one row a time, s.
+    /// Logs data over time: one row for each time, s.
     pub fn log_columns(
         &mut self,
         entity: &EntityPath,
@@ -66,7 +66,7 @@ impl Messages {
         self.push(&chunk)
     }
 
-    /// The rows of a chunk count on from its own id, in the lower half.
+    /// The id of the next chunk. Its rows count up from it, in the lower half.
     fn next_id(&self) -> Tuid {
         id(self.messages.len() as u64)
     }
@@ -78,7 +78,7 @@ impl Messages {
     }
 }
 
-/// The id of the message of this number; its lower half counts the rows.
+/// The id of the message with this number; the lower half numbers the rows.
 fn id(number: u64) -> Tuid {
     Tuid::from_nanos_and_inc(number, 0)
 }

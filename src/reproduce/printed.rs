@@ -1,4 +1,4 @@
-//! What the paper prints, from `assets/paper.toml`.
+//! The figures printed in the paper, from `assets/paper.toml` (`docs/method.md#9-the-papers-figures`).
 
 use std::sync::LazyLock;
 
@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::model::{operation::OperationKind, scenario::PlannerKind};
 
-/// Two comforts of one planner on one kind of operation.
+/// The comforts of one planner for one kind of operation.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Printed {
@@ -20,7 +20,7 @@ pub struct Printed {
     pub peripersonal: f64,
 }
 
-/// The time of a plan, s.
+/// The duration of planning, s.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanTime {
@@ -39,25 +39,25 @@ struct Paper {
 }
 
 static PAPER: LazyLock<Paper> = LazyLock::new(|| {
-    // The file is part of the program and a test reads it: a mistake in it cannot be shipped.
-    toml::from_str(include_str!("../../../assets/paper.toml")).expect("the shipped figures of the paper are sound")
+    // The file is part of the program and read by a test.
+    toml::from_str(include_str!("../../assets/paper.toml")).expect("the built-in figures of the paper are valid")
 });
 
 fn find(rows: &[Printed], task: OperationKind, planner: PlannerKind) -> Option<Printed> {
     rows.iter().find(|row| row.task == task && row.planner == planner).copied()
 }
 
-/// Table I: comforts over those of the random planner.
+/// Table I: comforts divided by those of the random planner.
 pub fn table(task: OperationKind, planner: PlannerKind) -> Option<Printed> {
     find(&PAPER.table, task, planner)
 }
 
-/// The captions of the configurations that the paper shows.
+/// The captions of the configurations in the figures.
 pub fn caption(task: OperationKind, planner: PlannerKind) -> Option<Printed> {
     find(&PAPER.caption, task, planner)
 }
 
-/// The time of a plan.
+/// The duration of planning.
 pub fn plan_time() -> PlanTime {
     PAPER.plan_s
 }
@@ -65,7 +65,7 @@ pub fn plan_time() -> PlanTime {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::reproduce::KINDS;
+    use crate::reproduce::evaluation::KINDS;
 
     #[test]
     fn every_task_and_planner_has_its_figures() {

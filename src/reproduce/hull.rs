@@ -1,14 +1,14 @@
-//! The outline of a convex body in a picture: the convex hull of the pictures of its corners.
+//! The convex hull of points in a plane.
 
-/// A point of a picture.
+/// A point in the plane of a picture.
 pub type Point2 = [f64; 2];
 
-/// Twice the signed area of a triangle: positive when it turns left.
+/// Twice the signed area of a triangle: positive if its corners are in counter-clockwise order.
 fn turn(a: Point2, b: Point2, c: Point2) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The corners of the convex hull in the order of a walk round it, by Andrew's monotone chain (A. M. Andrew, "Another
+/// The corners of the convex hull in counter-clockwise order, by Andrew's monotone chain (A. M. Andrew, "Another
 /// efficient algorithm for convex hulls in two dimensions", 1979).
 pub fn convex_hull(mut points: Vec<Point2>) -> Vec<Point2> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
@@ -19,7 +19,7 @@ pub fn convex_hull(mut points: Vec<Point2>) -> Vec<Point2> {
     hull
 }
 
-/// The lower half of the hull of points that come from left to right, the upper half of those from right to left.
+/// The lower half of the hull if the points are sorted from left to right, the upper half if from right to left.
 fn half(points: impl Iterator<Item = Point2>) -> Vec<Point2> {
     let mut hull: Vec<Point2> = Vec::new();
     for point in points {
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn every_point_is_inside_or_on_the_hull() {
-        // A golden-angle spiral: no three in a line, many inside.
+        // A golden-angle spiral: no three points on a line, many inside the hull.
         let point = |k: u32| {
             let (sin, cos) = libm::sincos(2.399_963 * f64::from(k));
             [f64::from(k) * cos, f64::from(k) * sin]

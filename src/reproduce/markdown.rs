@@ -1,11 +1,12 @@
-//! `report.md`: the whole reproduction for a reader.
+//! `report.md`.
 
 use std::fmt::Write as _;
 
 use super::{
-    Hold, KINDS, Reproduction, Variant, claims,
+    claims,
+    evaluation::{HoldRow, KINDS, Reproduction, Variant, task},
     printed::{self, Printed},
-    table, task,
+    statistics, table,
 };
 use crate::{
     model::{
@@ -16,15 +17,15 @@ use crate::{
     report::explanation,
 };
 
-// Writing to a string does not fail, so the results of `writeln!` say nothing.
+// Writing to a string does not fail, so the results of `writeln!` are ignored.
 
-/// The report. Pictures and tables that it names stand beside it.
+/// The report. It refers to pictures and CSV files in the same folder.
 pub fn report(reproduction: &Reproduction) -> String {
-    let mut text = String::from("# The paper, reproduced and proved in physics\n\n");
+    let mut text = String::from("# The paper, reproduced and verified in simulation\n\n");
     text.push_str(
-        "Written by `benchdog reproduce`; do not edit. What the figures mean, and what is not reproduced:\n\
-         `docs/reproduction.md`. Chen, Figueredo, Dogar, *Planning for Muscular and Peripersonal-Space Comfort during\n\
-         Human-Robot Forceful Collaboration*, IEEE-RAS Humanoids 2018, is \"the paper\".\n",
+        "Written by `benchdog reproduce`; do not edit. `docs/reproduction.md` explains the figures and lists what is not\n\
+         reproduced. \"The paper\" is Chen, Figueredo, Dogar, *Planning for Muscular and Peripersonal-Space Comfort during\n\
+         Human-Robot Forceful Collaboration*, IEEE-RAS Humanoids 2018.\n",
     );
     if let Some(left_out) = &reproduction.left_out {
         let _ = writeln!(text, "\n**Not the whole evaluation**: {left_out}.");
@@ -37,8 +38,8 @@ pub fn report(reproduction: &Reproduction) -> String {
     best_case(&mut text, reproduction);
     pictures(&mut text, reproduction);
     text.push_str(
-        "\n## Muscular comfort along the circle\n\nThe best and the worst of the person's postures at each of the 16 cutting points, \
-         the board upright in one place\n(`muscular_curve.csv`).\n\n![Best and worst muscular comfort at 16 cutting points](muscular_curve.svg)\n",
+        "\n## Muscular comfort along the circle\n\nBest and worst posture of the person at each of the 16 cutting points, with the board upright in one place\n\
+         (`muscular_curve.csv`).\n\n![Best and worst muscular comfort at 16 cutting points](muscular_curve.svg)\n",
     );
     sensitivity(&mut text, reproduction);
     text
@@ -51,8 +52,8 @@ fn figure(value: Option<f64>, digits: usize) -> String {
 fn table_one(text: &mut String, reproduction: &Reproduction) {
     let _ = write!(
         text,
-        "\n## Table I\n\nMeans over the operations, over those of the random planner ({} seeds an operation): ours, and the paper's in \
-         brackets\n(`table1.csv`).\n\n| task | planner | muscular | peripersonal |\n|---|---|---|---|\n",
+        "\n## Table I\n\nMeans over the operations, divided by those of the random planner ({} seeds per operation). The paper's figures are\n\
+         in brackets (`table1.csv`).\n\n| task | planner | muscular | peripersonal |\n|---|---|---|---|\n",
         reproduction.random_seeds
     );
     for row in table::rows(reproduction.holds.iter()) {
@@ -72,7 +73,7 @@ fn table_one(text: &mut String, reproduction: &Reproduction) {
 }
 
 fn claims_section(text: &mut String, reproduction: &Reproduction) {
-    text.push_str("\n## What the paper concludes, on our figures\n\n| so here | claim | figures |\n|---|---|---|\n");
+    text.push_str("\n## The paper's conclusions\n\n| confirmed | conclusion | figures |\n|---|---|---|\n");
     for claim in claims::claims(reproduction) {
         let mark = if claim.holds { "yes" } else { "**no**" };
         let _ = writeln!(text, "| {mark} | {} | {} |", claim.sentence, claim.figures);
@@ -81,10 +82,11 @@ fn claims_section(text: &mut String, reproduction: &Reproduction) {
 
 fn raw(text: &mut String, reproduction: &Reproduction) {
     text.push_str(
-        "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of \
-         `1 / ||alpha||^2`.\nPeripersonal comfort is the sum over 64 points of the body, the scale of the paper's captions, whose one \
-         configuration\na planner stands in brackets. Single plans are in `plans.csv`. `candidates` is how many a search looked at, in \
-         the mean:\nrandom draws until a hold will do; a larger search of the others may find better.\n\n\
+        "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of `1 / ||alpha||^2`.\n\
+         Peripersonal comfort is the sum over 64 body points, as in the captions of the paper; the figures in brackets are those\n\
+         of the one configuration per planner that the paper shows. `candidates` is the mean number of evaluated candidates: the\n\
+         random planner draws until a candidate is feasible; the others might find better plans with more candidates. Single\n\
+         plans are in `plans.csv`.\n\n\
          | task | planner | plans | candidates | muscular | printed | peripersonal |\n|---|---|---|---|---|---|---|\n",
     );
     for row in table::rows(reproduction.holds.iter()) {
@@ -106,11 +108,11 @@ fn raw(text: &mut String, reproduction: &Reproduction) {
     }
 }
 
-/// For each seed the mean over the operations of a kind; how these means differ.
+/// The spread, over the seeds, of the means over the operations of a kind.
 fn seeds(text: &mut String, reproduction: &Reproduction) {
     text.push_str(
-        "\n## Spread of the random planner\n\nFor each seed the mean over the operations, as the paper's one run has it; then mean, \
-         standard deviation and range of\nthese means over the seeds (`random.csv`).\n\n\
+        "\n## Spread of the random planner\n\nEach seed gives a mean over the operations, as in the paper's single run. The table shows mean, standard deviation and\n\
+         range of these means over the seeds (`random.csv`).\n\n\
          | task | comfort | mean | deviation | range |\n|---|---|---|---|---|\n",
     );
     for kind in KINDS {
@@ -118,19 +120,21 @@ fn seeds(text: &mut String, reproduction: &Reproduction) {
             let draws = reproduction.holds.iter().filter(move |h| h.planner == PlannerKind::Random && h.kind == kind);
             draws.filter(move |hold| hold.seed == seed)
         };
-        let means = |figure: fn(&Hold) -> Option<f64>| -> Vec<f64> {
-            (1..=reproduction.random_seeds).filter_map(|seed| table::mean(of_seed(seed).filter_map(figure))).collect()
+        let means = |figure: fn(&HoldRow) -> Option<f64>| -> Vec<f64> {
+            (1..=reproduction.random_seeds)
+                .filter_map(|seed| statistics::mean(of_seed(seed).filter_map(figure)))
+                .collect()
         };
-        let muscular = means(Hold::muscular);
-        let peripersonal = means(Hold::peripersonal_scaled);
+        let muscular = means(HoldRow::muscular);
+        let peripersonal = means(HoldRow::peripersonal_scaled);
         for (name, means) in [("muscular", muscular), ("peripersonal", peripersonal)] {
-            let quantile = |share| figure(table::quantile(means.clone(), share), 2);
+            let quantile = |share| figure(statistics::quantile(means.clone(), share), 2);
             let _ = writeln!(
                 text,
                 "| {} | {name} | {} | {} | {} to {} |",
                 task(kind),
-                figure(table::mean(means.iter().copied()), 2),
-                figure(table::standard_deviation(&means), 2),
+                figure(statistics::mean(means.iter().copied()), 2),
+                figure(statistics::standard_deviation(&means), 2),
                 quantile(0.0),
                 quantile(1.0)
             );
@@ -143,10 +147,11 @@ fn physics(text: &mut String, reproduction: &Reproduction) {
     let held = simulated().filter(|hold| claims::holds(hold)).count();
     let _ = write!(
         text,
-        "\n## In simulation\n\n**{held} of {} holds stand** the tool's whole force, within 1 mm and 2 degrees of slip and 15 mm (cutting) or \
-         5 mm (drilling) of\ndeflection. Worst values of each planner (`physics.csv`); load factors are multiples of the force, their smallest over the\n\
-         holds: by the certificate (the best that any forces can do), predicted for compliant arms, and simulated.\n\n\
-         | task | planner | hold | slip mm | slip deg | deflection mm | torque | certificate | predicted | simulated |\n\
+        "\n## In simulation\n\n**{held} of {} plans hold** under the tool's full force, with at most 1 mm and 2 degrees of slip and 15 mm (cutting) or\n\
+         5 mm (drilling) of deflection. The table shows the worst values of each planner (`physics.csv`). Load factors are the\n\
+         smallest over the plans: `certificate` for the best contact forces, `predicted` for compliant arms, `simulated` by\n\
+         raising the force until the grasp fails.\n\n\
+         | task | planner | holds | slip mm | slip deg | deflection mm | torque | certificate | predicted | simulated |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
         simulated().count()
     );
@@ -162,7 +167,7 @@ fn physics(text: &mut String, reproduction: &Reproduction) {
     failures(text, reproduction.first_seeds());
 }
 
-fn physics_row(kind: OperationKind, planner: PlannerKind, holds: &[&Hold]) -> String {
+fn physics_row(kind: OperationKind, planner: PlannerKind, holds: &[&HoldRow]) -> String {
     let worst = |check| largest(holds.iter().filter_map(|hold| hold.value(check)));
     let stability = || holds.iter().filter_map(|hold| hold.plan.as_ref()?.stability.as_ref());
     let smallest = |values: Vec<f64>| largest(values.into_iter().map(|v| -v)).map(|v| -v);
@@ -185,9 +190,9 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.reduce(f64::max)
 }
 
-/// How good the predictions were: the simulated over the predicted.
+/// The ratios of simulated to predicted values.
 fn predictions(text: &mut String, reproduction: &Reproduction) {
-    let stability = |hold: &Hold| Some(hold.plan.as_ref()?.stability.as_ref()?.clone());
+    let stability = |hold: &HoldRow| Some(hold.plan.as_ref()?.stability.as_ref()?.clone());
     let ratios: [(&str, Vec<f64>); 3] = [
         (
             "deflection, simulated over predicted",
@@ -202,9 +207,9 @@ fn predictions(text: &mut String, reproduction: &Reproduction) {
             collect(reproduction, |h| Some(h.load_factor_simulated? / stability(h)?.load_factor)),
         ),
     ];
-    text.push_str("\n| over all holds | n | least | median | most |\n|---|---|---|---|---|\n");
+    text.push_str("\n| over all plans | n | smallest | median | largest |\n|---|---|---|---|---|\n");
     for (name, values) in ratios {
-        let quantile = |share| figure(table::quantile(values.clone(), share), 3);
+        let quantile = |share| figure(statistics::quantile(values.clone(), share), 3);
         let _ =
             writeln!(text, "| {name} | {} | {} | {} | {} |", values.len(), quantile(0.0), quantile(0.5), quantile(1.0));
     }
@@ -214,35 +219,35 @@ fn predictions(text: &mut String, reproduction: &Reproduction) {
     }
     if !ended.is_empty() {
         let list: Vec<_> = ended.iter().map(|(name, count)| format!("{name} {count}")).collect();
-        let _ = writeln!(text, "\nWhat ends the holds when the force is raised: {}.", list.join(", "));
+        let _ = writeln!(text, "\nVerdicts when the force is raised: {}.", list.join(", "));
     }
 }
 
-fn collect(reproduction: &Reproduction, ratio: impl Fn(&Hold) -> Option<f64>) -> Vec<f64> {
+fn collect(reproduction: &Reproduction, ratio: impl Fn(&HoldRow) -> Option<f64>) -> Vec<f64> {
     reproduction.first_seeds().filter_map(ratio).filter(|ratio| ratio.is_finite()).collect()
 }
 
-/// What the best case alone is worth.
+/// The results with the paper's stability constraint alone.
 fn best_case(text: &mut String, reproduction: &Reproduction) {
     let holds = &reproduction.best_case;
     let _ = write!(
         text,
-        "\n## With the paper's stability alone\n\nAll holds above were planned to stand the load with compliant arms. When the comfort planner asks only \
-         that *some* forces\nbalance the load (`stability = \"paper\"`), **{} of {} of its holds stand** in simulation (`best_case.csv`).\n",
+        "\n## With the paper's stability alone\n\nAll plans above resist the load with compliant arms. If the comfort planner requires only that *some* contact forces\n\
+         balance the load (`stability = \"paper\"`), **{} of {} of its plans hold** in simulation (`best_case.csv`).\n",
         holds.iter().filter(|hold| claims::holds(hold)).count(),
         holds.len()
     );
     failures(text, holds.iter());
 }
 
-/// Every hold that did not stand, and why.
-fn failures<'a>(text: &mut String, holds: impl Iterator<Item = &'a Hold>) {
+/// The plans that failed, and why.
+fn failures<'a>(text: &mut String, holds: impl Iterator<Item = &'a HoldRow>) {
     let failed: Vec<_> = holds.filter(|hold| !claims::holds(hold)).collect();
     if failed.is_empty() {
-        text.push_str("\nNo hold failed.\n");
+        text.push_str("\nNo plan failed.\n");
         return;
     }
-    text.push_str("\nHolds that failed:\n\n| operation | planner | verdict | why |\n|---|---|---|---|\n");
+    text.push_str("\nPlans that failed:\n\n| operation | planner | verdict | reason |\n|---|---|---|---|\n");
     for hold in failed {
         let verdict = hold.verdict.as_ref();
         let kind = verdict.map_or(VerdictKind::Infeasible, |verdict| verdict.verdict);
@@ -251,13 +256,13 @@ fn failures<'a>(text: &mut String, holds: impl Iterator<Item = &'a Hold>) {
     }
 }
 
-/// The name of a picture's file.
-pub fn picture_name(hold: &Hold) -> String {
+/// The file name of a picture.
+pub fn picture_name(hold: &HoldRow) -> String {
     format!("{}-{}.svg", hold.operation, hold.planner)
 }
 
-/// The text above a picture.
-pub fn picture_title(hold: &Hold) -> String {
+/// The title of a picture.
+pub fn picture_title(hold: &HoldRow) -> String {
     format!(
         "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
         hold.operation,
@@ -269,7 +274,7 @@ pub fn picture_title(hold: &Hold) -> String {
 
 fn pictures(text: &mut String, reproduction: &Reproduction) {
     text.push_str(
-        "\n## Configurations\n\nWhat each planner found for one operation of a kind. Red arrow: the tool's force on the board.\n",
+        "\n## Configurations\n\nThe plan of each planner for one operation of each kind. The red arrow is the tool's force on the board.\n",
     );
     for operation in KINDS.into_iter().filter_map(|kind| reproduction.drawn(kind)) {
         for planner in PlannerKind::ALL {
@@ -286,8 +291,8 @@ fn sensitivity(text: &mut String, reproduction: &Reproduction) {
     operations.dedup();
     let _ = write!(
         text,
-        "\n## Sensitivity\n\nTable I on {} alone, with {} seeds of the random planner, under assumptions that the paper does\nnot state \
-         (`sensitivity.csv`). Each line departs from the first in one thing. Muscular, peripersonal.\n\n\
+        "\n## Sensitivity\n\nTable I for {} only, with {} seeds of the random planner, under other assumptions where the paper states none\n\
+         (`sensitivity.csv`). Each line changes one assumption of the first. Cells: muscular, peripersonal.\n\n\
          | assumption | task | comfort | peripersonal | muscular | random, raw |\n|---|---|---|---|---|---|\n",
         operations.join(", "),
         reproduction.sensitivity_seeds
@@ -310,19 +315,19 @@ fn sensitivity(text: &mut String, reproduction: &Reproduction) {
             text.push('\n');
         }
     }
-    mean_answers(text, reproduction);
+    mean_responses(text, reproduction);
 }
 
-/// What the mean of the person's answers is, and what it makes of the paper's ratios.
-fn mean_answers(text: &mut String, reproduction: &Reproduction) {
-    let is_rated_by_mean = |hold: &Hold| hold.comfort().is_some_and(|comfort| comfort.average.is_some());
+/// Explains the mean over the person's responses, and compares it with the paper's ratios.
+fn mean_responses(text: &mut String, reproduction: &Reproduction) {
+    let is_rated_by_mean = |hold: &HoldRow| hold.comfort().is_some_and(|comfort| comfort.average.is_some());
     let by_mean = |variant: &&Variant| variant.holds.iter().any(is_rated_by_mean);
     let Some(mean) = reproduction.sensitivity.iter().find(by_mean) else { return };
     text.push_str(
-        "\nThe mean is that over all of the person's answers to a hold on a uniform grid, for the random planner too. The others search for \
-         the best\nanswer as ever and rank the best few of the holds that they find by the mean, so a better mean may exist.\n",
+        "\nThe mean is taken over all feasible responses of the person on a uniform grid, for the random planner too. The other\n\
+         planners still search with the best response and rank the best few plans by the mean, so a better mean may exist.\n",
     );
-    let muscular = |holds: &[Hold], kind, planner| {
+    let muscular = |holds: &[HoldRow], kind, planner| {
         table::rows(holds.iter()).iter().find(|row| row.kind == kind && row.planner == planner)?.muscular
     };
     let ratios = KINDS.into_iter().filter_map(|kind| {
@@ -334,8 +339,8 @@ fn mean_answers(text: &mut String, reproduction: &Reproduction) {
     let ratios: Vec<_> = ratios.collect();
     let _ = writeln!(
         text,
-        "\nWhere random's person alone answers by the mean, and the comfort planner's at their best, the comfort planner has these multiples \
-         of\nrandom's muscular comfort, the paper's in brackets: {}.",
+        "\nWith the mean response for the random planner and the best response for the comfort planner, the ratio of their muscular\n\
+         comforts is, with the paper's in brackets: {}.",
         ratios.join(", ")
     );
 }
@@ -343,10 +348,10 @@ fn mean_answers(text: &mut String, reproduction: &Reproduction) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{model::plan::MeanComfort, report::reproduce::testing::hold};
+    use crate::{model::plan::MeanComfort, reproduce::testing::hold};
 
     #[test]
-    fn the_best_answer_of_comfort_is_put_beside_the_mean_of_random() {
+    fn the_best_response_of_comfort_is_compared_with_the_mean_response_of_random() {
         let holds =
             vec![hold("cut-01", PlannerKind::Comfort, 1, 60.0, 1.0), hold("cut-01", PlannerKind::Random, 1, 20.0, 0.5)];
         let mut by_mean = holds.clone();
@@ -371,7 +376,7 @@ mod tests {
         assert!(!of(&reproduction).contains("mean"));
         reproduction.sensitivity.push(variant("mean", by_mean));
         let text = of(&reproduction);
-        // Both planners' means are the same; 60 / 8 of the best and the mean.
+        // The means of both planners are equal; the best response over the mean is 60 / 8.
         assert!(text.contains("| mean | cutting | 1.00, 1.00 | -, - | -, - | 8.0, 32.0 |"), "{text}");
         assert!(text.contains("brackets: 7.50 in cutting (11.19)."), "{text}");
     }

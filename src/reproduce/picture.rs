@@ -1,7 +1,7 @@
-//! A planned hold as a picture: robot, board and person from the right side and from above, as primitives.
+//! A plan as SVG: robot, board and person as convex primitives, seen from the right and from above.
 //!
-//! Both are parallel projections. What is farther from the eye is drawn first, by the middle of each primitive: overlapping
-//! primitives of a link may be drawn in the wrong order, and that is all that a painter's algorithm costs here.
+//! Both views are parallel projections. Primitives are drawn in the order of their centres, farthest first (painter's
+//! algorithm); overlapping primitives of a link may be drawn in the wrong order.
 
 use std::fmt::Write as _;
 
@@ -14,32 +14,32 @@ use crate::{
     robot::{Robot, Shape},
 };
 
-/// Size of the picture on the page, px/m.
+/// Scale, px/m.
 const PX_PER_M: f64 = 190.0;
 
-/// Free space about each view, px.
+/// Margin around each view, px.
 const MARGIN_PX: f64 = 24.0;
 
-/// Height of the line of text above the views, px.
+/// Height of the title above the views, px.
 const TITLE_PX: f64 = 56.0;
 
-/// Length of the arrow of the tool's force, m/N: a drill's 15 N are 0.15 m.
+/// Length of the arrow of the tool's force, m/N: 15 N are 0.15 m.
 const ARROW_M_PER_N: f64 = 0.01;
 
-/// How the board is painted.
+/// SVG attributes of the board.
 const BOARD: &str = "fill=\"#e3c58f\" fill-opacity=\"0.85\" stroke=\"#8a6a2f\"";
 
 /// Colour of the force.
 const FORCE: &str = "#c8102e";
 
-/// Colours of edge and inside of the person and of the tool.
+/// Colours of outline and fill, of the person and of the tool.
 const PERSON_STROKE: [&str; 2] = ["#2f5f8a", "#7fb2dc"];
 const TOOL_STROKE: [&str; 2] = ["#333333", "#777777"];
 
-/// From where the scene is looked at.
+/// A direction of view.
 struct View {
     name: &'static str,
-    /// To the right, upward, and towards the eye, in W.
+    /// Directions in W: to the right, upward, and towards the viewer.
     axes_w: [Vector3<f64>; 3],
 }
 
@@ -50,14 +50,14 @@ fn views() -> [View; 2] {
 
 /// A convex primitive of the scene, in W.
 enum Item {
-    /// The hull of these points, with SVG attributes.
+    /// The convex hull of points, with SVG attributes.
     Hull(Vec<Point3<f64>>, String),
-    /// A capsule, with the colours of its edge and its inside.
+    /// A capsule: ends, radius, colours of outline and fill.
     Capsule([Point3<f64>; 2], f64, [&'static str; 2]),
 }
 
 impl Item {
-    fn middle(&self) -> Vector3<f64> {
+    fn centre(&self) -> Vector3<f64> {
         let points: &[Point3<f64>] = match self {
             Self::Hull(points, _) => points,
             Self::Capsule(ends, ..) => ends,
@@ -66,10 +66,10 @@ impl Item {
     }
 }
 
-/// The picture of a plan, with a line of text above it.
+/// The picture of a plan, with a title.
 ///
 /// # Errors
-/// When the plan's person is none.
+/// If the plan's person or tool is invalid.
 pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError> {
     let items = scene(plan, robot)?;
     let views = views();
@@ -80,7 +80,7 @@ pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError
     let mut body = String::new();
     let mut left_px = 0.0;
     for (view, bounds) in views.iter().zip(&bounds) {
-        // Both views stand on the lower edge of the picture.
+        // The views are aligned at the lower edge of the picture.
         let origin =
             [left_px + MARGIN_PX - bounds[0][0] * PX_PER_M, TITLE_PX + height - MARGIN_PX + bounds[0][1] * PX_PER_M];
         draw(&mut body, view, origin, &items, plan);
@@ -96,7 +96,7 @@ pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError
     ))
 }
 
-/// Everything that is drawn.
+/// All primitives.
 fn scene(plan: &Plan, robot: &Robot) -> Result<Vec<Item>, HumanError> {
     let mut items = Vec::new();
     let x_wl = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
@@ -120,13 +120,13 @@ fn scene(plan: &Plan, robot: &Robot) -> Result<Vec<Item>, HumanError> {
     Ok(items)
 }
 
-/// The robot's own colours, lighter, so that edges can be seen.
+/// The robot's colours, lightened so that outlines are visible.
 fn robot_paint(rgba: [f64; 4]) -> String {
     let [r, g, b] = [0, 1, 2].map(|channel| (255.0 * (0.45 + 0.55 * rgba[channel].clamp(0.0, 1.0))) as u8);
     format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#444444\"")
 }
 
-/// Points whose hull is the shape; of round ones so many that no corner is seen.
+/// Points whose convex hull is the shape, or an approximation of a round one.
 fn corners(shape: Shape) -> Vec<Point3<f64>> {
     const ROUND: u32 = 20;
     let circle = |k: u32| libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(ROUND));
@@ -144,8 +144,7 @@ fn corners(shape: Shape) -> Vec<Point3<f64>> {
                 [-half_length_m, half_length_m].map(|z| Point3::new(radius_m * cos, radius_m * sin, z))
             })
             .collect(),
-        // Circles about three axes: seen along any axis of W one of them is the outline, as links may lie anyhow it is one
-        // within 2 %.
+        // Circles about the three axes of the shape. In any direction of view their hull is close to the outline.
         Shape::Sphere { radius_m } => (0..3)
             .flat_map(|axis| (0..ROUND).map(move |k| (axis, k)))
             .map(|(axis, k)| {
@@ -160,13 +159,13 @@ fn corners(shape: Shape) -> Vec<Point3<f64>> {
 }
 
 impl View {
-    /// The picture of a point, m: to the right and upward.
+    /// The projection of a point, m: to the right and upward.
     fn project(&self, p_w: &Point3<f64>) -> Point2 {
         [self.axes_w[0].dot(&p_w.coords), self.axes_w[1].dot(&p_w.coords)]
     }
 }
 
-/// Lower left and upper right corner of all that is seen, m.
+/// Lower left and upper right corner of the projection of all primitives, m.
 fn bounds(view: &View, items: &[Item]) -> [Point2; 2] {
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for item in items {
@@ -184,13 +183,13 @@ fn bounds(view: &View, items: &[Item]) -> [Point2; 2] {
     bounds
 }
 
-/// Draws one view; `origin` is the place of W's origin, px.
+/// Draws one view; `origin` is the position of W's origin, px.
 fn draw(body: &mut String, view: &View, origin: Point2, items: &[Item], plan: &Plan) {
     let px = |p_w: &Point3<f64>| {
         let [right, up] = view.project(p_w);
         [origin[0] + right * PX_PER_M, origin[1] - up * PX_PER_M]
     };
-    let mut order: Vec<(f64, &Item)> = items.iter().map(|item| (view.axes_w[2].dot(&item.middle()), item)).collect();
+    let mut order: Vec<(f64, &Item)> = items.iter().map(|item| (view.axes_w[2].dot(&item.centre()), item)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, item) in order {
         match item {
@@ -215,14 +214,14 @@ fn draw(body: &mut String, view: &View, origin: Point2, items: &[Item], plan: &P
     arrow(body, plan, px);
 }
 
-/// The tool's force, ending at the tip, over everything else.
+/// Draws the tool's force as an arrow that ends at the tip, on top of everything.
 fn arrow(body: &mut String, plan: &Plan, px: impl Fn(&Point3<f64>) -> Point2) {
     let tip_w = plan.object.x_wo * Point3::from(plan.operation.x_ot.translation.vector);
     let force_m = plan.object.x_wo.rotation * plan.operation.wrench_o.force_n * ARROW_M_PER_N;
     let ([x1, y1], [x2, y2]) = (px(&(tip_w - force_m)), px(&tip_w));
     let _ = writeln!(body, "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" stroke=\"{FORCE}\" stroke-width=\"2.5\"/>");
     let length_px = libm::hypot(x2 - x1, y2 - y1);
-    // Seen from behind the arrow is a dot.
+    // Along the direction of view the arrow is a dot.
     if length_px > 6.0 {
         let (ux, uy) = ((x2 - x1) / length_px, (y2 - y1) / length_px);
         let wing = |side: f64| format!("{:.1},{:.1}", x2 - 9.0 * ux + 4.0 * side * uy, y2 - 9.0 * uy - 4.0 * side * ux);

@@ -1,0 +1,55 @@
+//! The data that a recording is made from.
+
+use nalgebra::Point3;
+
+use crate::{
+    model::{
+        measures::{Event, Measures},
+        plan::Plan,
+        scenario::Scenario,
+        trace::Trace,
+        verdict::Verdict,
+    },
+    robot::Robot,
+};
+
+/// The data of a recording.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordingInput<'a> {
+    /// The robot of the plan.
+    pub robot: &'a Robot,
+    /// The scenario under which the plan was simulated.
+    pub scenario: &'a Scenario,
+    /// The plan that was simulated.
+    pub plan: &'a Plan,
+    /// The trace of the simulation.
+    pub trace: &'a Trace,
+    /// The judge's time series.
+    pub measures: &'a Measures,
+    /// The judge's events.
+    pub events: &'a [Event],
+    /// The verdict.
+    pub verdict: &'a Verdict,
+    /// The person in the planned posture; `None` if the plan has no person.
+    pub person: Option<&'a PersonShape>,
+}
+
+/// The person as drawn in the scene. The person does not move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PersonShape {
+    /// The body's parts.
+    pub capsules: Vec<Capsule>,
+    /// Centre of the palm that holds the tool, in W, m.
+    pub palm_w: Point3<f64>,
+    /// The body points of the peripersonal metric, in W, m.
+    pub points_w: Vec<Point3<f64>>,
+}
+
+/// A cylinder with hemispherical ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule {
+    /// Centres of the hemispheres, in W, m.
+    pub ends_w: [Point3<f64>; 2],
+    /// Radius, m.
+    pub radius_m: f64,
+}

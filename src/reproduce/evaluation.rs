@@ -1,0 +1,127 @@
+//! The results of the evaluation, from which tables, pictures and conclusions are computed.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    human::BODY_POINTS,
+    model::{
+        operation::OperationKind,
+        plan::{Comfort, Plan},
+        scenario::PlannerKind,
+        verdict::{CheckKind, Verdict, VerdictKind},
+    },
+};
+
+/// The seed whose plans are simulated and drawn, and the only seed of all planners except the random one.
+pub const FIRST_SEED: u64 = 1;
+
+/// The result for one operation, planner and seed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HoldRow {
+    /// The operation's name.
+    pub operation: String,
+    /// Cut or drill.
+    pub kind: OperationKind,
+    /// The planner.
+    pub planner: PlannerKind,
+    /// Its seed.
+    pub seed: u64,
+    /// The plan; `None` if the planner found none.
+    pub plan: Option<Plan>,
+    /// Why there is no plan.
+    pub infeasible: Option<String>,
+    /// The verdict of the simulation; `None` if it was not simulated.
+    pub verdict: Option<Verdict>,
+    /// The largest load factor that holds in simulation; `None` if it was not searched.
+    pub load_factor_simulated: Option<f64>,
+    /// The verdict on the failing load just above it.
+    pub ended_by: Option<VerdictKind>,
+    /// Duration of planning, ms.
+    pub plan_ms: f64,
+    /// Duration of the simulation of the load, ms.
+    pub simulate_ms: Option<f64>,
+}
+
+impl HoldRow {
+    /// The comfort of the plan.
+    pub fn comfort(&self) -> Option<&Comfort> {
+        self.plan.as_ref()?.comfort.as_ref()
+    }
+
+    /// The regularised muscular comfort by which plans are compared: the mean over the person's responses if the plan has one,
+    /// else that of the best response.
+    pub fn muscular(&self) -> Option<f64> {
+        let comfort = self.comfort()?;
+        Some(comfort.average.map_or(comfort.muscular_regularised, |average| average.muscular_regularised))
+    }
+
+    /// As [`Self::muscular`], for the peripersonal comfort as a sum over the body points, the scale of the paper's captions.
+    pub fn peripersonal_scaled(&self) -> Option<f64> {
+        let comfort = self.comfort()?;
+        comfort.average.map_or(comfort.peripersonal_scaled, |average| Some(BODY_POINTS as f64 * average.peripersonal_m))
+    }
+
+    /// The worst value of a check in simulation.
+    pub fn value(&self, check: CheckKind) -> Option<f64> {
+        self.verdict.as_ref()?.check(check).map(|check| check.value)
+    }
+}
+
+/// Results under an assumption that differs from the default.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// The assumption.
+    pub name: String,
+    /// The results.
+    pub holds: Vec<HoldRow>,
+}
+
+/// The results of a run.
+#[derive(Clone, Debug)]
+pub struct Reproduction {
+    /// The results by operation, planner and seed, in the order of tables.
+    pub holds: Vec<HoldRow>,
+    /// Number of seeds of the random planner.
+    pub random_seeds: u64,
+    /// The comfort planner's results with the paper's stability constraint alone, which is a best case.
+    pub best_case: Vec<HoldRow>,
+    /// The sensitivity analysis, starting with the default assumptions; empty if it was left out.
+    pub sensitivity: Vec<Variant>,
+    /// Number of seeds of the random planner in the sensitivity analysis.
+    pub sensitivity_seeds: u64,
+    /// What this run left out; `None` if nothing.
+    pub left_out: Option<String>,
+}
+
+impl Reproduction {
+    /// The results with the first seed: one per operation and planner.
+    pub fn first_seeds(&self) -> impl Iterator<Item = &HoldRow> {
+        self.holds.iter().filter(|hold| hold.seed == FIRST_SEED)
+    }
+
+    /// The result of a planner for an operation, with the first seed.
+    pub fn hold(&self, operation: &str, planner: PlannerKind) -> Option<&HoldRow> {
+        self.first_seeds().find(|hold| hold.operation == operation && hold.planner == planner)
+    }
+
+    /// The operation that is drawn: one from the middle of the circle or of the grid if there is a result, else the first.
+    pub fn drawn(&self, kind: OperationKind) -> Option<&str> {
+        let preferred = if kind == OperationKind::Cut { "cut-05" } else { "drill-5" };
+        let mut of_kind = self.first_seeds().filter(|hold| hold.kind == kind);
+        let first = of_kind.next()?;
+        Some(of_kind.find(|hold| hold.operation == preferred).unwrap_or(first).operation.as_str())
+    }
+}
+
+/// The kinds of operation of the evaluation, in the order of the paper's table.
+pub const KINDS: [OperationKind; 2] = [OperationKind::Cut, OperationKind::Drill];
+
+/// The name of a kind of operation in the tables.
+pub fn task(kind: OperationKind) -> &'static str {
+    match kind {
+        OperationKind::Cut => "cutting",
+        OperationKind::Drill => "drilling",
+        OperationKind::Wrench => "wrenching",
+    }
+}
