@@ -1,6 +1,6 @@
-//! What one evaluation of the person costs: it is done millions of times for a plan.
+//! The cost of one evaluation of the person; a plan needs millions.
 //!
-//! To beat, on one core of a common machine: a full evaluation (torques, activations, 64 x 56 distances) 6 us, its muscular
+//! Targets on one core of a common machine: a full evaluation (torques, activations, 64 x 56 distances) 6 us, its muscular
 //! part 0.5 us, the arm's inverse kinematics at one swivel 0.5 us.
 
 use std::hint::black_box;
@@ -24,7 +24,7 @@ fn evaluation(criterion: &mut Criterion) {
     let q_rad = [0.6, 0.3, 0.2, 1.2, 0.3, 0.1, 0.05];
     let x_wb = standing_pose_w(1.1, 0.1, 3.0, -0.9);
     let wrench_w = Wrench::from_force(Vector3::new(-15.0, 0.0, 0.0));
-    // As many points as stand for a robot, on a spiral about where its arms would be.
+    // As many points as a robot has, on a spiral in the region of its arms.
     let robot: Vec<_> = (0..56)
         .map(f64::from)
         .map(|i| Point3::new(0.3 + 0.2 * i.cos(), 0.4 * (0.7 * i).sin(), 0.02 * i - 0.4))
@@ -56,8 +56,8 @@ fn inverse_kinematics(criterion: &mut Criterion) {
     criterion.bench_function("inverse kinematics, one swivel of a new tool pose", |bencher| {
         bencher.iter(|| human.arm_solutions(black_box(&x_bt), swivel_rad));
     });
-    criterion.bench_function("ranges of the swivel", |bencher| {
-        bencher.iter(|| human.swivel_intervals(black_box(&x_bt)));
+    criterion.bench_function("intervals of the swivel", |bencher| {
+        bencher.iter(|| human.swivel_circle(black_box(&x_bt)).unwrap().intervals());
     });
 }
 

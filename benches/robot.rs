@@ -1,6 +1,6 @@
-//! How long the inverse kinematics and the collision check take, beside the peer `k` on the same robot and targets.
+//! Times of the inverse kinematics and the collision check, next to the crate `k` on the same robot and targets.
 //!
-//! Before anything is timed, what is solved is counted and printed; a posture that its own branches miss ends the bench.
+//! First prints how many targets are solved, and fails if a posture is on none of its branches.
 //! Run with `cargo bench --profile release --bench robot`.
 
 use std::{hint::black_box, path::Path, time::Instant};
@@ -141,7 +141,7 @@ fn print_counts(bench: &Bench, urdf: &k::Chain<f64>) {
     });
 }
 
-/// Draws postures and looks for each among the branches of its own pose.
+/// Checks that random postures are on a branch of their own pose.
 fn check_random_postures(bench: &Bench) {
     let postures = bench.random_postures(RANDOM_POSTURES);
     let (mut branches, mut worst_ms) = (0, 0.0_f64);
@@ -193,7 +193,7 @@ fn time_inverse_kinematics(criterion: &mut Criterion, bench: &Bench, urdf: &k::C
     group.finish();
 }
 
-/// The whole check of a planned scene, which is free.
+/// The collision check of a planned scene without violations.
 fn time_collisions(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/quickstart.toml");
     let loaded = scenario::load(&path).unwrap();

@@ -19,17 +19,20 @@ use crate::{
 
 /// A plan without flaws, with what follows from it by kinematics.
 pub struct CheckedPlan<'a> {
-    /// The robot.
-    pub robot: &'a Robot,
-    /// The plan.
-    pub plan: &'a Plan,
-    /// The arms that hold, in the order of the plan.
-    pub arms: Vec<CheckedArm<'a>>,
-    /// The person with the tool; `None` if the plan has no person.
-    pub human: Option<Human>,
-    /// Poses of all links, W.
-    pub link_poses: Vec<Pose>,
+    robot: &'a Robot,
+    plan: &'a Plan,
+    arms: Vec<CheckedArm<'a>>,
+    person: Option<CheckedPerson<'a>>,
+    link_poses: Vec<Pose>,
     holding: Vec<usize>,
+}
+
+/// The person of a plan.
+pub struct CheckedPerson<'a> {
+    /// Pose and joint angles.
+    pub posture: &'a HumanPosture,
+    /// The person with the tool.
+    pub human: Human,
 }
 
 /// An arm that holds the board.
@@ -56,7 +59,7 @@ impl<'a> CheckedPlan<'a> {
         if plan.arms.is_empty() {
             flaws.push(Flaw::NoArm);
         }
-        let human = plan.human.as_ref().and_then(|posture| check_person(posture, tool, &mut flaws));
+        let person = plan.human.as_ref().and_then(|posture| check_person(posture, tool, &mut flaws));
         match Flaws::of(flaws) {
             Some(flaws) => Err(flaws),
             None => Ok(Self {
@@ -65,9 +68,39 @@ impl<'a> CheckedPlan<'a> {
                 robot,
                 plan,
                 arms,
-                human,
+                person,
             }),
         }
+    }
+
+    /// The robot.
+    #[must_use]
+    pub fn robot(&self) -> &'a Robot {
+        self.robot
+    }
+
+    /// The plan.
+    #[must_use]
+    pub fn plan(&self) -> &'a Plan {
+        self.plan
+    }
+
+    /// The arms that hold, in the order of the plan.
+    #[must_use]
+    pub fn arms(&self) -> &[CheckedArm<'a>] {
+        &self.arms
+    }
+
+    /// The person; `None` if the plan has none.
+    #[must_use]
+    pub fn person(&self) -> Option<&CheckedPerson<'a>> {
+        self.person.as_ref()
+    }
+
+    /// Poses of all links, W.
+    #[must_use]
+    pub fn link_poses(&self) -> &[Pose] {
+        &self.link_poses
     }
 
     /// The collision scene of robot and board without the person.
@@ -86,7 +119,7 @@ impl<'a> CheckedPlan<'a> {
     /// The capsules of the person, W; empty without a person.
     #[must_use]
     pub fn person_parts(&self) -> Vec<PersonPart> {
-        let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return Vec::new() };
+        let Some(CheckedPerson { posture, human }) = &self.person else { return Vec::new() };
         human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from).to_vec()
     }
 
@@ -98,28 +131,29 @@ impl<'a> CheckedPlan<'a> {
         CollisionModel::new(self.robot).first_violation(&scene).map(|violation| violation.describe(self.robot))
     }
 
-    /// Flaws by the tolerance of the planner's own plans: grippers, joint limits, tool, and where the person stands.
+    /// Flaws by the tolerances of the planner's own plans: the grippers, the tool, where the person stands, and all joint
+    /// limits, which such a plan keeps exactly.
     #[must_use]
     pub fn inexact(&self) -> Vec<Flaw> {
         let mut flaws = Vec::new();
         for (arm, checked) in self.arms.iter().enumerate() {
+            check_limits(self.robot, checked.index, arm, checked.hold, 0.0, &mut flaws);
             let ([off_m, off_rad], name) = (checked.off, checked.hold.name.clone());
             if !EXACT.allows(checked.off) {
-                flaws.push(Flaw::Hand { arm, name, off_m, off_rad });
+                flaws.push(Flaw::Hand { arm, name, off_m, off_rad, tolerance: EXACT });
             }
-            check_angles(self.robot, checked.index, arm, checked.hold, 0.0, &mut flaws);
         }
-        let (Some(human), Some(posture)) = (&self.human, &self.plan.human) else { return flaws };
-        check_person_angles(human, posture, 0.0, &mut flaws);
+        let Some(CheckedPerson { posture, human }) = &self.person else { return flaws };
+        check_person_limits(human, posture, 0.0, &mut flaws);
         let tool = posture.x_wb * human.tool_pose_b(&posture.q_rad);
         let off = deviation(&tool, &(self.plan.object.x_wo * self.plan.operation.x_ot));
         if !EXACT.allows(off) {
-            flaws.push(Flaw::Tool { off_m: off[0], off_rad: off[1] });
+            flaws.push(Flaw::Tool { off_m: off[0], off_rad: off[1], tolerance: EXACT });
         }
         let off_m = (posture.x_wb.translation.z - self.robot.floor_z_m).abs();
         let off_rad = (posture.x_wb.rotation * Vector3::z()).angle(&Vector3::z());
         if !EXACT.allows([off_m, off_rad]) {
-            flaws.push(Flaw::Standing { off_m, off_rad });
+            flaws.push(Flaw::Standing { off_m, off_rad, tolerance: EXACT });
         }
         flaws
     }
@@ -134,7 +168,7 @@ fn deviation(a: &Pose, b: &Pose) -> [f64; 2] {
 fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
     let object = &plan.object;
     for (axis, &found_m) in object.size_m.iter().enumerate() {
-        if !(BOARD_SIDE_M[0]..=BOARD_SIDE_M[1]).contains(&found_m) {
+        if !is_board_side(found_m) {
             flaws.push(Flaw::BoardSide { axis, found_m, range_m: BOARD_SIDE_M });
         }
     }
@@ -147,10 +181,16 @@ fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
     }
     let found_m: [f64; 3] = plan.operation.x_ot.translation.vector.into();
     let half_sides_m = object.size_m.map(|side_m| side_m / 2.0);
-    let on_board = found_m.iter().zip(half_sides_m).all(|(p_m, half_m)| p_m.abs() - half_m <= ON_BOARD_M);
-    if !on_board {
+    let is_on_board = found_m.iter().zip(half_sides_m).all(|(p_m, half_m)| p_m.abs() - half_m <= ON_BOARD_M);
+    // Of a board without size only the size is at fault.
+    if object.size_m.iter().all(|&side_m| is_board_side(side_m)) && !is_on_board {
         flaws.push(Flaw::ToolPoint { found_m, half_sides_m });
     }
+}
+
+/// True if a length is in the range of a board's sides; false if it is not a number.
+fn is_board_side(side_m: f64) -> bool {
+    (BOARD_SIDE_M[0]..=BOARD_SIDE_M[1]).contains(&side_m)
 }
 
 /// One arm; `None` if it cannot be checked any further.
@@ -166,26 +206,28 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
         flaws.push(Flaw::ArmTwice { arm, found: hold.name.clone() });
     }
     check_joints(robot, index, arm, hold, flaws);
+    let across = [hold.x_og.translation.vector.z.abs(), (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
+    if !GIVEN.allows(across) {
+        flaws.push(Flaw::FingersAcross { arm, off_m: across[0], off_rad: across[1] });
+    }
+    // Wrong angles or a wrong grasp put the gripper elsewhere: one fault, one flaw.
+    let is_comparable = flaws.len() == before;
     let gripper = &robot.arms[index].gripper;
     let (name, found_n, max_n) = (hold.name.clone(), hold.grip_force_n, gripper.max_force_n);
     if !(found_n > 0.0 && found_n <= max_n) {
         flaws.push(Flaw::GripForce { arm, name: name.clone(), found_n, max_n });
     }
     let (thickness_m, opening_m) = (plan.object.size_m[2], gripper.opening_m);
-    if !(opening_m[0]..=opening_m[1]).contains(&thickness_m) {
+    if is_board_side(thickness_m) && !(opening_m[0]..=opening_m[1]).contains(&thickness_m) {
         flaws.push(Flaw::Thickness { name: name.clone(), found_m: thickness_m, opening_m });
     }
-    let across = [hold.x_og.translation.vector.z.abs(), (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
-    if !GIVEN.allows(across) {
-        flaws.push(Flaw::FingersAcross { arm, off_m: across[0], off_rad: across[1] });
-    }
-    if flaws.len() > before {
+    if !is_comparable {
         return None;
     }
     let chain = Chain::new(robot, index, gripper.travel_for_gap_m(0, thickness_m));
     let off = deviation(&chain.gripper_pose(&hold.q_rad), &(plan.object.x_wo * hold.x_og));
     if !GIVEN.allows(off) {
-        flaws.push(Flaw::Hand { arm, name, off_m: off[0], off_rad: off[1] });
+        flaws.push(Flaw::Hand { arm, name, off_m: off[0], off_rad: off[1], tolerance: GIVEN });
     }
     Some(CheckedArm { index, hold, chain, off })
 }
@@ -201,40 +243,40 @@ fn check_joints(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, flaws: 
     if found != expected {
         return flaws.push(Flaw::AngleCount { arm, found, expected });
     }
-    check_angles(robot, index, arm, hold, LIMIT_RAD, flaws);
+    check_limits(robot, index, arm, hold, LIMIT_RAD, flaws);
 }
 
-/// The angles of an arm against its limits, which they may exceed by `excess_rad`.
-fn check_angles(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, excess_rad: f64, flaws: &mut Vec<Flaw>) {
+/// The limits of an arm's joints.
+fn check_limits(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, tolerance_rad: f64, flaws: &mut Vec<Flaw>) {
     for (joint, (&of_robot, &found_rad)) in robot.arms[index].joints.iter().zip(&hold.q_rad).enumerate() {
         let of_robot = &robot.joints[of_robot];
         let limits_rad = [of_robot.lower, of_robot.upper];
-        if !within(found_rad, limits_rad, excess_rad) {
+        if !within(found_rad, limits_rad, tolerance_rad) {
             flaws.push(Flaw::Angle { arm, joint, name: of_robot.name.clone(), found_rad, limits_rad });
         }
     }
 }
 
 /// The person; `None` if the person or the tool is invalid.
-fn check_person(posture: &HumanPosture, tool: &Tool, flaws: &mut Vec<Flaw>) -> Option<Human> {
+fn check_person<'a>(posture: &'a HumanPosture, tool: &Tool, flaws: &mut Vec<Flaw>) -> Option<CheckedPerson<'a>> {
     if !posture.x_wb.translation.vector.iter().all(|x| x.is_finite()) {
         flaws.push(Flaw::PersonPose);
     }
     let human = Human::new(&posture.person(), tool).map_err(|error| flaws.push(Flaw::Person(error))).ok()?;
-    check_person_angles(&human, posture, LIMIT_RAD, flaws);
-    Some(human)
+    check_person_limits(&human, posture, LIMIT_RAD, flaws);
+    Some(CheckedPerson { posture, human })
 }
 
-/// The angles of the person's arm against its limits, which they may exceed by `excess_rad`.
-fn check_person_angles(human: &Human, posture: &HumanPosture, excess_rad: f64, flaws: &mut Vec<Flaw>) {
+/// The limits of the joints of the person's working arm.
+fn check_person_limits(human: &Human, posture: &HumanPosture, tolerance_rad: f64, flaws: &mut Vec<Flaw>) {
     for (joint, (&found_rad, limits_rad)) in posture.q_rad.iter().zip(human.arm().limits_rad).enumerate() {
-        if !within(found_rad, limits_rad, excess_rad) {
+        if !within(found_rad, limits_rad, tolerance_rad) {
             flaws.push(Flaw::PersonAngle { joint, found_rad, limits_rad });
         }
     }
 }
 
-/// True if an angle is within its limits; false if it is not a number.
-fn within(q_rad: f64, [low_rad, high_rad]: [f64; 2], excess_rad: f64) -> bool {
-    q_rad >= low_rad - excess_rad && q_rad <= high_rad + excess_rad
+/// True if an angle exceeds its limits by no more than the tolerance; false if it is not a number.
+fn within(q_rad: f64, [low_rad, high_rad]: [f64; 2], tolerance_rad: f64) -> bool {
+    q_rad >= low_rad - tolerance_rad && q_rad <= high_rad + tolerance_rad
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::tolerances::{GIVEN, ON_BOARD_M, PoseTolerance};
 use crate::human::HumanError;
 
 /// One fault of a plan: its key, what was found and what was expected.
@@ -121,6 +122,8 @@ pub enum Flaw {
         off_m: f64,
         /// Angle, rad.
         off_rad: f64,
+        /// The tolerance that they exceed.
+        tolerance: PoseTolerance,
     },
     /// The person or the tool is invalid.
     Person(HumanError),
@@ -141,6 +144,8 @@ pub enum Flaw {
         off_m: f64,
         /// Angle, rad.
         off_rad: f64,
+        /// The tolerance that they exceed.
+        tolerance: PoseTolerance,
     },
     /// The person does not stand upright on the floor.
     Standing {
@@ -148,6 +153,8 @@ pub enum Flaw {
         off_m: f64,
         /// Tilt against the vertical, rad.
         off_rad: f64,
+        /// The tolerance that they exceed.
+        tolerance: PoseTolerance,
     },
     /// Two bodies touch or are closer than their clearance.
     Contact(String),
@@ -224,7 +231,7 @@ impl Flaw {
             Self::BoardMass { found_kg } => found_kg.to_string(),
             Self::Wrench => "a wrench that is not finite".into(),
             Self::ToolPoint { found_m: [x, y, z], half_sides_m } => {
-                if z.abs() > half_sides_m[2] {
+                if is_off(*z, half_sides_m[2]) {
                     format!("z = {z}")
                 } else {
                     format!("[{x}, {y}]")
@@ -238,15 +245,19 @@ impl Flaw {
             Self::Angle { found_rad, .. } | Self::PersonAngle { found_rad, .. } => found_rad.to_string(),
             Self::GripForce { found_n, .. } => found_n.to_string(),
             Self::FingersAcross { off_m, off_rad, .. } => {
-                format!("fingers {} off the board's middle plane", off(off_m, off_rad))
+                format!("fingers {} off the board's middle plane", GIVEN.deviation([*off_m, *off_rad]))
             }
-            Self::Hand { off_m, off_rad, .. } => {
-                format!("the gripper {} from where q_rad puts it", off(off_m, off_rad))
+            Self::Hand { off_m, off_rad, tolerance, .. } => {
+                format!("the gripper {} from where q_rad puts it", tolerance.deviation([*off_m, *off_rad]))
             }
             Self::Person(error) => error.to_string(),
             Self::PersonPose => "a pose that is not finite".into(),
-            Self::Tool { off_m, off_rad } => format!("the tool {} off the operation", off(off_m, off_rad)),
-            Self::Standing { off_m, off_rad } => format!("feet {} off the floor and the vertical", off(off_m, off_rad)),
+            Self::Tool { off_m, off_rad, tolerance } => {
+                format!("the tool {} off the operation", tolerance.deviation([*off_m, *off_rad]))
+            }
+            Self::Standing { off_m, off_rad, tolerance } => {
+                format!("feet {} off the floor and the vertical", tolerance.deviation([*off_m, *off_rad]))
+            }
             Self::Contact(contact) => contact.clone(),
             Self::Strength { found } => format!("an activation of {found}"),
             Self::NoResponse => "no response on the grid".into(),
@@ -269,7 +280,7 @@ impl Flaw {
             Self::BoardMass { .. } => "a positive number (kg)".into(),
             Self::Wrench => "finite numbers (N, N m)".into(),
             Self::ToolPoint { found_m, half_sides_m: [x, y, z] } => {
-                if found_m[2].abs() > *z {
+                if is_off(found_m[2], *z) {
                     format!("a point on the board: |z| <= {z} m")
                 } else {
                     format!("a point on the board: |x| <= {x} m, |y| <= {y} m")
@@ -288,17 +299,19 @@ impl Flaw {
                     "a positive number (N)".into()
                 }
             }
-            Self::FingersAcross { .. } => "fingers that close across the thickness, within 1 mm and 0.1 degrees".into(),
-            Self::Hand { .. } => {
-                "x_wo x_og to equal the arm's forward kinematics within the tolerance of the check".into()
+            Self::FingersAcross { .. } => format!("fingers that close across the thickness, within {GIVEN}"),
+            Self::Hand { tolerance, .. } => {
+                format!("x_wo x_og to equal the arm's forward kinematics within {tolerance}")
             }
             Self::Person(_) => "a valid person and tool".into(),
             Self::PersonPose => "finite numbers (m)".into(),
             Self::PersonAngle { joint, limits_rad: [low, high], .. } => {
                 format!("{low} to {high} rad, the limits of the person's joint q{}", joint + 1)
             }
-            Self::Tool { .. } => "x_wo x_ot to equal the person's forward kinematics".into(),
-            Self::Standing { .. } => "a person who stands upright on the floor".into(),
+            Self::Tool { tolerance, .. } => {
+                format!("x_wo x_ot to equal the person's forward kinematics within {tolerance}")
+            }
+            Self::Standing { tolerance, .. } => format!("a person who stands upright on the floor within {tolerance}"),
             Self::Contact(_) => "bodies that keep their clearances".into(),
             Self::Strength { .. } => "at most 1".into(),
             Self::NoResponse => "at least one response".into(),
@@ -310,9 +323,9 @@ impl Flaw {
     }
 }
 
-/// A deviation in words.
-fn off(off_m: &f64, off_rad: &f64) -> String {
-    format!("{:.2} mm and {:.2} degrees", off_m * 1e3, off_rad.to_degrees())
+/// True if a coordinate of the tool point is off the board; true if it is not a number.
+fn is_off(p_m: f64, half_side_m: f64) -> bool {
+    p_m.is_nan() || p_m.abs() - half_side_m > ON_BOARD_M
 }
 
 impl fmt::Display for Flaw {
@@ -321,7 +334,7 @@ impl fmt::Display for Flaw {
     }
 }
 
-/// All faults of a plan, at least one, in the order of the plan's keys.
+/// All faults of a plan, at least one: those of board and operation, then those of each arm, then those of the person.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaws {
     first: Flaw,

@@ -8,6 +8,6 @@ mod checked_plan;
 mod flaw;
 mod tolerances;
 
-pub use checked_plan::{CheckedArm, CheckedPlan};
+pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan};
 pub use flaw::{Flaw, Flaws};
-pub use tolerances::{EXACT, FIGURE_TOLERANCE, GIVEN, PoseTolerance};
+pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, PoseTolerance};

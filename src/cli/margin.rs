@@ -73,7 +73,7 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, C
     };
     let expected = scenario.expect.verdict;
     let empty = Margin {
-        name: checked.plan.name.clone(),
+        name: checked.plan().name.clone(),
         load_factor: 0.0,
         fails_at: Some(0.0),
         ended_by: VerdictKind::Touches,

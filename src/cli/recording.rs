@@ -4,7 +4,7 @@ use nalgebra::Point3;
 
 use super::{exit::CliError, pipeline::Run};
 use crate::{
-    check::CheckedPlan,
+    check::{CheckedPerson, CheckedPlan},
     human::BodyPart,
     model::scenario::Scenario,
     record::{self, Capsule, PersonShape, RecordingInput},
@@ -18,13 +18,10 @@ use crate::{
 pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, CliError> {
     let (Some(plan), Some((trace, judgement))) = (&run.plan, &run.simulated) else { return Ok(None) };
     let checked = CheckedPlan::new(robot, plan, &scenario.tool)?;
-    let person = match (&plan.human, &checked.human) {
-        (Some(posture), Some(human)) => {
-            let points_w = human.body_points_w(&posture.x_wb, &posture.q_rad).to_vec();
-            Some(person_shape(&human.capsules_w(&posture.x_wb, &posture.q_rad), points_w))
-        }
-        _ => None,
-    };
+    let person = checked.person().map(|CheckedPerson { posture, human }| {
+        let points_w = human.body_points_w(&posture.x_wb, &posture.q_rad).to_vec();
+        person_shape(&human.capsules_w(&posture.x_wb, &posture.q_rad), points_w)
+    });
     let input = RecordingInput {
         robot,
         scenario,

@@ -1,12 +1,11 @@
-//! The distances that each part of the person must keep (METHOD section 3).
+//! The required clearances of each part of the person (docs/method.md#35-clearances).
 
 use super::PersonPart;
 use crate::human::{BodyPart, Capsule, Side};
 
-/// Least distance between the person and the robot, m. The tool only must not touch.
+/// Required distance between person and robot, m. The tool must only not touch the robot.
 const ROBOT_CLEARANCE_M: f64 = 0.05;
-/// Least distance between the person and the board, m. Tool and working hand may touch it; the working forearm must not
-/// penetrate it.
+/// Required distance between person and board, m. Tool and working hand may touch the board; the working forearm must not.
 const BOARD_CLEARANCE_M: f64 = 0.02;
 
 impl From<Capsule> for PersonPart {

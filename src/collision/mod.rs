@@ -1,8 +1,7 @@
-//! Who touches whom: the robot with itself, with the board, with the person and the tool; the person with the board.
+//! Collisions and clearances: robot with itself, with the board, with the person and the tool; person with the board.
 //!
-//! The robot's and the board's primitives and the person's capsules are compared with parry; pairs that are far apart
-//! are sorted out by spheres about links and about primitives. This module knows geometry and the distances that must be
-//! kept (METHOD section 3); it does not know why a pose was chosen.
+//! Primitives of robot and board and capsules of the person are compared with parry. Bounding spheres of links and of
+//! primitives exclude pairs that are far apart. The required distances are those of docs/method.md#35-clearances.
 
 mod clearances;
 mod near_pairs;
@@ -17,25 +16,25 @@ pub use near_pairs::{BodyRef, NearPair};
 pub use person_clearance::{Nearest, PersonClearance};
 use shapes::{Measure, Piece, Placed, place_all, point_w, sphere_about};
 
-/// A scene to be checked, in W.
+/// Poses of robot, board and person, in W.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// Poses of the robot's links, as [`Robot::link_poses`] gives them.
     pub link_poses: &'a [Pose],
-    /// The arms (indices) that hold the board: their fingers may touch it.
+    /// Indices of the arms that hold the board; their fingers may touch it.
     pub holding: &'a [usize],
     /// Sides of the board, m.
     pub board_size_m: [f64; 3],
     /// Pose of the board.
     pub x_wo: Pose,
-    /// The person and the tool in the hand.
+    /// The person and the tool.
     pub person: &'a [PersonPart],
 }
 
-/// A capsule of the person's body, or the tool, with the distances that it must keep.
+/// A capsule of the person's body or the tool, with its required clearances.
 #[derive(Clone, Copy, Debug)]
 pub struct PersonPart {
-    /// What it is.
+    /// The part.
     pub name: BodyPart,
     /// One end of the capsule's axis in W, m.
     pub p0_w: Point3<f64>,
@@ -43,9 +42,9 @@ pub struct PersonPart {
     pub p1_w: Point3<f64>,
     /// Radius, m.
     pub radius_m: f64,
-    /// Least distance to the robot, m.
+    /// Required distance to the robot, m.
     pub robot_clearance_m: f64,
-    /// Least distance to the board, m; none when it may touch it.
+    /// Required distance to the board, m; `None` if it may touch the board.
     pub board_clearance_m: Option<f64>,
 }
 
@@ -61,7 +60,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// What it is, in words: `left_wrist`, `the board`, `the person's Head`.
+    /// Name for messages: `left_wrist`, `the board`, `the person's Head`.
     pub fn describe(self, robot: &Robot) -> String {
         match self {
             Self::Link(link) => robot.links[link].name.clone(),
@@ -71,19 +70,19 @@ impl Body {
     }
 }
 
-/// Two bodies that touch or come closer than they may.
+/// Two bodies that are closer than their required distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
     /// The two bodies.
     pub bodies: [Body; 2],
-    /// The distance that they must keep, m; zero when they must only not touch.
+    /// Required distance, m; zero if they must only not touch.
     pub required_m: f64,
-    /// Their distance, m; zero when they overlap, not a number when the body (then given twice) is nowhere.
+    /// Distance, m; zero if they overlap, NaN if the pose or size of the body (then named twice) is not finite.
     pub distance_m: f64,
 }
 
 impl Violation {
-    /// The rule that is broken, in words: `left_wrist is 12 mm from the person's Head, expected more than 50 mm`.
+    /// Message: `left_wrist is 12 mm from the person's Head, expected more than 50 mm`.
     pub fn describe(&self, robot: &Robot) -> String {
         let [one, other] = self.bodies.map(|body| body.describe(robot));
         if self.distance_m.is_nan() {
@@ -94,12 +93,12 @@ impl Violation {
     }
 }
 
-/// The robot's primitives and the pairs of links that may not touch.
+/// The robot's primitives and the pairs of links that must not touch.
 #[derive(Clone)]
 pub struct CollisionModel {
     links: Vec<LinkShapes>,
     self_pairs: Vec<[usize; 2]>,
-    /// For every arm, its fingers: the links that may touch the board.
+    /// For each arm the links of its fingers, which may touch the board.
     fingers: Vec<Vec<usize>>,
 }
 
@@ -111,7 +110,7 @@ struct LinkShapes {
 }
 
 impl LinkShapes {
-    /// The lesser of `bound_m` and what is measured to another link, m.
+    /// Minimum of `bound_m` and the measure to another link, m.
     fn distance_within(&self, x_wl: &Pose, other: &Self, x_wm: &Pose, bound_m: f64, measure: Measure) -> f64 {
         let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
         if centres_m >= self.radius_m + other.radius_m + bound_m {
@@ -121,27 +120,27 @@ impl LinkShapes {
         others.fold(bound_m, |bound_m, other| self.distance_to_within(x_wl, &other, bound_m, measure))
     }
 
-    /// The lesser of `bound_m` and the signed distance to a foreign body, m.
+    /// Minimum of `bound_m` and the signed distance to another body, m.
     fn signed_distance_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64) -> f64 {
         place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.signed_distance_within(other, bound_m))
     }
 
-    /// The lesser of `bound_m` and what is measured to a foreign body, m.
+    /// Minimum of `bound_m` and the measure to another body, m.
     fn distance_to_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64, measure: Measure) -> f64 {
         place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.distance_within(other, bound_m, measure))
     }
 }
 
-/// A link where it is.
+/// A link in W.
 struct PlacedLink<'a> {
     pieces: &'a [Placed<'a>],
-    /// A sphere about all pieces.
+    /// Centre of the bounding sphere.
     centre_w: DVec3,
     radius_m: f64,
 }
 
 impl PlacedLink<'_> {
-    /// True when a primitive of this link overlaps one of another.
+    /// True if a primitive of this link overlaps one of another.
     fn hits(&self, other: &Self) -> bool {
         let reach_m = self.radius_m + other.radius_m;
         if (self.centre_w - other.centre_w).length_squared() > reach_m * reach_m {
@@ -151,7 +150,7 @@ impl PlacedLink<'_> {
         near.any(|piece| other.pieces.iter().any(|other| piece.closer_than(other, 0.0)))
     }
 
-    /// Distance to a foreign body when it is closer than `required_m`.
+    /// Distance to another body if it is less than `required_m`, m.
     fn too_close(&self, other: &Placed<'_>, required_m: f64) -> Option<f64> {
         if self.pieces.is_empty() || !other.meets_sphere(self.centre_w, self.radius_m + required_m) {
             return None;
@@ -182,14 +181,14 @@ impl CollisionModel {
         Self { links, self_pairs, fingers: robot.arms.iter().map(|arm| fingers(robot, &arm.gripper)).collect() }
     }
 
-    /// The first rule that a scene breaks: the robot with itself, then with the board, then the person. A scene with a
-    /// body whose place or size is not finite is no free scene: the violation then names that body twice, and its
-    /// distance is not a number.
+    /// The first violation of a scene: robot with itself, then robot with board, then person. A body whose pose or size is not
+    /// finite is a violation that names it twice, with distance NaN.
+    #[must_use]
     pub fn first_violation(&self, scene: &Scene<'_>) -> Option<Violation> {
         if let Some(body) = self.undefined_body(scene) {
             return Some(Violation { bodies: [body; 2], required_m: 0.0, distance_m: f64::NAN });
         }
-        // Every primitive is placed once: a link is near to several others.
+        // Every primitive is placed once, since a link is compared with several others.
         let placed = self.placed_primitives(scene.link_poses);
         let links = self.placed_links(scene.link_poses, &placed);
         let board = Piece::cuboid(scene.board_size_m);
@@ -199,8 +198,9 @@ impl CollisionModel {
             .or_else(|| scene.person.iter().find_map(|part| person(&links, &board, part)))
     }
 
-    /// The first rule that the person breaks; the robot and the board are taken as they are, and as finite. With no link
-    /// poses, the board alone is in the way.
+    /// The first violation of the person. Robot and board are not checked and must be finite. Without link poses only the board
+    /// is an obstacle.
+    #[must_use]
     pub fn first_violation_of_person(&self, scene: &Scene<'_>) -> Option<Violation> {
         let placed = self.placed_primitives(scene.link_poses);
         let links = self.placed_links(scene.link_poses, &placed);
@@ -209,14 +209,15 @@ impl CollisionModel {
         scene.person.iter().find_map(|part| person(&links, &board, part))
     }
 
-    /// The least that any two bodies are farther apart than they must be, m: at most 0 when a rule is broken, infinite
-    /// when there is nothing to compare, not a number for a scene that is not finite.
+    /// Minimum over all pairs of distance minus required distance, m: at most 0 if there is a violation, infinite if there are no
+    /// pairs, NaN if the scene is not finite.
+    #[must_use]
     pub fn min_margin_m(&self, scene: &Scene<'_>) -> f64 {
         self.margin_m(scene, Measure::Distance)
     }
 
-    /// As [`CollisionModel::min_margin_m`], but bodies that overlap count with the depth of the overlap, the length of
-    /// the shortest way apart of two primitives, as a negative distance.
+    /// As [`CollisionModel::min_margin_m`], with the penetration depth of overlapping primitives as a negative distance.
+    #[must_use]
     pub fn min_signed_margin_m(&self, scene: &Scene<'_>) -> f64 {
         self.margin_m(scene, Measure::SignedDistance)
     }
@@ -251,7 +252,7 @@ impl CollisionModel {
         margin_m
     }
 
-    /// The first body whose place or size is not finite; a link without a pose is one.
+    /// The first body whose pose or size is not finite; a link without a pose is one.
     fn undefined_body(&self, scene: &Scene<'_>) -> Option<Body> {
         let finite =
             |pose: &Pose| pose.translation.vector.iter().chain(pose.rotation.coords.iter()).all(|v| v.is_finite());
@@ -270,17 +271,17 @@ impl CollisionModel {
         scene.person.iter().find(|part| !part_is_finite(part)).map(|part| Body::Person(part.name))
     }
 
-    /// True for the fingers of a gripper that holds the board.
+    /// True for fingers of a gripper that holds the board.
     fn may_touch_board(&self, scene: &Scene<'_>, link: usize) -> bool {
         scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link))
     }
 
-    /// All primitives of all links in the world, link by link.
+    /// All primitives of all links in W, in order of the links.
     fn placed_primitives(&self, poses: &[Pose]) -> Vec<Placed<'_>> {
         self.links.iter().zip(poses).flat_map(|(link, x_wl)| place_all(&link.pieces, x_wl)).collect()
     }
 
-    /// All links, with their primitives out of the list of all.
+    /// All links, with their primitives from the list of all.
     fn placed_links<'a>(&self, poses: &[Pose], mut placed: &'a [Placed<'a>]) -> Vec<PlacedLink<'a>> {
         let place = |(link, x_wl): (&LinkShapes, &Pose)| {
             let (pieces, rest) = placed.split_at(link.pieces.len());
@@ -303,7 +304,7 @@ impl CollisionModel {
     }
 }
 
-/// What one part of the person comes too close to.
+/// The first violation of one part of the person.
 fn person(links: &[PlacedLink<'_>], board: &Placed<'_>, part: &PersonPart) -> Option<Violation> {
     let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
     let capsule = capsule.placed(&Pose::identity());
@@ -321,8 +322,7 @@ fn person(links: &[PlacedLink<'_>], board: &Placed<'_>, part: &PersonPart) -> Op
     })
 }
 
-/// For every link, the first link of the rigid group that it belongs to: links joined by fixed joints never move against
-/// each other.
+/// For every link the first link of its rigid group. Links joined by fixed joints do not move relative to each other.
 fn rigid_groups(robot: &Robot) -> Vec<usize> {
     let mut groups: Vec<usize> = (0..robot.links.len()).collect();
     for joint in &robot.joints {

@@ -1,4 +1,4 @@
-//! Pairs of bodies that come near each other, with the points where: what a search needs to keep them apart as it moves.
+//! Pairs of primitives that are near each other, with their closest points.
 
 use nalgebra::{Point3, Vector3};
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::model::frames::Pose;
 
-/// A body that a point belongs to.
+/// A body of a scene, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BodyRef {
     /// A link of the robot, by its index.
@@ -19,28 +19,29 @@ pub enum BodyRef {
     Person(usize),
 }
 
-/// Two primitives that come near each other.
+/// Two primitives that are near each other.
 #[derive(Clone, Copy, Debug)]
 pub struct NearPair {
     /// The two bodies, and the number of the primitive in each.
     pub bodies: [(BodyRef, usize); 2],
-    /// The point of each that is closest to the other, W, m.
+    /// Closest point of each, W, m.
     pub p_w: [Point3<f64>; 2],
     /// From the first to the second, a unit vector in W.
     pub normal_w: Vector3<f64>,
-    /// How much farther apart than they must be, m: negative when a rule is broken.
+    /// Distance minus required distance, m; negative if violated.
     pub margin_m: f64,
 }
 
-/// A body with its primitives where they are.
+/// A body with its primitives in W.
 struct PlacedBody<'a> {
     body: BodyRef,
     pieces: Vec<Placed<'a>>,
 }
 
 impl CollisionModel {
-    /// Every pair of primitives that is less than `within_m` farther apart than it must be: the rules are those of
+    /// All pairs of primitives with a margin of less than `within_m`, under the rules of
     /// [`CollisionModel::first_violation`]. `scene` must be finite.
+    #[must_use]
     pub fn near(&self, scene: &Scene<'_>, within_m: f64) -> Vec<NearPair> {
         let links = self.links.iter().zip(scene.link_poses).enumerate();
         let links: Vec<_> = links

@@ -1,14 +1,12 @@
-//! The person as they stand, against a robot and a board that move: how far apart they are, and which bodies are nearest.
+//! Distance between a person who stands still and a robot and board that move, and the nearest bodies.
 //!
-//! What a plan keeps at a distance is looked at. What a plan lets come as near as it likes is not: tool and working hand, and the
-//! forearm behind them, against the board; the tool against the robot. They are at the board by their trade and go where
-//! it goes, with the hands that hold it, by the few millimetres that a hold gives way; only a person who stood like a statue would
-//! be pushed by them.
+//! Only pairs with a required distance above zero in a plan are measured. Tool, working hand and forearm touch the board by
+//! design and follow it with the few millimetres that the grasp deflects, so they are ignored; so is the tool near the robot.
 
 use super::{Body, CollisionModel, PersonPart, point_w, shapes::Piece};
 use crate::{human::BodyPart, model::frames::Pose};
 
-/// A person who stands still, with the tool, and the board that they work on.
+/// A person who stands still, with the tool, and the board.
 #[derive(Clone)]
 pub struct PersonClearance {
     parts: Vec<StandingPart>,
@@ -20,24 +18,24 @@ struct StandingPart {
     name: BodyPart,
     /// In W.
     capsule: Piece,
-    /// Whether a plan keeps it at a distance from the board.
+    /// True if a plan requires a distance to the board.
     keeps_off_board: bool,
-    /// Whether a plan keeps it at a distance from the robot.
+    /// True if a plan requires a distance to the robot.
     keeps_off_robot: bool,
 }
 
-/// The two bodies of a scene, one of them the person's, that come nearest to each other.
+/// The nearest pair of a part of the person and another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     /// A link or the board, then a part of the person.
     pub bodies: [Body; 2],
-    /// Their distance, m; the depth of an overlap as a negative number.
+    /// Distance, m; the penetration depth as a negative number.
     pub distance_m: f64,
 }
 
 impl PersonClearance {
-    /// A person of these parts at a board of these sides. How large the distances are that the parts must keep in a plan is no
-    /// matter here.
+    /// A person and a board with sides `board_size_m`. Of the clearances of `parts` only whether they are above zero matters.
+    #[must_use]
     pub fn new(parts: &[PersonPart], board_size_m: [f64; 3]) -> Self {
         let parts = parts.iter().map(|part| StandingPart {
             name: part.name,
@@ -50,8 +48,9 @@ impl PersonClearance {
 }
 
 impl CollisionModel {
-    /// The bodies of robot or board and person that are nearest to each other; none when all are at least `within_m`
-    /// apart. `link_poses` and `x_wo` must be finite.
+    /// The nearest pair of a body of robot or board and a part of the person; `None` if all are at least `within_m` apart.
+    /// `link_poses` and `x_wo` must be finite.
+    #[must_use]
     pub fn nearest_to_person(
         &self,
         person: &PersonClearance,
@@ -81,7 +80,7 @@ impl CollisionModel {
     }
 }
 
-/// The nearest bodies so far, and the distance that nearer ones must be within.
+/// The nearest pair so far, and the upper bound for nearer ones.
 struct Search {
     nearest: Option<Nearest>,
     bound_m: f64,

@@ -13,7 +13,7 @@ use crate::{
     robot::{Link, Shape},
 };
 
-/// A primitive in the frame of what it belongs to, inside a sphere about its centre.
+/// A primitive in the frame of its body, with its bounding sphere.
 #[derive(Clone)]
 pub struct Piece {
     x_ls: ParryPose,
@@ -21,26 +21,26 @@ pub struct Piece {
     radius_m: f64,
 }
 
-/// What is measured between two primitives.
+/// The measure between two primitives.
 #[derive(Clone, Copy)]
 pub enum Measure {
-    /// The distance: zero when they overlap.
+    /// Distance, zero if they overlap.
     Distance,
-    /// The distance, or the depth of the overlap as a negative number.
+    /// Distance, or the penetration depth as a negative number.
     SignedDistance,
 }
 
-/// Where two primitives come closest.
+/// The closest points of two primitives.
 pub struct Closest {
-    /// The points of the first and of the second, W, m.
+    /// Points of the first and the second, W, m.
     pub p_w: [Point3<f64>; 2],
     /// From the first towards the second.
     pub normal_w: Vector3<f64>,
-    /// Their distance along the normal, negative when they overlap, m.
+    /// Distance along the normal, negative if they overlap, m.
     pub distance_m: f64,
 }
 
-/// A primitive in the world.
+/// A primitive in W.
 pub struct Placed<'a> {
     pose: ParryPose,
     shape: &'a SharedShape,
@@ -48,13 +48,13 @@ pub struct Placed<'a> {
 }
 
 impl Piece {
-    /// A box about the origin.
+    /// A box centred at the origin.
     pub fn cuboid(size_m: [f64; 3]) -> Self {
         let [x, y, z] = size_m.map(|side| side / 2.0);
         Self::at(&Pose::identity(), SharedShape::cuboid(x, y, z), DVec3::new(x, y, z).length())
     }
 
-    /// A capsule between two points of the world; its frame is the world's, moved to its middle.
+    /// A capsule between two points of W; its frame is W translated to its middle.
     pub fn capsule_w(p0_w: &Point3<f64>, p1_w: &Point3<f64>, radius_m: f64) -> Self {
         let middle = nalgebra::center(p0_w, p1_w);
         let half = (p1_w - p0_w) / 2.0;
@@ -88,7 +88,7 @@ impl Piece {
         Self { x_ls: to_parry(x_ls), shape, radius_m }
     }
 
-    /// The primitive where its link is.
+    /// The primitive of a link at `x_wl`.
     pub fn placed(&self, x_wl: &Pose) -> Placed<'_> {
         self.placed_by(&to_parry(x_wl))
     }
@@ -98,19 +98,19 @@ impl Piece {
     }
 }
 
-/// All primitives of a link where it is.
+/// All primitives of a link at `x_wl`.
 pub fn place_all<'a>(pieces: &'a [Piece], x_wl: &Pose) -> impl Iterator<Item = Placed<'a>> + use<'a> {
     let x_wl = to_parry(x_wl);
     pieces.iter().map(move |piece| piece.placed_by(&x_wl))
 }
 
-/// Where a point of a link is in the world.
+/// A point of a link in W.
 pub fn point_w(x_wl: &Pose, p_l: &Point3<f64>) -> DVec3 {
     let p_w = x_wl * p_l;
     DVec3::new(p_w.x, p_w.y, p_w.z)
 }
 
-/// A sphere about several primitives, in the frame of what they belong to: centre and radius, m.
+/// Bounding sphere of several primitives in the frame of their body: centre and radius, m.
 pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
     let count = pieces.len().max(1) as f64;
     let centre = pieces.iter().map(|piece| piece.x_ls.translation).sum::<DVec3>() / count;
@@ -120,7 +120,7 @@ pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
 }
 
 impl Placed<'_> {
-    /// True when two primitives overlap or are closer than `required_m`.
+    /// True if two primitives overlap or are closer than `required_m`.
     pub fn closer_than(&self, other: &Placed<'_>, required_m: f64) -> bool {
         if !self.meets_sphere(other.pose.translation, other.radius_m + required_m)
             || !other.meets_sphere(self.pose.translation, self.radius_m + required_m)
@@ -130,13 +130,13 @@ impl Placed<'_> {
         if required_m > 0.0 { self.distance_m(other) <= required_m } else { self.overlaps(other) }
     }
 
-    /// True when two primitives overlap: a separating axis ends this sooner than a distance.
+    /// True if two primitives overlap. Faster than a distance.
     fn overlaps(&self, other: &Placed<'_>) -> bool {
         query::intersection_test(&self.pose, &**self.shape, &other.pose, &**other.shape)
             .is_ok_and(|found| found.intersecting)
     }
 
-    /// The lesser of `bound_m` and what `measure` says of two primitives, m.
+    /// Minimum of `bound_m` and the measure between two primitives, m.
     pub fn distance_within(&self, other: &Placed<'_>, bound_m: f64, measure: Measure) -> f64 {
         let centres_m = (self.pose.translation - other.pose.translation).length();
         let within = centres_m < self.radius_m + other.radius_m + bound_m;
@@ -149,22 +149,22 @@ impl Placed<'_> {
         })
     }
 
-    /// The lesser of `bound_m` and the signed distance of two primitives, m. Bodies of a person and a robot are long and
-    /// mostly far apart, so each is first tested as it is against a sphere about the other.
+    /// Minimum of `bound_m` and the signed distance of two primitives, m. Each is first tested against the other's bounding
+    /// sphere.
     pub fn signed_distance_within(&self, other: &Placed<'_>, bound_m: f64) -> f64 {
         let near = self.meets_sphere(other.pose.translation, other.radius_m + bound_m)
             && other.meets_sphere(self.pose.translation, self.radius_m + bound_m);
         if near { bound_m.min(self.signed_distance_m(other)) } else { bound_m }
     }
 
-    /// False when the primitive is outside this sphere of the world.
+    /// True if the primitive intersects a sphere in W.
     pub fn meets_sphere(&self, centre_w: DVec3, radius_m: f64) -> bool {
         let reach_m = self.radius_m + radius_m;
         (self.pose.translation - centre_w).length_squared() <= reach_m * reach_m
             && self.shape.distance_to_point(&self.pose, centre_w, true) <= radius_m
     }
 
-    /// Distance between two primitives, or how far they must be moved to come apart, as a negative number, m.
+    /// Distance between two primitives, or the penetration depth as a negative number, m.
     pub fn signed_distance_m(&self, other: &Placed<'_>) -> f64 {
         let distance_m = self.distance_m(other);
         if distance_m > 0.0 {
@@ -174,7 +174,7 @@ impl Placed<'_> {
         contact.ok().flatten().map_or(0.0, |contact| contact.dist.min(0.0))
     }
 
-    /// Where two primitives come closest, if that is within `within_m`: see [`Closest`].
+    /// The closest points of two primitives; `None` if they are farther apart than `within_m`.
     pub fn closest(&self, other: &Placed<'_>, within_m: f64) -> Option<Closest> {
         let reach_m = self.radius_m + other.radius_m + within_m;
         if (self.pose.translation - other.pose.translation).length_squared() > reach_m * reach_m {
@@ -189,9 +189,9 @@ impl Placed<'_> {
         })
     }
 
-    /// Distance between two primitives, m; zero when they overlap.
+    /// Distance between two primitives, m; zero if they overlap.
     pub fn distance_m(&self, other: &Placed<'_>) -> f64 {
-        // Unsupported pairs do not occur: boxes, cylinders, balls and capsules are all support mapped.
+        // All pairs are supported, since boxes, cylinders, balls and capsules are support-mapped.
         query::distance(&self.pose, &**self.shape, &other.pose, &**other.shape).map_or(0.0, |found| found.distance)
     }
 }

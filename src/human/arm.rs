@@ -1,16 +1,14 @@
 //! The working arm as a chain of seven joints: forward kinematics and the Jacobian.
 //!
-//! Always a right arm: a left-handed person is the mirror image, which [`Human`](super::Human) takes care of. This module
-//! knows nothing of strength, comfort, boards or robots.
-//!
-//! METHOD section 4, hanging at zero (S shoulder, U upper arm, F forearm, H hand):
+//! Always a right arm; [`Human`](super::Human) mirrors it for a left-handed person. Source: docs/method.md#41-arm-kinematics.
+//! At zero the arm hangs (S shoulder, U upper arm, F forearm, H hand):
 //!
 //! ```text
 //! X_SH = Ry(-q1) Rx(-q2) Rz(q3) . Tz(-L_u) . Ry(-q4) Rz(q5) . Tz(-L_f) . Rx(q6) Ry(q7)
 //!        \______ R_SU ________/
 //! ```
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::body::Body;
 use crate::model::frames::Pose;
@@ -18,9 +16,6 @@ use crate::model::frames::Pose;
 /// Joint angles of the working arm, rad, positive towards: shoulder flexion, abduction, internal rotation, elbow flexion,
 /// pronation, wrist flexion, ulnar deviation. For a left-handed person those of the mirrored right arm.
 pub type ArmAngles = [f64; 7];
-
-/// Geometric Jacobian: rows are the velocity of a point, m/s, then the angular velocity, rad/s; columns are the joints.
-pub type ArmJacobian = SMatrix<f64, 6, 7>;
 
 /// A right arm that holds a tool.
 #[derive(Clone, Debug)]
@@ -37,7 +32,7 @@ pub struct Arm {
     pub limits_rad: [[f64; 2]; 7],
 }
 
-/// Where the parts of an arm are, in the body's frame B.
+/// Positions and orientations of the parts of an arm in the body's frame B.
 #[derive(Clone, Copy, Debug)]
 pub struct ArmFrames {
     /// Shoulder centre, m.
@@ -89,12 +84,12 @@ impl Arm {
         self.upper_arm_m + self.forearm_m
     }
 
-    /// True when every joint is inside its range.
+    /// True if every joint is within its range.
     pub fn within_limits(&self, q_rad: &ArmAngles) -> bool {
         q_rad.iter().zip(&self.limits_rad).all(|(q, [low, high])| (low..=high).contains(&q))
     }
 
-    /// Where the parts of the arm are.
+    /// Positions and orientations of the parts of the arm.
     pub fn frames(&self, q_rad: &ArmAngles) -> ArmFrames {
         let [q1, q2, q3, q4, q5, q6, q7] = *q_rad;
         let mut moving = Triad::of_body();
@@ -138,23 +133,9 @@ impl Arm {
     pub fn tool_pose_b(&self, q_rad: &ArmAngles) -> Pose {
         self.hand_pose_b(q_rad) * self.x_ht
     }
-
-    /// Geometric Jacobian at the tool tip in B axes: column i is `(a_i x (p_T - o_i); a_i)` with the joint's axis `a_i`
-    /// through `o_i`.
-    pub fn jacobian_b(&self, q_rad: &ArmAngles) -> ArmJacobian {
-        let frames = self.frames(q_rad);
-        let p_bt_m = frames.hand_point_b(&self.x_ht.translation.vector);
-        let mut jacobian = ArmJacobian::zeros();
-        for (joint, axis) in frames.axes_b.iter().enumerate() {
-            let linear = axis.cross(&(p_bt_m - frames.joint_origin_m(joint)));
-            jacobian.fixed_view_mut::<3, 1>(0, joint).copy_from(&linear);
-            jacobian.fixed_view_mut::<3, 1>(3, joint).copy_from(axis);
-        }
-        jacobian
-    }
 }
 
-/// The axes of a frame that turns about its own axes, one after the other; cheaper than products of matrices.
+/// The axes of a frame that is rotated about its own axes in sequence; cheaper than matrix products.
 #[derive(Clone, Copy)]
 struct Triad {
     x: Vector3<f64>,
@@ -192,6 +173,23 @@ fn turned(first: &Vector3<f64>, second: &Vector3<f64>, angle_rad: f64) -> (Vecto
 }
 
 #[cfg(test)]
+impl Arm {
+    /// Geometric Jacobian at the tool tip in B axes: column i is `(a_i x (p_T - o_i); a_i)` with the joint's axis `a_i`
+    /// through `o_i`.
+    pub(super) fn jacobian_b(&self, q_rad: &ArmAngles) -> nalgebra::SMatrix<f64, 6, 7> {
+        let frames = self.frames(q_rad);
+        let p_bt_m = frames.hand_point_b(&self.x_ht.translation.vector);
+        let mut jacobian = nalgebra::SMatrix::<f64, 6, 7>::zeros();
+        for (joint, axis) in frames.axes_b.iter().enumerate() {
+            let linear = axis.cross(&(p_bt_m - frames.joint_origin_m(joint)));
+            jacobian.fixed_view_mut::<3, 1>(0, joint).copy_from(&linear);
+            jacobian.fixed_view_mut::<3, 1>(3, joint).copy_from(axis);
+        }
+        jacobian
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
@@ -208,7 +206,7 @@ mod tests {
         worker(Hand::Right, OperationKind::Drill).arm().clone()
     }
 
-    /// The chain as METHOD section 4 prints it, factor by factor.
+    /// The chain of docs/method.md#41-arm-kinematics, factor by factor.
     fn printed_chain(arm: &Arm, q: &ArmAngles) -> Pose {
         let turn = |axis: Unit<Vector3<f64>>, angle: f64| {
             Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_axis_angle(&axis, angle))
@@ -222,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hand_is_where_the_printed_chain_puts_it() {
+    fn the_hand_pose_equals_the_product_of_the_chain() {
         let (arm, mut generator) = (arm(), generator(1));
         for _ in 0..1_000 {
             let q_rad = random_angles(&arm, &mut generator);

@@ -1,7 +1,6 @@
 //! The person's body: proportions, masses and how it stands.
 //!
-//! Everything here is that of a right-handed person; [`Human`](super::Human) mirrors it for a left-handed one. This
-//! module knows nothing of joint torques, comfort, boards or robots.
+//! Always right-handed; [`Human`](super::Human) mirrors it for a left-handed person.
 
 use std::sync::LazyLock;
 
@@ -19,7 +18,7 @@ pub fn standing_pose_w(x_m: f64, y_m: f64, heading_rad: f64, floor_z_m: f64) -> 
     Isometry3::from_parts(Vector3::new(x_m, y_m, floor_z_m).into(), rotation)
 }
 
-/// How far a person may lean, degrees: beyond, nobody stands at ease.
+/// Maximum lean, degrees; more is not a comfortable stance.
 pub const MAX_LEAN_DEG: f64 = 15.0;
 
 /// A segment of the arm.
@@ -46,7 +45,7 @@ pub struct Body {
     pub hip_m: f64,
     /// Height of the knees over the floor, m.
     pub knee_m: f64,
-    /// How far the trunk leans forward about the hips, rad. All other figures are those of the upright body.
+    /// Forward lean of the trunk about the hips, rad. All other fields describe the upright body.
     pub lean_rad: f64,
     /// Shoulder to elbow.
     pub upper_arm: Segment,
@@ -58,11 +57,11 @@ pub struct Body {
     pub palm_h: Vector3<f64>,
     /// Range of each joint of the arm, rad.
     pub arm_limits_rad: [[f64; 2]; 7],
-    /// How thick the parts are.
+    /// Radii of the parts.
     pub thickness: Thickness,
 }
 
-/// Radii and spacings of the capsules that stand for the body, m.
+/// Radii and spacings of the capsules that represent the body, m.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thickness {
@@ -144,12 +143,12 @@ struct ArmRanges {
 }
 
 static ANTHROPOMETRY: LazyLock<Anthropometry> = LazyLock::new(|| {
-    // The file is part of the program, and every test of a body reads it: a mistake in it cannot be shipped.
-    toml::from_str(include_str!("../../assets/human/anthropometry.toml")).expect("the shipped proportions are sound")
+    // The file is compiled in and every test of a body parses it.
+    toml::from_str(include_str!("../../assets/human/anthropometry.toml")).expect("the built-in proportions are valid")
 });
 
 impl Body {
-    /// The body of a person, as that of a right-handed one (METHOD section 4).
+    /// The right-handed body of a person (docs/method.md#43-body-dimensions).
     pub fn new(person: &Person) -> Self {
         let Anthropometry { lengths, segments, capsules, arm } = &*ANTHROPOMETRY;
         let of_sex = match person.sex {
@@ -178,8 +177,8 @@ impl Body {
         }
     }
 
-    /// The upper body's frame V in B: that of the upright body, turned forward about the hips by the lean. Everything
-    /// above the hips is in V what it is in B when the person stands upright.
+    /// Pose of the upper body's frame V in B: B rotated forward about the hips by the lean. Coordinates in V of all parts above
+    /// the hips are those in B of the upright body.
     pub fn x_bv(&self) -> Pose {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), self.lean_rad);
         let hips = Vector3::new(0.0, 0.0, self.hip_m);
@@ -212,7 +211,7 @@ mod tests {
     #[test]
     fn the_average_man_has_the_lengths_of_the_method() {
         let body = Body::new(&average_man());
-        // METHOD sections 3 and 4 at 1.75 m and 75 kg, worked by hand; one rounding of a product each.
+        // docs/method.md#43-body-dimensions at 1.75 m and 75 kg, by hand; one rounding of a product each.
         assert_relative_eq!(body.p_bs_m, Vector3::new(0.0, -0.22575, 1.4315), epsilon = 1e-12);
         assert_relative_eq!(body.upper_arm.length_m + body.forearm.length_m, 0.581, epsilon = 1e-12);
         assert_relative_eq!(body.palm_h.z, -0.0875, epsilon = 1e-12);
@@ -232,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hand_that_works_does_not_change_the_body() {
+    fn the_working_hand_does_not_change_the_body() {
         assert_eq!(Body::new(&Person { hand: Hand::Left, ..average_man() }), Body::new(&average_man()));
     }
 

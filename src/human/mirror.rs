@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use crate::model::{frames::Pose, wrench::Wrench};
 
-/// What has a mirror image; mirroring twice changes nothing.
+/// Mirror image; its own inverse.
 pub(super) trait Mirrored {
     /// The mirror image.
     fn mirrored(self) -> Self;
@@ -17,7 +17,7 @@ impl Mirrored for Vector3<f64> {
     }
 }
 
-/// With `M = diag(1, -1, 1)`: position `M p`, rotation `M R M`, which turns about the mirrored axis the other way.
+/// With `M = diag(1, -1, 1)`: position `M p`, rotation `M R M`.
 impl Mirrored for Pose {
     fn mirrored(self) -> Self {
         let q = self.rotation.quaternion();
@@ -26,7 +26,7 @@ impl Mirrored for Pose {
     }
 }
 
-/// A moment is an axial vector: it turns about the mirrored axis the other way.
+/// A moment is an axial vector, so its mirror image has the opposite sense about the mirrored axis.
 impl Mirrored for Wrench {
     fn mirrored(self) -> Self {
         Self::new(self.force_n.mirrored(), -self.moment_nm.mirrored())

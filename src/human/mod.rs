@@ -1,19 +1,18 @@
 //! The person: body, working arm, strength, and both comfort metrics of the paper.
 //!
-//! [`Human`] is the way in. It takes poses and wrenches as the rest of the crate has them and mirrors them for a
-//! left-handed person; all other parts know a right arm only. A posture is the body's pose X_WB and the seven angles of
-//! the working arm; a scenario may let the trunk lean forward by a fixed angle. All that is above the hips is computed in
-//! the upper body's frame V, in which the leaning body is the upright one. Nothing here knows robots, boards or how a posture is searched for.
+//! [`Human`] is the entry point. It mirrors poses and wrenches for a left-handed person; all other parts are for a right arm.
+//! A posture is the body's pose X_WB and the seven angles of the working arm. The trunk may lean forward by a fixed angle.
+//! All parts above the hips are computed in the upper body's frame V, in which the leaning body is upright.
 //!
-//! | part | what it does |
+//! | part | contents |
 //! |---|---|
 //! | [`body`] | proportions, masses, standing pose |
 //! | [`shape`] | capsules for collisions and pictures, 64 points of the surface |
 //! | [`arm`] | forward kinematics, Jacobian |
-//! | [`swivel`] | inverse kinematics, ranges of the swivel |
+//! | [`swivel`] | inverse kinematics, intervals of the swivel |
 //! | [`strength`] | largest torque of each joint |
 //! | [`muscular`] | joint torques, activations, muscular comfort |
-//! | [`gradient`] | how muscular comfort changes with the joints' angles |
+//! | [`gradient`] | derivatives by the joint angles |
 //! | [`peripersonal`] | peripersonal comfort |
 //! | [`rula`] | the RULA score of a posture |
 //! | [`tools`] | the tools of the paper |
@@ -35,7 +34,7 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use arm::{Arm, ArmAngles, ArmFrames, ArmJacobian};
+pub use arm::{Arm, ArmAngles, ArmFrames};
 pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use gradient::{ArmAxes, MuscularGradient};
 pub use muscular::{JointTorques, Muscular};
@@ -56,20 +55,20 @@ use crate::model::{
     wrench::Wrench,
 };
 
-/// Why a person or a tool is none.
+/// An invalid person or tool.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HumanError {
-    /// A figure out of its range.
+    /// A value out of its range.
     #[error("found {found} for the {figure}, expected {expected}")]
     Figure {
-        /// What was given.
+        /// The field.
         figure: &'static str,
         /// Its value.
         found: f64,
-        /// What it must be.
+        /// The valid values.
         expected: &'static str,
     },
-    /// The tool's rotation is none.
+    /// The tool's rotation is not a unit quaternion.
     #[error("failed to read the tool's rotation_xyzw: {0}")]
     ToolRotation(String),
 }
@@ -82,7 +81,7 @@ pub struct Human {
     arm: Arm,
     strength: Strength,
     tool_kg: f64,
-    /// The upper body's frame in the body's; its own mirror image.
+    /// Pose of the upper body's frame V in B; its own mirror image.
     x_bv: Pose,
 }
 
@@ -90,7 +89,7 @@ impl Human {
     /// A person with a tool.
     ///
     /// # Errors
-    /// When a height, mass or percentile is out of range or the tool's rotation is none.
+    /// If a height, mass or percentile is out of range, or the tool's rotation is not a unit quaternion.
     pub fn new(person: &Person, tool: &Tool) -> Result<Self, HumanError> {
         let positive = |v: f64| v.is_finite() && v > 0.0;
         check("person's height_m", person.height_m, positive, "a positive number")?;
@@ -125,7 +124,7 @@ impl Human {
         &self.strength
     }
 
-    /// Pose of the working shoulder's frame in the body's: S has the axes of B, or of V when the trunk leans.
+    /// Pose of the working shoulder's frame S in B. S has the axes of V.
     pub fn x_bs(&self) -> Pose {
         let p_vs_m = self.on_working_side(self.arm.p_bs_m);
         self.x_bv * Isometry3::translation(p_vs_m.x, p_vs_m.y, p_vs_m.z)
@@ -141,28 +140,21 @@ impl Human {
         self.arm.reach_m()
     }
 
-    /// The tool tip's frame in the body's, X_BT. For a left-handed person the tool is mirrored too: x_T and z_T are the
-    /// mirror images, y_T completes a right-handed frame.
+    /// The tool tip's pose in the body, X_BT. For a left-handed person x_T and z_T are mirrored and y_T completes a
+    /// right-handed frame.
     pub fn tool_pose_b(&self, q_rad: &ArmAngles) -> Pose {
         self.x_bv * self.on_working_side(self.arm.tool_pose_b(q_rad))
     }
 
-    /// The postures that put the tool's tip at `x_bt`, as a function of the swivel; none out of reach. Ask this once
-    /// when many swivels of one tool pose are of interest. [`swivel`] defines the angle; for a left-handed person it is
-    /// that of the mirrored arm, and "down" is along the trunk.
+    /// The solutions for the tool pose `x_bt`, as functions of the swivel; `None` out of reach. [`swivel`] defines the angle;
+    /// for a left-handed person it is that of the mirrored arm, and "down" is along the trunk.
     pub fn swivel_circle(&self, x_bt: &Pose) -> Option<SwivelCircle> {
         self.arm.swivel_circle(&self.on_working_side(self.x_bv.inverse() * x_bt))
     }
 
-    /// The postures of both shoulder branches inside the joints' limits that put the tool's tip at `x_bt` with this
-    /// swivel: none, one or two.
+    /// The solutions of both shoulder branches for the tool pose `x_bt` at a swivel, within the joint limits.
     pub fn arm_solutions(&self, x_bt: &Pose, swivel_rad: f64) -> ArmSolutions {
         self.swivel_circle(x_bt).map_or_else(ArmSolutions::new, |circle| circle.solutions(swivel_rad))
-    }
-
-    /// The ranges of the swivel, by shoulder branch, in which the tool's tip can be at `x_bt`.
-    pub fn swivel_intervals(&self, x_bt: &Pose) -> SwivelIntervals {
-        self.swivel_circle(x_bt).map_or_else(SwivelIntervals::new, |circle| circle.intervals())
     }
 
     /// The swivel angle of a posture, rad, in [-pi, pi].
@@ -170,8 +162,7 @@ impl Human {
         self.arm.swivel_rad(q_rad)
     }
 
-    /// The torques of the working arm's joints for the wrench that the hand exerts at the tool's tip: about the tip, in
-    /// world axes.
+    /// The joint torques of the working arm for the wrench that the hand exerts at the tool tip: about the tip, W axes.
     pub fn joint_torques(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench) -> JointTorques {
         let (wrench_v, gravity_v) = self.loads_v(x_wb, wrench_w);
         muscular::joint_torques(&self.arm, &self.body, self.tool_kg, q_rad, &wrench_v, &gravity_v)
@@ -220,7 +211,7 @@ impl Human {
     pub fn arm_axes_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> ArmAxes {
         let x_wv = x_wb * self.x_bv;
         let (to_w, frames) = (self.placed(&x_wv), self.arm.frames(q_rad));
-        // An axis turns the other way in the mirror, as a moment does.
+        // An axis is an axial vector, as a moment is.
         let axis_w = |axis_v| x_wv.rotation * self.on_working_side(Wrench::new(Vector3::zeros(), axis_v)).moment_nm;
         ArmAxes {
             origins_w: std::array::from_fn(|joint| to_w(frames.joint_origin_m(joint))),
@@ -234,14 +225,14 @@ impl Human {
         rula::rula(&self.arm, &self.body, q_rad, load_n)
     }
 
-    /// The points spread over the body's surface, in the world.
+    /// The points on the body's surface, in W.
     pub fn body_points_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> [Point3<f64>; BODY_POINTS] {
         let x_wv = x_wb * self.x_bv;
         let (upper, legs) = (self.placed(&x_wv), self.placed(x_wb));
         self.body.points(&self.arm.frames(q_rad), upper, legs)
     }
 
-    /// The capsules of body and tool in the world: head first, then each part working side first, the tool last.
+    /// The capsules of body and tool in W: head, then each part working side first, the tool last.
     pub fn capsules_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> [Capsule; CAPSULES] {
         let p_ht_m = &self.arm.x_ht.translation.vector;
         let x_wv = x_wb * self.x_bv;
@@ -249,20 +240,20 @@ impl Human {
         self.body.capsules(&self.arm.frames(q_rad), p_ht_m, upper, legs)
     }
 
-    /// The wrench at the tool's tip and gravity as the right-handed, upright body feels them: in V axes.
+    /// The wrench at the tool tip and gravity in V axes of the right-handed body.
     fn loads_v(&self, x_wb: &Pose, wrench_w: &Wrench) -> (Wrench, Vector3<f64>) {
         let to_upper = (x_wb.rotation * self.x_bv.rotation).inverse();
         let wrench_v = Wrench::new(to_upper * wrench_w.force_n, to_upper * wrench_w.moment_nm);
         (self.on_working_side(wrench_v), self.on_working_side(to_upper * GRAVITY_W))
     }
 
-    /// Takes a point of the right-handed body to the world.
+    /// Maps points of the right-handed body to W.
     fn placed(&self, x_wb: &Pose) -> impl Fn(&Vector3<f64>) -> Point3<f64> {
         let (to_w, p_wb_m) = (x_wb.rotation.to_rotation_matrix(), x_wb.translation.vector);
         move |p_b_m| (to_w * self.on_working_side(*p_b_m) + p_wb_m).into()
     }
 
-    /// The mirror image for a left-handed person, the thing itself for a right-handed one; its own inverse.
+    /// The mirror image for a left-handed person, unchanged for a right-handed one; its own inverse.
     fn on_working_side<T: Mirrored>(&self, of_right: T) -> T {
         match self.hand {
             Hand::Right => of_right,
@@ -271,7 +262,7 @@ impl Human {
     }
 }
 
-/// A figure, when it is what it must be.
+/// Checks a field of a person or a tool.
 fn check(
     figure: &'static str,
     found: f64,

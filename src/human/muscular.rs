@@ -1,7 +1,6 @@
-//! Muscular comfort: how much of its strength each joint of the working arm spends (METHOD section 4).
+//! Muscular comfort: joint torques of the working arm relative to its strength (docs/method.md#4-muscular-comfort).
 //!
-//! In the body's frame and for a right arm. This module knows nothing of robots or boards: a load is a wrench at the tip
-//! of the tool.
+//! In the body's frame, for a right arm. A load is a wrench at the tool tip.
 
 use nalgebra::Vector3;
 
@@ -12,19 +11,19 @@ use super::{
 };
 use crate::model::{scenario::StrengthDirection, wrench::Wrench};
 
-/// A resting co-contraction of 3.8 % in each of seven joints, squared and summed; it bounds the regularised comfort by
-/// 100 where gravity and load cancel.
+/// Regularisation of the muscular comfort: the sum of squares of a resting co-contraction of 3.8 % in each of seven joints.
+/// Bounds the comfort by 100 where gravity and load cancel.
 pub(super) const RESTING: f64 = 0.01;
 
-/// Below this a torque or motion has no sense: it is rounding, N m.
+/// Torques below this have no direction, since they are rounding errors, N m.
 const NO_SENSE_NM: f64 = 1e-9;
 
 /// The torques of the arm's joints, N m, positive towards larger angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointTorques {
-    /// `J' w`: what exerts the operation's wrench at the tool's tip.
+    /// `J' w`: torques that exert the operation's wrench at the tool tip.
     pub operation_nm: [f64; 7],
-    /// `g(q)`: what holds upper arm, forearm, hand and tool against gravity.
+    /// `g(q)`: torques that hold upper arm, forearm, hand and tool against gravity.
     pub gravity_nm: [f64; 7],
 }
 
@@ -33,7 +32,7 @@ pub struct JointTorques {
 pub struct Muscular {
     /// Torque over strength of each joint, `alpha_i = |tau_i| / tau_max,i`.
     pub activations: [f64; 7],
-    /// `1 / ||alpha||^2`, as the paper prints it; infinite when no joint does anything.
+    /// `1 / ||alpha||^2`, as printed in the paper; infinite if all activations are zero.
     pub printed: f64,
     /// `1 / (||alpha||^2 + 0.01)`.
     pub regularised: f64,
@@ -48,19 +47,19 @@ impl Muscular {
 }
 
 impl JointTorques {
-    /// The whole torque of each joint, `tau = J' w + g(q)`, N m.
+    /// The total torque of each joint, `tau = J' w + g(q)`, N m.
     pub fn total_nm(&self) -> [f64; 7] {
         std::array::from_fn(|i| self.operation_nm[i] + self.gravity_nm[i])
     }
 
-    /// Torque over strength of each joint. The strength is that of the sense of the motion that the wrench drives
-    /// (`paper`) or of the whole torque (`torque`), and the smaller of both where there is none.
+    /// Torque over strength of each joint. The strength is that in the sense of the operation's torque (`paper`) or of the
+    /// total torque (`torque`), and the smaller of both if that torque is zero (docs/method.md#47-direction-of-motion).
     pub fn activations(&self, q_rad: &ArmAngles, strength: &Strength, direction: StrengthDirection) -> [f64; 7] {
         let (total_nm, senses) = (self.total_nm(), self.senses(q_rad, strength, direction));
         std::array::from_fn(|joint| total_nm[joint].abs() / strength.torque_nm(joint, q_rad[joint], senses[joint]))
     }
 
-    /// The sense whose strength counts in each joint.
+    /// The sense of each joint's strength.
     pub(super) fn senses(&self, q_rad: &ArmAngles, strength: &Strength, direction: StrengthDirection) -> [Sense; 7] {
         let deciding_nm = match direction {
             StrengthDirection::Paper => self.operation_nm,
@@ -78,14 +77,14 @@ impl JointTorques {
     }
 }
 
-/// A load that the arm carries by its own weight: mass, kg, and centre of mass in B, m.
+/// Mass, kg, and centre of mass in B, m, of a part of the arm or the tool.
 pub(super) type Weight = (f64, Vector3<f64>);
 
-/// The torques of the joints for a wrench that the hand exerts at the tool's tip (about the tip, B axes) while gravity,
-/// `gravity_b` in m/s^2, pulls at the arm and at a tool of `tool_kg` in the palm.
+/// The joint torques for a wrench that the hand exerts at the tool tip (about the tip, B axes), with gravity `gravity_b`,
+/// m/s^2, on the arm and on a tool of `tool_kg` in the palm (docs/method.md#45-joint-torques).
 ///
-/// Each torque is the joint's axis times the moment about a point on it: of the wrench, and of the forces that hold up
-/// all that is carried beyond the joint.
+/// Each torque is the joint's axis times the moment about a point on it: of the wrench, and of the forces that hold all
+/// weights beyond the joint.
 pub fn joint_torques(
     arm: &Arm,
     body: &Body,
@@ -97,8 +96,8 @@ pub fn joint_torques(
     let frames = arm.frames(q_rad);
     let p_bt_m = frames.hand_point_b(&arm.x_ht.translation.vector);
     let weights = weights(body, tool_kg, &frames);
-    // Beyond the shoulder hangs everything, beyond the elbow all but the upper arm, beyond the wrist hand and tool. The
-    // forearm's centre of mass lies on the axis of pronation, so that axis may be treated with the wrist.
+    // The shoulder carries everything, the elbow all but the upper arm, the wrist hand and tool. The forearm's centre of mass
+    // lies on the axis of pronation, so that axis is treated with the wrist.
     let (at_shoulder, at_elbow, at_wrist) = (&frames.p_bs_m, &frames.p_be_m, &frames.p_bw_m);
     let exerting = [at_shoulder, at_elbow, at_wrist].map(|origin| wrench_b.about(&(p_bt_m - origin)).moment_nm);
     let holding = [(at_shoulder, &weights[..]), (at_elbow, &weights[1..]), (at_wrist, &weights[2..])]
@@ -122,7 +121,7 @@ pub(super) fn weights(body: &Body, tool_kg: f64, frames: &ArmFrames) -> [Weight;
     ]
 }
 
-/// The moment about `origin_b` that holds these weights: `sum (p - o) x (-m g)`.
+/// The moment about `origin_b` that holds the weights: `sum (p - o) x (-m g)`.
 fn holding_moment(weights: &[Weight], origin_b: &Vector3<f64>, gravity_b: &Vector3<f64>) -> Vector3<f64> {
     let first_moment: Vector3<f64> = weights.iter().map(|(mass_kg, p_b)| (p_b - origin_b) * *mass_kg).sum();
     gravity_b.cross(&first_moment)

@@ -1,16 +1,15 @@
-//! Peripersonal comfort: how far the robot stays from the person's body (METHOD section 5).
-//!
-//! Points in, metres out; this module knows neither bodies nor robots.
+//! Peripersonal comfort: distances between points of the person and points of the robot
+//! (docs/method.md#5-peripersonal-comfort).
 
 use nalgebra::{Point3, Vector3};
 
 use crate::model::scenario::PeripersonalForm;
 
-/// How many points of the person are compared with one of the robot at a time: enough to fill vector registers.
+/// Number of the person's points that are compared with a point of the robot at a time; fills vector registers.
 const LANES: usize = 8;
 
-/// The peripersonal metric, m. With `d(p)` the distance from a point of the person to the nearest of the robot, or
-/// `saturation_m` when that is less:
+/// The peripersonal metric, m. With `d(p)` the distance from a point of the person to the nearest point of the robot, at most
+/// `saturation_m`:
 ///
 /// ```text
 /// min:      min d(p)
@@ -18,7 +17,7 @@ const LANES: usize = 8;
 /// weighted: (1/n) sum w(p) d(p),   w(p) = 1 - d(p) / sum d
 /// ```
 ///
-/// Both sets in the same frame. Infinite when one of them is empty: then nothing comes near.
+/// Both sets are in the same frame. Infinite if one of them is empty.
 pub fn peripersonal_m(
     form: PeripersonalForm,
     saturation_m: Option<f64>,
@@ -30,23 +29,23 @@ pub fn peripersonal_m(
     distances.peripersonal_m(form)
 }
 
-/// How the metric grows as a point of the person moves.
+/// Gradient of the metric by one point of the person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pull {
-    /// The robot's point that is nearest to it.
+    /// Index of the nearest point of the robot.
     pub nearest: usize,
-    /// The gradient with respect to the person's point, and the negative of that with respect to the robot's: along the
-    /// line between them, dimensionless.
+    /// The gradient by the person's point, dimensionless, along the line from the robot's point. The gradient by the robot's
+    /// point is its negative.
     pub away: Vector3<f64>,
 }
 
-/// The gradient of [`peripersonal_m`], a pull for each point of the person: with `D = sum d`,
+/// The gradient of [`peripersonal_m`], one [`Pull`] per point of the person: with `D = sum d`,
 ///
 /// ```text
 /// min: 1 for the nearest point;   mean: 1/n;   weighted: (1 - 2 d/D + (sum d^2)/D^2) / n;   0 beyond the saturation
 /// ```
 ///
-/// It is not defined where two of the robot's points are equally near; then the first counts.
+/// Undefined where two points of the robot are equally near; there the first one is used.
 pub fn peripersonal_pulls(
     form: PeripersonalForm,
     saturation_m: Option<f64>,
@@ -81,8 +80,8 @@ pub fn peripersonal_pulls(
     found.iter().enumerate().map(pull).collect()
 }
 
-/// What the metric needs of the distances from points of a person to a robot. Points may be added a few at a time: those
-/// of a body that stands still need to be looked at once for all postures of its arm.
+/// Sums of the distances that the metric needs. Points may be added in parts, so the points that do not move with the arm are
+/// evaluated once per standing pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distances {
     most_m2: f64,
@@ -94,13 +93,13 @@ pub struct Distances {
 }
 
 impl Distances {
-    /// No points yet; no distance will count as more than `saturation_m`.
+    /// No points. Distances saturate at `saturation_m`.
     pub fn new(saturation_m: Option<f64>) -> Self {
         let most_m2 = saturation_m.map_or(f64::INFINITY, |most_m| most_m * most_m);
         Self { most_m2, least_m2: f64::INFINITY, sum_m: 0.0, sum_m2: 0.0, count: 0, no_robot: false }
     }
 
-    /// Adds points of the person; the robot's must be the same every time.
+    /// Adds points of the person. The robot's points must be the same in every call.
     pub fn add(&mut self, human_points: &[Point3<f64>], robot_points: &[Point3<f64>]) {
         self.no_robot = robot_points.is_empty();
         self.count += human_points.len();
@@ -114,7 +113,7 @@ impl Distances {
         }
     }
 
-    /// The metric of all points that were added, as [`peripersonal_m`] defines it.
+    /// The metric of all added points, as defined by [`peripersonal_m`].
     pub fn peripersonal_m(&self, form: PeripersonalForm) -> f64 {
         if self.count == 0 || self.no_robot {
             return f64::INFINITY;
@@ -123,7 +122,7 @@ impl Distances {
         match form {
             PeripersonalForm::Min => self.least_m2.sqrt(),
             PeripersonalForm::Mean => self.sum_m / n,
-            // Every point touches: all distances, and so any mean of them, are zero.
+            // All distances are zero, and so is any mean of them.
             PeripersonalForm::Weighted if self.sum_m == 0.0 => 0.0,
             // sum (1 - d / D) d = D - (sum d^2) / D
             PeripersonalForm::Weighted => (self.sum_m - self.sum_m2 / self.sum_m) / n,
@@ -131,8 +130,8 @@ impl Distances {
     }
 }
 
-/// For up to [`LANES`] points of the person the squared distance to the nearest point of the robot, m^2. The person's
-/// points lie side by side so that one instruction treats several.
+/// Squared distance to the nearest point of the robot, m^2, for up to [`LANES`] points of the person, in a layout that the
+/// compiler vectorises.
 fn least_squared_distances(human_points: &[Point3<f64>], robot_points: &[Point3<f64>]) -> [f64; LANES] {
     let mut lanes = [[0.0; LANES]; 3];
     for (lane, point) in human_points.iter().enumerate() {
@@ -145,7 +144,7 @@ fn least_squared_distances(human_points: &[Point3<f64>], robot_points: &[Point3<
         for lane in 0..LANES {
             let (dx, dy, dz) = (lanes[0][lane] - robot.x, lanes[1][lane] - robot.y, lanes[2][lane] - robot.z);
             let squared = dx * dx + dy * dy + dz * dz;
-            // Not `f64::min`, whose rule for NaN keeps this from becoming one instruction.
+            // Not `f64::min`: its rule for NaN prevents vectorisation.
             least[lane] = if squared < least[lane] { squared } else { least[lane] };
         }
     }

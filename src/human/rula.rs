@@ -1,25 +1,24 @@
-//! The RULA score of a posture (Rapid Upper Limb Assessment, McAtamney & Corlett 1993): what an ergonomist would write
-//! down, beside the metrics. It is reported and never optimised: it is a handful of steps.
+//! The RULA score of a posture (Rapid Upper Limb Assessment, McAtamney & Corlett 1993; docs/method.md#412-posture-score).
+//! It is reported beside the metrics and not optimised, since it is a step function.
 //!
-//! # From our posture to the score sheet
+//! # Scores
 //!
 //! | RULA | from |
 //! |---|---|
-//! | upper arm 1..4 | angle between upper arm and trunk, backward when the elbow is behind the shoulder: up to 20 degrees, 20..45 or any more backward, 45..90, more |
+//! | upper arm 1..4 | angle between upper arm and trunk, backward when the elbow is behind the shoulder: up to 20 degrees; 20..45, or more than 20 backward; 45..90; more |
 //! | upper arm +1 | abduction q2 beyond 20 degrees |
-//! | lower arm 1..2 | elbow flexion q4 within 60..100 degrees, or not |
-//! | lower arm +1 | the wrist across the body's middle, or farther out than the shoulder by an upper arm's radius |
+//! | lower arm 1..2 | elbow flexion q4 within 60..100 degrees, or outside |
+//! | lower arm +1 | wrist across the body's middle, or outside the shoulder by more than an upper arm's radius |
 //! | wrist 1..3 | flexion q6: within 5 degrees, up to 15, more |
 //! | wrist +1 | ulnar or radial deviation q7 beyond 5 degrees |
 //! | wrist twist 1..2 | pronation q5 within 45 degrees, or beyond |
 //! | neck 1 | neutral |
 //! | trunk 1..2 | upright, or leaning forward by up to 20 degrees |
-//! | legs 1 | supported, the weight on both |
+//! | legs 1 | both legs supported |
 //! | force 0, 1, 3 | tool's weight and tool's force together under 2 kg, up to 10 kg, more: intermittent |
 //! | muscle use 0 | one operation of a few seconds, neither static nor repeated |
 //!
-//! A shoulder that is raised, an arm that is supported and a head or trunk that turns do not occur in this body model.
-//! This module knows nothing of robots or boards.
+//! Raised shoulders, supported arms, and a turned head or trunk do not occur in this body model.
 
 use std::sync::LazyLock;
 
@@ -42,7 +41,7 @@ struct Tables {
     observer: Observer,
 }
 
-/// Where steps lie that RULA leaves to the observer, degrees.
+/// Thresholds that RULA leaves to the observer, degrees.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Observer {
@@ -52,11 +51,11 @@ struct Observer {
 }
 
 static TABLES: LazyLock<Tables> = LazyLock::new(|| {
-    // The file is part of the program and the tests below read it: a mistake in it cannot be shipped.
-    toml::from_str(include_str!("../../assets/human/rula.toml")).expect("the shipped RULA tables are sound")
+    // The file is compiled in and the tests below parse it.
+    toml::from_str(include_str!("../../assets/human/rula.toml")).expect("the built-in RULA tables are valid")
 });
 
-/// The scores of the arm's parts, from 1: rows and columns of table A.
+/// The scores of the arm's parts, from 1: indices of table A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct ArmScores {
     upper_arm: usize,
@@ -78,7 +77,7 @@ pub fn rula(arm: &Arm, body: &Body, q_rad: &ArmAngles, load_n: f64) -> RulaScore
     RulaScore { score: TABLES.table_c[row - 1][column - 1], arm_and_wrist, neck_trunk_legs }
 }
 
-/// The scores of the arm's parts; the module's text says how.
+/// The scores of the arm's parts, by the table in the module documentation.
 fn arm_scores(arm: &Arm, body: &Body, q_rad: &ArmAngles) -> ArmScores {
     let frames = arm.frames(q_rad);
     let [_, abduction, _, elbow, twist, flexion, deviation] = q_rad.map(f64::to_degrees);
@@ -91,7 +90,7 @@ fn arm_scores(arm: &Arm, body: &Body, q_rad: &ArmAngles) -> ArmScores {
         raised if raised <= 90.0 => 3,
         _ => 4,
     };
-    // The right arm: y_B points to the other side.
+    // Right arm: y_B points to the left.
     let outermost_m = body.p_bs_m.y - body.thickness.upper_arm_radius_m;
     let aside = frames.p_bw_m.y > 0.0 || frames.p_bw_m.y < outermost_m;
     let by_flexion = match flexion.abs() {
@@ -107,7 +106,7 @@ fn arm_scores(arm: &Arm, body: &Body, q_rad: &ArmAngles) -> ArmScores {
     }
 }
 
-/// RULA's score of a force that is not held for long: its steps are those of masses, in kg.
+/// RULA's score of an intermittent force. Its thresholds are masses, kg.
 fn force_score(load_n: f64) -> u8 {
     match load_n / GRAVITY_W.norm() {
         mass_kg if mass_kg < 2.0 => 0,

@@ -1,8 +1,7 @@
-//! The body in space: the capsules that stand for it in collisions and pictures, and the points that stand for it in the
-//! peripersonal metric.
+//! Geometry of the body: capsules for collisions and pictures, and points for the peripersonal metric.
 //!
-//! Right-handed and upright, as all of the body; the caller's functions place (and, for a left-handed person, mirror) it,
-//! one what is above the hips, which may lean, and one the legs. What may touch what is not decided here.
+//! Right-handed and upright. The caller's functions place the body in the world and mirror it for a left-handed person: one
+//! function for the parts above the hips, which may lean, one for the legs.
 
 use std::sync::LazyLock;
 
@@ -10,16 +9,16 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::{arm::ArmFrames, body::Body};
 
-/// How many points stand for the body in the peripersonal metric (METHOD section 5).
+/// Number of body points in the peripersonal metric (docs/method.md#51-point-sets).
 pub const BODY_POINTS: usize = 64;
 
-/// How many of the points, the first, do not move with the working arm.
+/// Number of body points that do not move with the working arm; they come first.
 pub const STILL_POINTS: usize = 55;
 
-/// How many capsules stand for the person and the tool.
+/// Number of capsules of the person and the tool.
 pub const CAPSULES: usize = 14;
 
-/// Radius of the tool's capsule, m: assumed, a drill's chuck; a scenario's tool states none.
+/// Radius of the tool's capsule, m. Assumed: a drill's chuck; the scenario's tool has no radius.
 const TOOL_RADIUS_M: f64 = 0.02;
 
 /// The side of a part of the body.
@@ -31,7 +30,7 @@ pub enum Side {
     Idle,
 }
 
-/// What a capsule stands for.
+/// A part of the body, or the tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum BodyPart {
     /// The head.
@@ -42,7 +41,7 @@ pub enum BodyPart {
     UpperArm(Side),
     /// A forearm.
     Forearm(Side),
-    /// A hand; the working one is closed about the tool.
+    /// A hand; the working hand is closed around the tool.
     Hand(Side),
     /// A thigh.
     Thigh(Side),
@@ -53,13 +52,14 @@ pub enum BodyPart {
 }
 
 impl BodyPart {
-    /// True for the working arm and the tool, which move when the body stands still.
+    /// True for the working arm and the tool.
     pub fn moves_with_arm(self) -> bool {
         use Side::Working;
         matches!(self, Self::UpperArm(Working) | Self::Forearm(Working) | Self::Hand(Working) | Self::Tool)
     }
 
-    /// How many of the working arm's joints, the first, move it. Its capsule lies on the axes of the next ones.
+    /// Number of the working arm's joints that move its capsule: the first ones. Those after them turn it about its own axis or
+    /// not at all.
     #[must_use]
     pub fn joints(self) -> usize {
         match self {
@@ -71,79 +71,79 @@ impl BodyPart {
     }
 }
 
-/// A cylinder with round ends, in the world.
+/// A capsule in W.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
-    /// What it stands for.
+    /// The part that it represents.
     pub name: BodyPart,
-    /// Centre of one round end, m; of a limb the upper or proximal one.
+    /// Centre of one end, m; of a limb the proximal end.
     pub p0_w: Point3<f64>,
-    /// Centre of the other round end, m.
+    /// Centre of the other end, m.
     pub p1_w: Point3<f64>,
     /// Radius, m.
     pub radius_m: f64,
 }
 
-/// What carries points of the body.
+/// The segment that a body point is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Carrier {
+enum PointSegment {
     Body,
     UpperArm(Side),
     Forearm(Side),
     Hand(Side),
 }
 
-/// A point of the body, in units of height from its carrier's origin: the floor, shoulder, elbow or wrist.
+/// A body point, in units of height from its segment's origin: the floor, shoulder, elbow or wrist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BodyPoint {
-    carrier: Carrier,
+    segment: PointSegment,
     position: Vector3<f64>,
 }
 
 static POINTS: LazyLock<Vec<BodyPoint>> = LazyLock::new(|| {
     let rows = include_str!("../../assets/human/points64.csv").lines().filter(|row| !row.starts_with('#')).skip(1);
-    // A malformed row would be left out; a test counts them, so none can be shipped.
+    // A malformed row is left out; a test counts the rows.
     rows.filter_map(parse_point).collect()
 });
 
-/// A row `carrier,x,y,z`.
+/// Parses a row `carrier,x,y,z`.
 fn parse_point(row: &str) -> Option<BodyPoint> {
     let mut cells = row.split(',');
-    let carrier = match cells.next()? {
-        "body" => Carrier::Body,
-        "working_upper_arm" => Carrier::UpperArm(Side::Working),
-        "working_forearm" => Carrier::Forearm(Side::Working),
-        "working_hand" => Carrier::Hand(Side::Working),
-        "idle_upper_arm" => Carrier::UpperArm(Side::Idle),
-        "idle_forearm" => Carrier::Forearm(Side::Idle),
-        "idle_hand" => Carrier::Hand(Side::Idle),
+    let segment = match cells.next()? {
+        "body" => PointSegment::Body,
+        "working_upper_arm" => PointSegment::UpperArm(Side::Working),
+        "working_forearm" => PointSegment::Forearm(Side::Working),
+        "working_hand" => PointSegment::Hand(Side::Working),
+        "idle_upper_arm" => PointSegment::UpperArm(Side::Idle),
+        "idle_forearm" => PointSegment::Forearm(Side::Idle),
+        "idle_hand" => PointSegment::Hand(Side::Idle),
         _ => return None,
     };
     let mut number = || cells.next()?.parse().ok();
-    Some(BodyPoint { carrier, position: Vector3::new(number()?, number()?, number()?) })
+    Some(BodyPoint { segment, position: Vector3::new(number()?, number()?, number()?) })
 }
 
-/// How many of the working arm's joints, the first, move a point of [`super::Human::body_points_w`].
+/// Number of the working arm's joints that move a point of [`super::Human::body_points_w`]: the first ones.
 #[must_use]
 pub fn body_point_joints(point: usize) -> usize {
-    match POINTS[point].carrier {
-        Carrier::UpperArm(Side::Working) => 3,
-        Carrier::Forearm(Side::Working) => 4,
-        Carrier::Hand(Side::Working) => 7,
+    match POINTS[point].segment {
+        PointSegment::UpperArm(Side::Working) => 3,
+        PointSegment::Forearm(Side::Working) => 4,
+        PointSegment::Hand(Side::Working) => 7,
         _ => 0,
     }
 }
 
 impl Body {
-    /// The idle arm: it hangs, mirrored to the other side, so its axes are those of B. Shoulder, elbow and wrist, m.
+    /// Shoulder, elbow and wrist of the idle arm in B, m. It hangs, so its axes are those of B.
     fn idle_arm_b(&self) -> [Vector3<f64>; 3] {
         let shoulder = Vector3::new(self.p_bs_m.x, -self.p_bs_m.y, self.p_bs_m.z);
         let elbow = shoulder - Vector3::z() * self.upper_arm.length_m;
         [shoulder, elbow, elbow - Vector3::z() * self.forearm.length_m]
     }
 
-    /// The capsules of the standing body, the idle arm hanging, the working arm where `arm` says, and the tool with its
-    /// tip at `p_ht_m` in the hand. Order: head, then each part working side first, the tool last.
+    /// The capsules of the standing body with the working arm at `arm`, and of the tool with its tip at `p_ht_m` in the hand.
+    /// Order: head, then each part working side first, the tool last.
     pub(super) fn capsules(
         &self,
         arm: &ArmFrames,
@@ -195,7 +195,7 @@ impl Body {
         ]
     }
 
-    /// The points spread over the body's surface, in the order of `assets/human/points64.csv`.
+    /// The points on the body's surface, in the order of `assets/human/points64.csv`.
     pub(super) fn points(
         &self,
         arm: &ArmFrames,
@@ -206,18 +206,18 @@ impl Body {
         let upright = Matrix3::identity();
         let [shoulder, elbow, wrist] = self.idle_arm_b();
         let mut points_w = [Point3::origin(); BODY_POINTS];
-        for (point_w, BodyPoint { carrier, position }) in points_w.iter_mut().zip(POINTS.iter()) {
-            let (rotation, origin) = match carrier {
-                Carrier::Body => (&upright, Vector3::zeros()),
-                Carrier::UpperArm(Working) => (&arm.r_bu, arm.p_bs_m),
-                Carrier::Forearm(Working) => (&arm.r_bf, arm.p_be_m),
-                Carrier::Hand(Working) => (&arm.r_bh, arm.p_bw_m),
-                Carrier::UpperArm(Idle) => (&upright, shoulder),
-                Carrier::Forearm(Idle) => (&upright, elbow),
-                Carrier::Hand(Idle) => (&upright, wrist),
+        for (point_w, BodyPoint { segment, position }) in points_w.iter_mut().zip(POINTS.iter()) {
+            let (rotation, origin) = match segment {
+                PointSegment::Body => (&upright, Vector3::zeros()),
+                PointSegment::UpperArm(Working) => (&arm.r_bu, arm.p_bs_m),
+                PointSegment::Forearm(Working) => (&arm.r_bf, arm.p_be_m),
+                PointSegment::Hand(Working) => (&arm.r_bh, arm.p_bw_m),
+                PointSegment::UpperArm(Idle) => (&upright, shoulder),
+                PointSegment::Forearm(Idle) => (&upright, elbow),
+                PointSegment::Hand(Idle) => (&upright, wrist),
             };
             let p_b_m = origin + rotation * position * self.height_m;
-            let of_legs = *carrier == Carrier::Body && p_b_m.z < self.hip_m;
+            let of_legs = *segment == PointSegment::Body && p_b_m.z < self.hip_m;
             *point_w = if of_legs { legs_to_w(&p_b_m) } else { upper_to_w(&p_b_m) };
         }
         points_w
@@ -275,12 +275,12 @@ mod tests {
         let raised = [1.0, 0.5, 0.3, 1.2, 0.4, 0.2, 0.1];
         let capsules = human.capsules_w(&x_wb, &raised);
         let points = human.body_points_w(&x_wb, &raised);
-        for (BodyPoint { carrier, .. }, point) in POINTS.iter().zip(points) {
-            let part = match *carrier {
-                Carrier::Body => continue,
-                Carrier::UpperArm(side) => BodyPart::UpperArm(side),
-                Carrier::Forearm(side) => BodyPart::Forearm(side),
-                Carrier::Hand(side) => BodyPart::Hand(side),
+        for (BodyPoint { segment, .. }, point) in POINTS.iter().zip(points) {
+            let part = match *segment {
+                PointSegment::Body => continue,
+                PointSegment::UpperArm(side) => BodyPart::UpperArm(side),
+                PointSegment::Forearm(side) => BodyPart::Forearm(side),
+                PointSegment::Hand(side) => BodyPart::Hand(side),
             };
             let capsule = capsules.iter().find(|capsule| capsule.name == part).unwrap();
             assert!(distance_m(&point, capsule).abs() < 2.0 * ROUNDING * 1.75, "{part:?}");

@@ -1,8 +1,7 @@
-//! How strong the joints of the arm are.
+//! Strength of the arm's joints (docs/method.md#46-strength).
 //!
-//! The paper took its strengths from Tanaka et al. 2015, whose table is not public. `assets/human/strength.toml` holds
-//! cubics fitted to published measurements, each with its source; its shoulder rows are good to about 30 %. This module
-//! knows nothing of postures or loads.
+//! The paper uses the strengths of Tanaka et al. 2015, whose table is not public. `assets/human/strength.toml` has cubics
+//! fitted to published measurements, each with its source. The error of the shoulder rows is about 30 %.
 
 use std::sync::LazyLock;
 
@@ -13,8 +12,8 @@ use crate::model::scenario::Sex;
 /// Standard deviation of strength among people, as a fraction of the median: La Delfa & Potvin's Arm Force Field.
 const COEFFICIENT_OF_VARIATION: f64 = 0.277;
 
-/// Below this fraction of the median strength no percentile goes: the normal distribution gives the weakest one person
-/// in some 1,700 less (z = -3.25), and no strength at all at z = -3.61.
+/// Minimum fraction of the median strength. The normal distribution gives one person in 1,700 less (z = -3.25), and a negative
+/// strength below z = -3.61.
 const WEAKEST: f64 = 0.1;
 
 /// The sense of a joint's torque or motion.
@@ -47,7 +46,7 @@ struct Table {
     row: [Row; 14],
 }
 
-/// A row's figures; its motion, residual and source are for readers of the file.
+/// A row. Its motion, residual and source are not read.
 #[derive(Deserialize)]
 struct Row {
     range_deg: [f64; 2],
@@ -56,8 +55,8 @@ struct Row {
 }
 
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
-    // The file is part of the program and the tests below read it: a mistake in it cannot be shipped.
-    toml::from_str(include_str!("../../assets/human/strength.toml")).expect("the shipped strengths are sound")
+    // The file is compiled in and the tests below parse it.
+    toml::from_str(include_str!("../../assets/human/strength.toml")).expect("the built-in strengths are valid")
 });
 
 impl Strength {
@@ -87,7 +86,7 @@ impl Strength {
         }
     }
 
-    /// How that torque changes with the joint's angle, N m/rad; zero outside the curve's range.
+    /// Derivative of that torque by the joint's angle, N m/rad; zero outside the curve's range.
     pub fn slope_nm_rad(&self, joint: usize, q_rad: f64, sense: Sense) -> f64 {
         let [positive, negative] = &self.curves[joint];
         match sense {
@@ -112,13 +111,12 @@ impl Curve {
     }
 }
 
-/// Strength at a percentile over the median.
+/// Ratio of the strength at a percentile to the median.
 fn percentile_factor(percentile: f64) -> f64 {
     (1.0 + COEFFICIENT_OF_VARIATION * normal_quantile(percentile / 100.0)).max(WEAKEST)
 }
 
-/// The z with `(1/2) erfc(-z / sqrt 2) = probability`, by bisection of [-10, 10] down to rounding. It runs once a person,
-/// so a library of distributions would buy nothing.
+/// The z with `(1/2) erfc(-z / sqrt 2) = probability`, by bisection of [-10, 10] to rounding. Called once per person.
 fn normal_quantile(probability: f64) -> f64 {
     let (mut low, mut high) = (-10.0, 10.0);
     // 20 / 2^60 is below the spacing of numbers near 1.

@@ -1,24 +1,25 @@
-//! Inverse kinematics of the arm in closed form, and the ranges of its one freedom, the swivel.
+//! Closed-form inverse kinematics of the arm, and the intervals of its redundancy, the swivel angle
+//! (docs/method.md#42-inverse-kinematics-of-the-arm).
 //!
-//! Shoulder and wrist are spherical, so the tool's pose fixes the wrist, the distance from shoulder to wrist fixes the
-//! elbow's angle, and the elbow is left free to turn on a circle about the line from shoulder to wrist.
+//! Shoulder and wrist are spherical, so the tool's pose determines the wrist, and the distance from shoulder to wrist the
+//! elbow's angle. The elbow can move on a circle about the line from shoulder to wrist.
 //!
 //! # The swivel angle
 //! `n` is the unit vector from shoulder to wrist. The reference direction `e1` is that of "down" (-z_B) made perpendicular
-//! to `n`; when `n` is vertical (its horizontal part below 1e-9), "backward" (-x_B) takes the place of "down". The elbow
-//! lies off the line along
+//! to `n`; if `n` is vertical (its horizontal part below 1e-9), "backward" (-x_B) replaces "down". The elbow is off the line
+//! in the direction
 //!
 //! ```text
 //! e(psi) = e1 cos(psi) + e2 sin(psi),    e2 = e1 x n
 //! ```
 //!
-//! so at 0 the elbow is as low as it can be, and a positive swivel lifts it outward, away from the trunk, when the arm
-//! reaches forward. With a straight arm the elbow lies on the line; `e` is then the direction in which it would leave it.
+//! so at 0 the elbow is lowest, and a positive swivel lifts it outward, away from the trunk, when the arm reaches forward.
+//! With a straight arm the elbow is on the line; `e` is then the direction in which it leaves the line.
 //!
-//! # Why the ranges are exact
+//! # Intervals
 //! With the wrist fixed, every element of the shoulder's rotation R_BU and of the wrist's R_FH has the form
-//! `a + b cos(psi) + c sin(psi)`, and so has, after a suitable combination of elements, the condition that a joint stands
-//! at a limit. Each condition has at most two roots, in closed form; between neighbouring roots nothing changes.
+//! `a + b cos(psi) + c sin(psi)`. So has, as a combination of elements, the condition that a joint is at a limit. Each
+//! condition has at most two roots, in closed form, and feasibility is constant between neighbouring roots.
 
 use std::f64::consts::{PI, TAU};
 
@@ -29,23 +30,23 @@ use nalgebra::{Matrix3, Vector3};
 use super::arm::{Arm, ArmAngles};
 use crate::model::frames::Pose;
 
-/// How far outside its range a joint may come out and still count as at its limit, rad: the error of angles computed at
-/// the end of a swivel range. The angle is then set to the limit.
+/// Tolerance of joint limits, rad: the error of angles at the end of a swivel interval. Angles beyond a limit by less are set
+/// to the limit.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
-/// How far a cosine may leave [-1, 1] by rounding, relative: at full reach, or where a joint just touches a limit.
+/// Tolerance of cosines outside [-1, 1] by rounding: at full reach, or where a joint just touches a limit.
 const COSINE_TOLERANCE: f64 = 1e-12;
 
 /// Sine of the angle between arm and vertical below which the reference direction of the swivel changes.
 const VERTICAL: f64 = 1e-9;
 
-/// Limit conditions (two for each joint but the elbow), each with at most two roots, and both ends of the circle.
+/// Two limits of each joint but the elbow, each with at most two roots, and both ends of the circle.
 const MAX_BREAKS: usize = 6 * 2 * 2 + 2;
 
-/// Both branches, each with at most every second stretch between breaks.
+/// Both branches, each with at most every second interval between breaks.
 const MAX_INTERVALS: usize = MAX_BREAKS;
 
-/// Which of the shoulder's two ways to reach a given orientation.
+/// One of the shoulder's two solutions for an orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShoulderBranch {
     /// Abduction of at most 90 degrees.
@@ -59,24 +60,24 @@ impl ShoulderBranch {
     pub const ALL: [Self; 2] = [Self::Low, Self::High];
 }
 
-/// A range of swivel angles in which the arm is inside its limits.
+/// An interval of swivel angles within the joint limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwivelInterval {
-    /// The shoulder's branch for which the range holds.
+    /// The shoulder's branch.
     pub branch: ShoulderBranch,
     /// First angle, rad, in [-pi, pi].
     pub from_rad: f64,
-    /// Last angle, rad, at least `from_rad`; beyond pi when the range crosses the circle's end.
+    /// Last angle, rad, at least `from_rad`; beyond pi if the interval crosses pi.
     pub to_rad: f64,
 }
 
-/// At most one solution a branch: the wrist's second way lies outside any human limits, and the elbow bends one way.
+/// At most one solution per branch: the wrist's second solution is outside human limits, and the elbow bends one way.
 pub type ArmSolutions = ArrayVec<ArmAngles, 2>;
 
-/// All ranges of both branches.
+/// All intervals of both branches.
 pub type SwivelIntervals = ArrayVec<SwivelInterval, MAX_INTERVALS>;
 
-/// The arm with its tool at a given pose: everything about the posture but the swivel.
+/// The solutions of the arm for one tool pose, as functions of the swivel.
 #[derive(Clone, Debug)]
 pub struct SwivelCircle {
     /// Elbow flexion, rad.
@@ -96,14 +97,14 @@ struct Harmonic {
     sin: Matrix3<f64>,
 }
 
-/// The reference directions of the swivel about a unit vector: e1 and e2 of the module's text.
+/// The reference directions of the swivel about a unit vector: e1 and e2 of the module documentation.
 fn reference_directions(n: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let reference = if hypot(n.x, n.y) < VERTICAL { -Vector3::x() } else { -Vector3::z() };
     let e1 = (reference - n * n.dot(&reference)).normalize();
     (e1, e1.cross(n))
 }
 
-/// In the upper arm's frame U: the wrist's direction from the shoulder, and the direction of the elbow off that line.
+/// In the upper arm's frame U: direction from shoulder to wrist, and direction of the elbow off that line.
 fn planar_directions(arm: &Arm, elbow_rad: f64) -> (Vector3<f64>, Vector3<f64>) {
     let (sin, cos) = sincos(elbow_rad);
     let n_u = Vector3::new(arm.forearm_m * sin, 0.0, -arm.upper_arm_m - arm.forearm_m * cos).normalize();
@@ -111,7 +112,7 @@ fn planar_directions(arm: &Arm, elbow_rad: f64) -> (Vector3<f64>, Vector3<f64>) 
 }
 
 impl Arm {
-    /// The swivel angle of a posture, rad, in [-pi, pi]; the module's text defines it.
+    /// The swivel angle of a posture, rad, in [-pi, pi].
     pub fn swivel_rad(&self, q_rad: &ArmAngles) -> f64 {
         let r_bu = self.frames(q_rad).r_bu;
         let (n_u, e_u) = planar_directions(self, q_rad[3]);
@@ -120,8 +121,7 @@ impl Arm {
         atan2(elbow.dot(&e2), elbow.dot(&e1))
     }
 
-    /// The postures that put the tool's tip at `x_bt`, as a function of the swivel; none when the wrist is out of reach
-    /// or the elbow's angle out of its range.
+    /// The solutions for the tool pose `x_bt`; `None` if the wrist is out of reach or the elbow out of its range.
     pub fn swivel_circle(&self, x_bt: &Pose) -> Option<SwivelCircle> {
         let x_bh = x_bt * self.x_ht.inverse();
         let line = x_bh.translation.vector - self.p_bs_m;
@@ -164,7 +164,7 @@ impl Harmonic {
     }
 
     /// The swivel angles at which a linear function of the matrix, plus `offset`, is zero: with amplitude r and phase f,
-    /// `a + r cos(psi - f) = 0`. A function that misses zero by rounding only counts as touching it.
+    /// `a + r cos(psi - f) = 0`. A function that misses zero by rounding counts as touching it.
     fn roots(&self, offset: f64, function: impl Fn(&Matrix3<f64>) -> f64) -> ArrayVec<f64, 2> {
         let constant = function(&self.constant) + offset;
         let (cos, sin) = (function(&self.cos), function(&self.sin));
@@ -178,14 +178,14 @@ impl Harmonic {
 }
 
 impl SwivelCircle {
-    /// The posture of one branch at this swivel angle; none outside the joints' limits.
+    /// The solution of one branch at a swivel angle; `None` outside the joint limits.
     pub fn solution(&self, swivel_rad: f64, branch: ShoulderBranch) -> Option<ArmAngles> {
         let [q5, q6, q7] = self.wrist_angles(swivel_rad)?;
         let [q1, q2, q3] = self.shoulder_angles(&self.shoulder.at(swivel_rad), branch)?;
         Some([q1, q2, q3, self.elbow_rad, q5, q6, q7])
     }
 
-    /// The postures of both branches at this swivel angle that are inside the joints' limits.
+    /// The solutions of both branches at a swivel angle, within the joint limits.
     pub fn solutions(&self, swivel_rad: f64) -> ArmSolutions {
         let Some([q5, q6, q7]) = self.wrist_angles(swivel_rad) else { return ArmSolutions::new() };
         let r_bu = self.shoulder.at(swivel_rad);
@@ -193,8 +193,7 @@ impl SwivelCircle {
         shoulders.map(|[q1, q2, q3]| [q1, q2, q3, self.elbow_rad, q5, q6, q7]).collect()
     }
 
-    /// The ranges of the swivel inside all joints' limits, low branch first, in ascending order; isolated angles are left
-    /// out.
+    /// The intervals of the swivel within all joint limits, low branch first, in ascending order, without isolated angles.
     pub fn intervals(&self) -> SwivelIntervals {
         let breaks = self.breaks();
         let mut intervals = SwivelIntervals::new();
@@ -215,15 +214,15 @@ impl SwivelCircle {
         intervals
     }
 
-    /// Where a joint meets a limit, in ascending order, between the circle's ends -pi and pi.
+    /// Angles at which a joint is at a limit, and -pi and pi, in ascending order.
     fn breaks(&self) -> ArrayVec<f64, MAX_BREAKS> {
         let mut breaks = ArrayVec::from_iter([-PI, PI]);
         for (joint, limits) in self.limits_rad.iter().enumerate() {
             for &limit in limits {
                 let (s, c) = sincos(limit);
                 let (r, w) = (&self.shoulder, &self.wrist);
-                // The condition of METHOD section 4's chain: see `shoulder_angles` and `wrist_angles`. Roots at which
-                // the angle is off by pi are harmless, they only split a range that is joined again.
+                // See `shoulder_angles` and `wrist_angles`. Roots at which the angle is off by pi only split an interval,
+                // which is joined again.
                 breaks.extend(match joint {
                     0 => r.roots(0.0, |r| r.m13 * c + r.m33 * s),
                     1 => r.roots(-s, |r| r.m23),
@@ -242,7 +241,7 @@ impl SwivelCircle {
     /// The angles of `R_BU = Ry(-q1) Rx(-q2) Rz(q3)`: its middle row is `(cos q2 sin q3, cos q2 cos q3, sin q2)`, its last
     /// column `(-sin q1 cos q2, sin q2, cos q1 cos q2)`.
     fn shoulder_angles(&self, r_bu: &Matrix3<f64>, branch: ShoulderBranch) -> Option<[f64; 3]> {
-        // Not the arcsine of m23, which loses half of the digits at 90 degrees.
+        // The arcsine of m23 would lose half of the digits at 90 degrees.
         let horizontal = hypot(r_bu.m13, r_bu.m33);
         let (cos_q2, sign) = match branch {
             ShoulderBranch::Low => (horizontal, 1.0),
@@ -251,8 +250,8 @@ impl SwivelCircle {
         let q2 = within(atan2(r_bu.m23, cos_q2), &self.limits_rad[1])?;
         let flexion = atan2(-r_bu.m13 * sign, r_bu.m33 * sign);
         let q1 = within(flexion, &self.limits_rad[0])?;
-        // q3 from what q1 leaves over, not from the middle row: at 90 degrees of abduction, where q1 and q3 turn about
-        // one axis, their sum is still exact.
+        // q3 from the rotation that remains after q1, not from the middle row: at 90 degrees of abduction, where q1 and q3
+        // have the same axis, their sum stays exact.
         let (sin, cos) = sincos(q1);
         let (x, y) = (r_bu.m11 * cos + r_bu.m31 * sin, r_bu.m12 * cos + r_bu.m32 * sin);
         let q3 = within(atan2(-y, x), &self.limits_rad[2])?;
@@ -260,7 +259,7 @@ impl SwivelCircle {
     }
 
     /// The angles of `R_FH = Rz(q5) Rx(q6) Ry(q7)`: its last row is `(-cos q6 sin q7, sin q6, cos q6 cos q7)`, its middle
-    /// column `(-sin q5 cos q6, cos q5 cos q6, sin q6)`. With |q6| < 90 degrees there is one way.
+    /// column `(-sin q5 cos q6, cos q5 cos q6, sin q6)`. With |q6| < 90 degrees the solution is unique.
     fn wrist_angles(&self, swivel_rad: f64) -> Option<[f64; 3]> {
         let r_fh = self.wrist.at(swivel_rad);
         let q6 = within(asin(r_fh.m32.clamp(-1.0, 1.0)), &self.limits_rad[5])?;
@@ -270,7 +269,7 @@ impl SwivelCircle {
     }
 }
 
-/// The angle, turned by whole circles into its range and set to the limit that it misses by rounding; none outside.
+/// The angle modulo full turns within its range, and at the limit that it misses by rounding; `None` if outside.
 fn within(angle_rad: f64, &[low, high]: &[f64; 2]) -> Option<f64> {
     let lowest = low - LIMIT_TOLERANCE_RAD;
     let angle = if angle_rad < lowest { angle_rad + TAU } else { angle_rad };
@@ -285,7 +284,7 @@ fn wrapped(angle_rad: f64) -> f64 {
     angle.clamp(-PI, PI)
 }
 
-/// Makes one range of the two that meet at the circle's end, of those from index `start`.
+/// Joins the two intervals from index `start` on that meet at pi.
 fn join_across_the_end(intervals: &mut SwivelIntervals, start: usize) {
     let several = intervals.len() > start + 1;
     if several && intervals[start].from_rad == -PI && intervals[intervals.len() - 1].to_rad == PI {
@@ -371,7 +370,7 @@ mod tests {
             let swivel_rad = generator.random_range(-PI..PI);
             for q_rad in arm.swivel_circle(&x_bt).unwrap().solutions(swivel_rad) {
                 assert!(arm.within_limits(&q_rad));
-                // A dozen rotations of order one; METHOD section 4 asks for 1e-9.
+                // A dozen rotations of order one; docs/method.md#42-inverse-kinematics-of-the-arm requires 1e-9.
                 assert_abs_diff_eq!(arm.tool_pose_b(&q_rad), x_bt, epsilon = 1e-13);
                 let turned = (arm.swivel_rad(&q_rad) - swivel_rad).rem_euclid(TAU);
                 assert!(turned.min(TAU - turned) < 1e-9, "{turned}");

@@ -9,7 +9,7 @@ use crate::model::{
     scenario::{Hand, Person, Sex},
 };
 
-/// The person of METHOD section 4.
+/// The person of docs/method.md#43-body-dimensions.
 pub(super) fn average_man() -> Person {
     Person { height_m: 1.75, mass_kg: 75.0, sex: Sex::Male, hand: Hand::Right, percentile: 50.0, lean_deg: 0.0 }
 }

@@ -1,4 +1,4 @@
-//! What holds for the whole person: invariances that no part can show alone.
+//! Invariances of the whole person.
 
 use std::f64::consts::PI;
 
@@ -74,12 +74,12 @@ proptest! {
     }
 
     #[test]
-    fn a_left_handed_person_finds_every_posture_again(fractions in fractions()) {
+    fn the_inverse_kinematics_of_a_left_handed_person_finds_every_posture(fractions in fractions()) {
         let left = worker(Hand::Left, OperationKind::Drill);
         let q_rad = posture(&left, fractions);
         let x_bt = left.tool_pose_b(&q_rad);
         let swivel_rad = left.swivel_rad(&q_rad);
-        let covered = left.swivel_intervals(&x_bt).iter().any(|interval| {
+        let covered = left.swivel_circle(&x_bt).unwrap().intervals().iter().any(|interval| {
             // Sampled fractions include postures on a limit, at the very end of a range.
             (swivel_rad - interval.from_rad + 1e-6).rem_euclid(2.0 * PI) <= interval.to_rad - interval.from_rad + 2e-6
         });
@@ -93,7 +93,7 @@ proptest! {
     }
 
     #[test]
-    fn only_the_relative_placement_counts(
+    fn only_the_relative_placement_matters(
         fractions in fractions(),
         components in prop::array::uniform6(-30.0..30.0),
         move_by in prop::array::uniform3(-3.0..3.0),
@@ -169,7 +169,7 @@ fn leaning_brings_the_shoulder_forward_about_the_hips() {
 }
 
 #[test]
-fn all_that_is_above_the_hips_leans_and_the_legs_stand() {
+fn parts_above_the_hips_lean_and_the_legs_do_not() {
     let (upright, leaning) = (worker(Hand::Right, OperationKind::Drill), leaning(Hand::Right, 10.0));
     let (x_wb, q_rad) = (standing_pose_w(1.0, 0.2, 2.0, -0.9), [0.6, 0.3, 0.2, 1.2, 0.3, 0.1, 0.05]);
     let lean_w = x_wb * leaning.body().x_bv() * x_wb.inverse();
@@ -194,7 +194,7 @@ fn all_that_is_above_the_hips_leans_and_the_legs_stand() {
 }
 
 #[test]
-fn a_leaning_person_reaches_where_the_angles_say_and_feels_gravity_in_the_world() {
+fn kinematics_and_torques_of_a_leaning_person() {
     for hand in [Hand::Right, Hand::Left] {
         let (human, mut generator) = (leaning(hand, 12.0), generator(31));
         let x_wb = standing_pose_w(1.0, 0.2, 2.0, -0.9);
@@ -214,7 +214,7 @@ fn a_leaning_person_reaches_where_the_angles_say_and_feels_gravity_in_the_world(
             }
         }
     }
-    // The trunk leans by 15 degrees and the arm is flexed by as much: upper arm and forearm hang vertically, and carry nothing.
+    // The trunk leans by 15 degrees and the arm is flexed by as much, so upper arm and forearm hang vertically without torque.
     let lean_rad = 15_f64.to_radians();
     let hanging = [lean_rad, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let torques = leaning(Hand::Right, 15.0).joint_torques(&hanging, &Pose::identity(), &Wrench::default());
@@ -222,7 +222,7 @@ fn a_leaning_person_reaches_where_the_angles_say_and_feels_gravity_in_the_world(
 }
 
 #[test]
-fn nobody_leans_backward_or_too_far() {
+fn leaning_backward_or_too_far_is_an_error() {
     for lean_deg in [-1.0, 15.5, f64::NAN] {
         let person = Person { lean_deg, ..average_man() };
         let error = Human::new(&person, &default_tool(OperationKind::Drill)).unwrap_err();
@@ -231,7 +231,7 @@ fn nobody_leans_backward_or_too_far() {
 }
 
 #[test]
-fn the_weaker_feel_the_same_load_more() {
+fn a_weaker_person_has_less_comfort_under_the_same_load() {
     let tool = default_tool(OperationKind::Drill);
     let x_wb = standing_pose_w(1.2, 0.0, PI, -0.9);
     let w = Wrench::from_force(Vector3::new(-15.0, 0.0, 0.0));
@@ -250,7 +250,7 @@ fn the_weaker_feel_the_same_load_more() {
 }
 
 #[test]
-fn figures_that_no_person_has_are_refused() {
+fn invalid_persons_and_tools_are_errors() {
     let tool = default_tool(OperationKind::Drill);
     let refused = |person: Person, tool: Tool| Human::new(&person, &tool).unwrap_err().to_string();
     let message = refused(Person { height_m: -1.75, ..average_man() }, tool);

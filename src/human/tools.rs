@@ -1,4 +1,4 @@
-//! The tools that a scenario gets when it names none.
+//! The default tools of a scenario.
 
 use std::sync::LazyLock;
 
@@ -15,11 +15,11 @@ struct Tools {
 }
 
 static TOOLS: LazyLock<Tools> = LazyLock::new(|| {
-    // The file is part of the program and a test reads it: a mistake in it cannot be shipped.
-    toml::from_str(include_str!("../../assets/human/tools.toml")).expect("the shipped tools are sound")
+    // The file is compiled in and a test parses it.
+    toml::from_str(include_str!("../../assets/human/tools.toml")).expect("the built-in tools are valid")
 });
 
-/// The tool for this kind of operation (METHOD section 4): a knife for a cut, a drill for everything else.
+/// The tool for an operation (docs/method.md#44-tools-in-the-hand): a knife for a cut, a drill otherwise.
 pub fn default_tool(kind: OperationKind) -> Tool {
     match kind {
         OperationKind::Cut => TOOLS.knife,
@@ -39,7 +39,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tools_point_as_the_method_says() {
+    fn the_axes_of_the_tools_are_those_of_the_method() {
         let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
         // A quaternion of 16 digits: its matrix is good to a few roundings.
         assert!((axes_h(OperationKind::Drill) - Matrix3::from_columns(&[x, -y, -z])).norm() < 1e-15);

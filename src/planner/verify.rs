@@ -5,12 +5,12 @@
 //! collision model and stability program are those of the search; its way of choosing and placing is not.
 
 use crate::{
-    check::{CheckedPlan, FIGURE_TOLERANCE, Flaw},
+    check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
     collision::CollisionModel,
     comfort,
     human::Human,
     model::{
-        plan::{Comfort, HumanPosture, MeanComfort, Plan},
+        plan::{Comfort, MeanComfort, Plan},
         scenario::{ResponseKind, Scenario, StabilityKind},
     },
     robot::Robot,
@@ -31,28 +31,27 @@ pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Vec<Flaw> {
     };
     let mut flaws = checked.inexact();
     verify_stability(&checked, scenario, &mut flaws);
-    match (&plan.human, &checked.human, &plan.comfort) {
-        (Some(posture), Some(human), Some(stated)) => {
-            verify_comfort(&checked, posture, human, stated, scenario, &mut flaws);
+    match (checked.person(), &plan.comfort) {
+        (Some(person), Some(stated)) => {
+            verify_comfort(&checked, person, stated, scenario, &mut flaws);
             flaws.extend(checked.first_contact().map(Flaw::Contact));
         }
-        (None, ..) | (_, None, _) => flaws.push(Flaw::Missing { key: "human" }),
-        (.., None) => flaws.push(Flaw::Missing { key: "comfort" }),
+        (None, _) => flaws.push(Flaw::Missing { key: "human" }),
+        (_, None) => flaws.push(Flaw::Missing { key: "comfort" }),
     }
     flaws
 }
 
 fn verify_comfort(
     checked: &CheckedPlan<'_>,
-    posture: &HumanPosture,
-    human: &Human,
+    CheckedPerson { posture, human }: &CheckedPerson<'_>,
     stated: &Comfort,
     scenario: &Scenario,
     flaws: &mut Vec<Flaw>,
 ) {
-    let plan = checked.plan;
+    let plan = checked.plan();
     let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
-    let points_w = comfort::robot_points_w(checked.robot, &checked.link_poses);
+    let points_w = comfort::robot_points_w(checked.robot(), checked.link_poses());
     let mut found =
         comfort::posture_comfort(human, &scenario.comfort, &points_w, &posture.x_wb, &posture.q_rad, &wrench_w);
     let strongest = found.activations.iter().copied().fold(0.0, f64::max);
@@ -78,7 +77,7 @@ fn verify_comfort(
     }
     for (key, stated, computed) in figures {
         let scale = stated.abs().max(computed.abs()).max(1.0);
-        if (stated - computed).abs() > FIGURE_TOLERANCE * scale {
+        if !agrees(stated, computed, FIGURE_TOLERANCE * scale) {
             flaws.push(Flaw::Figure { key, stated, computed });
         }
     }
@@ -93,17 +92,17 @@ fn mean_response(
 ) -> Option<MeanComfort> {
     comfort::mean_response(&comfort::ResponseQuery {
         human,
-        collision: &CollisionModel::new(checked.robot),
+        collision: &CollisionModel::new(checked.robot()),
         settings: scenario.comfort,
-        operation: checked.plan.operation,
-        floor_z_m: checked.robot.floor_z_m,
+        operation: checked.plan().operation,
+        floor_z_m: checked.robot().floor_z_m,
         robot_points_w,
         scene: checked.scene(),
     })
 }
 
 fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut Vec<Flaw>) {
-    let Some(stated) = &checked.plan.stability else { return flaws.push(Flaw::Missing { key: "stability" }) };
+    let Some(stated) = &checked.plan().stability else { return flaws.push(Flaw::Missing { key: "stability" }) };
     let found = ContactModel::of_plan(checked, scenario.grip.friction)
         .and_then(|model| StabilityWorkspace::new().predict(&model, &scenario.limits));
     let found = match found {
@@ -128,9 +127,26 @@ fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut 
         ("stability.load_factor", stated.load_factor, found.load_factor),
         ("stability.predicted_deflection_mm", stated.predicted_deflection_mm, found.predicted_deflection_mm),
     ] {
-        let differs = (stated - computed).abs() > SOLVER_TOLERANCE * computed.max(1.0);
-        if differs || stated.is_nan() {
+        if !agrees(stated, computed, SOLVER_TOLERANCE * computed.max(1.0)) {
             flaws.push(Flaw::Figure { key, stated, computed });
+        }
+    }
+}
+
+/// True if a stated figure is the recomputed one within a tolerance; false if one of them is not a number.
+fn agrees(stated: f64, computed: f64, tolerance: f64) -> bool {
+    (stated - computed).abs() <= tolerance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::agrees;
+
+    #[test]
+    fn a_figure_that_is_not_a_finite_number_never_agrees() {
+        assert!(agrees(1.0, 1.0 + 1e-9, 1e-6) && !agrees(1.0, 1.1, 1e-6));
+        for [stated, computed] in [[f64::NAN, 1.0], [1.0, f64::NAN], [f64::INFINITY; 2], [f64::NAN; 2]] {
+            assert!(!agrees(stated, computed, 1e-6), "{stated} {computed}");
         }
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// A recording cannot be written or read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecordError {
     /// The trace has an arm that the robot does not have.
     #[error("found arm \"{found}\" in the trace, expected one of {expected}")]

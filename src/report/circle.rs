@@ -21,6 +21,7 @@ fn comforts(plan: &Plan) -> Option<[f64; 3]> {
 }
 
 /// One row per strategy and point; the figures are empty if the strategy does not cover the point.
+#[must_use]
 pub fn csv(strategies: &[Strategy<'_>]) -> String {
     let header = [
         "way",
@@ -56,6 +57,7 @@ pub fn csv(strategies: &[Strategy<'_>]) -> String {
 
 /// One row per step: the points that it is between, the board's pose in the world (m, unit quaternion with the scalar last) and
 /// the joint angles, rad.
+#[must_use]
 pub fn motion_csv(joints: &[String], motions: &[Vec<Step>]) -> String {
     let header = ["from_point", "to_point", "step", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"].map(str::to_owned);
     let header: Vec<_> = header.into_iter().chain(joints.iter().map(|joint| format!("{joint}_rad"))).collect();
@@ -71,6 +73,7 @@ pub fn motion_csv(joints: &[String], motions: &[Vec<Step>]) -> String {
 
 /// One line per strategy: number of points that it covers, worst objective, mean objective and comforts, and the mean ratio of
 /// its objective to that of the last strategy, over the points that both cover.
+#[must_use]
 pub fn table(strategies: &[Strategy<'_>]) -> String {
     let header = ["way", "points", "worst", "mean", "muscular", "peripersonal m", "kept %"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];

@@ -12,6 +12,7 @@ use crate::model::verdict::{Check, CheckKind, Verdict};
 const NO_FIGURE: &str = "-";
 
 /// One outcome in a line: `FAIL  cut-03: expected holds, found deflects: ...`.
+#[must_use]
 pub fn line(outcome: &Outcome) -> String {
     let text = match outcome {
         Outcome::Judged { verdict, .. } if verdict.met => format!("{}: {}", verdict.verdict, explanation(verdict)),
@@ -24,6 +25,7 @@ pub fn line(outcome: &Outcome) -> String {
 ///
 /// The column `load` is the predicted compliant load factor of the plan. `wall_s` is the duration of each scenario, s, if
 /// known.
+#[must_use]
 pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     let header = [
         "scenario",
@@ -50,6 +52,7 @@ pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
 
 /// The details of one verdict: every check with value, limit and margin, the joints with the highest torque ratios, and the
 /// path of the recording.
+#[must_use]
 pub fn details(verdict: &Verdict, recording: Option<&Path>) -> String {
     let mut text = format!("{}: {}, expected {}: {}\n", verdict.name, verdict.verdict, verdict.expected, met(verdict));
     if !verdict.checks.is_empty() {
@@ -110,6 +113,7 @@ fn check_row(check: &Check) -> Vec<String> {
 }
 
 /// `5 scenarios: 1 ok, 2 failed, 1 crashed, 1 skipped`.
+#[must_use]
 pub fn count(outcomes: &[Outcome]) -> String {
     let parts = Status::ALL.map(|status| (number_of(outcomes, status), status.name()));
     let counts: Vec<_> =

@@ -30,6 +30,7 @@ const SERIES: [Series; 2] = [
 ];
 
 /// The curve as CSV: one row per point and way of standing; the figures are empty if the person has no solution.
+#[must_use]
 pub fn csv(curve: &Curve) -> String {
     let header = [
         "point",
@@ -61,6 +62,7 @@ const AREA_PX: [f64; 4] = [64.0, 784.0, 64.0, 360.0];
 
 /// The curve as SVG: for each point and way of standing a bar from the worst to the best comfort, or a cross if the person
 /// has no solution.
+#[must_use]
 pub fn svg(curve: &Curve) -> String {
     let [left, right, top, bottom] = AREA_PX;
     let highest = curve.points.iter().flat_map(|point| [point.free, point.fixed]).flatten();

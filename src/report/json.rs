@@ -6,16 +6,19 @@ use super::Outcome;
 use crate::model::{plan::Plan, verdict::Verdict};
 
 /// A plan as an object, with a final newline.
+#[must_use]
 pub fn plan(plan: &Plan) -> String {
     pretty(plan)
 }
 
 /// A verdict as an object, with a final newline.
+#[must_use]
 pub fn verdict(verdict: &Verdict) -> String {
     pretty(verdict)
 }
 
 /// The verdicts of a run as an array, in order. Scenarios that crashed or were skipped have no verdict and are left out.
+#[must_use]
 pub fn verdicts(outcomes: &[Outcome]) -> String {
     pretty(&outcomes.iter().filter_map(Outcome::verdict).collect::<Vec<_>>())
 }

@@ -96,6 +96,7 @@ impl Status {
     pub const ALL: [Self; 4] = [Self::Ok, Self::Failed, Self::Crashed, Self::Skipped];
 
     /// The name in files and in the summary line of a table.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Ok => "ok",
@@ -106,6 +107,7 @@ impl Status {
     }
 
     /// The word in a table, in capitals for failures and errors.
+    #[must_use]
     pub fn mark(self) -> &'static str {
         match self {
             Self::Ok => "ok",
@@ -118,6 +120,7 @@ impl Status {
 
 impl Outcome {
     /// The scenario's or plan's name.
+    #[must_use]
     pub fn name(&self) -> &str {
         match self {
             Self::Judged { verdict, .. } => &verdict.name,
@@ -126,6 +129,7 @@ impl Outcome {
     }
 
     /// The status.
+    #[must_use]
     pub fn status(&self) -> Status {
         match self {
             Self::Judged { verdict, .. } if verdict.met => Status::Ok,
@@ -136,6 +140,7 @@ impl Outcome {
     }
 
     /// The verdict, if it was judged.
+    #[must_use]
     pub fn verdict(&self) -> Option<&Verdict> {
         match self {
             Self::Judged { verdict, .. } => Some(verdict),
@@ -144,6 +149,7 @@ impl Outcome {
     }
 
     /// The outcome in one line, such as `expected holds, found slips: ...`.
+    #[must_use]
     pub fn sentence(&self) -> String {
         match self {
             Self::Judged { verdict, .. } if verdict.met => explanation(verdict),
@@ -163,6 +169,7 @@ fn number_of(outcomes: &[Outcome], status: Status) -> usize {
 
 /// The check that decided the verdict, such as `deflection 16.20 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of the
 /// load`.
+#[must_use]
 pub fn explanation(verdict: &Verdict) -> String {
     if let Some(reason) = &verdict.reason {
         return reason.clone();

@@ -4,6 +4,7 @@ use super::console::aligned;
 use crate::model::{grasp::Edge, plan::Plan};
 
 /// One line per plan: the edges that the arms hold, comforts, load factors.
+#[must_use]
 pub fn table(plans: &[Plan]) -> String {
     let header = ["plan", "edges", "objective", "muscular", "peripersonal m", "load", "compliant load"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
@@ -25,6 +26,7 @@ pub fn table(plans: &[Plan]) -> String {
 }
 
 /// The edges that the arms hold: `left +x, right -x`.
+#[must_use]
 pub fn edges(plan: &Plan) -> String {
     let edge = |x_og| Edge::of(x_og, plan.object.size_m).map_or("-".to_owned(), |edge| edge.to_string());
     let holds: Vec<_> = plan.arms.iter().map(|arm| format!("{} {}", arm.name, edge(&arm.x_og))).collect();

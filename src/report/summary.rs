@@ -50,6 +50,7 @@ struct Entry<'a> {
 }
 
 /// `summary.json`: counts, and an object with figures per scenario; missing figures are null.
+#[must_use]
 pub fn json(outcomes: &[Outcome]) -> String {
     let [ok, failed, crashed, skipped] = Status::ALL.map(|status| number_of(outcomes, status));
     pretty(&Summary {

@@ -23,6 +23,7 @@ pub struct Claim {
 }
 
 /// All claims for which there are figures.
+#[must_use]
 pub fn claims(reproduction: &Reproduction) -> Vec<Claim> {
     let rows = table::rows(reproduction.holds.iter());
     let mut claims = Vec::new();
@@ -123,6 +124,7 @@ fn simulated(reproduction: &Reproduction) -> Option<Claim> {
 }
 
 /// True if the plan was simulated and its verdict is `holds`.
+#[must_use]
 pub fn holds(hold: &HoldRow) -> bool {
     hold.verdict.as_ref().is_some_and(|verdict| verdict.verdict == VerdictKind::Holds)
 }

@@ -15,6 +15,7 @@ pub(super) fn cell(value: Option<f64>) -> String {
 }
 
 /// `table1.csv`: the paper's Table I. The random planner's figures are means over all seeds.
+#[must_use]
 pub fn table1(reproduction: &Reproduction) -> String {
     let rows = table::rows(reproduction.holds.iter()).into_iter().map(|row| {
         vec![
@@ -42,6 +43,7 @@ pub fn table1(reproduction: &Reproduction) -> String {
 }
 
 /// `plans.csv`: the plans with the first seed. `muscular` is the regularised comfort.
+#[must_use]
 pub fn plans(reproduction: &Reproduction) -> String {
     let rows = reproduction.first_seeds().map(|hold| {
         let (comfort, stability) = (hold.comfort(), hold.plan.as_ref().and_then(|plan| plan.stability.as_ref()));
@@ -63,6 +65,7 @@ pub fn plans(reproduction: &Reproduction) -> String {
 
 /// `physics.csv` and `best_case.csv`: the simulated plans. `load_factor_simulated` is the largest load factor that holds;
 /// empty if it was not searched.
+#[must_use]
 pub fn physics<'a>(holds: impl Iterator<Item = &'a HoldRow>) -> String {
     let rows = holds.map(|hold| {
         let predicted_mm = hold.plan.as_ref().and_then(|plan| Some(plan.stability.as_ref()?.predicted_deflection_mm));
@@ -95,6 +98,7 @@ pub fn physics<'a>(holds: impl Iterator<Item = &'a HoldRow>) -> String {
 }
 
 /// `random.csv`: every plan of the random planner.
+#[must_use]
 pub fn random(reproduction: &Reproduction) -> String {
     let draws = reproduction.holds.iter().filter(|hold| hold.planner == PlannerKind::Random).map(|hold| {
         let comfort = hold.comfort();
@@ -110,6 +114,7 @@ pub fn random(reproduction: &Reproduction) -> String {
 }
 
 /// `sensitivity.csv`: Table I under each assumption.
+#[must_use]
 pub fn sensitivity(reproduction: &Reproduction) -> String {
     let rows = reproduction.sensitivity.iter().flat_map(|variant| {
         table::rows(variant.holds.iter()).into_iter().map(|row| {
@@ -141,6 +146,7 @@ pub fn sensitivity(reproduction: &Reproduction) -> String {
 }
 
 /// `timing.csv`: durations of planning and simulation. They differ between runs.
+#[must_use]
 pub fn timing(reproduction: &Reproduction) -> String {
     let of = |hold: &HoldRow| {
         vec![

@@ -45,24 +45,28 @@ pub struct HoldRow {
 
 impl HoldRow {
     /// The comfort of the plan.
+    #[must_use]
     pub fn comfort(&self) -> Option<&Comfort> {
         self.plan.as_ref()?.comfort.as_ref()
     }
 
     /// The regularised muscular comfort by which plans are compared: the mean over the person's responses if the plan has one,
     /// else that of the best response.
+    #[must_use]
     pub fn muscular(&self) -> Option<f64> {
         let comfort = self.comfort()?;
         Some(comfort.average.map_or(comfort.muscular_regularised, |average| average.muscular_regularised))
     }
 
     /// As [`Self::muscular`], for the peripersonal comfort as a sum over the body points, the scale of the paper's captions.
+    #[must_use]
     pub fn peripersonal_scaled(&self) -> Option<f64> {
         let comfort = self.comfort()?;
         comfort.average.map_or(comfort.peripersonal_scaled, |average| Some(BODY_POINTS as f64 * average.peripersonal_m))
     }
 
     /// The worst value of a check in simulation.
+    #[must_use]
     pub fn value(&self, check: CheckKind) -> Option<f64> {
         self.verdict.as_ref()?.check(check).map(|check| check.value)
     }
@@ -101,11 +105,13 @@ impl Reproduction {
     }
 
     /// The result of a planner for an operation, with the first seed.
+    #[must_use]
     pub fn hold(&self, operation: &str, planner: PlannerKind) -> Option<&HoldRow> {
         self.first_seeds().find(|hold| hold.operation == operation && hold.planner == planner)
     }
 
     /// The operation that is drawn: one from the middle of the circle or of the grid if there is a result, else the first.
+    #[must_use]
     pub fn drawn(&self, kind: OperationKind) -> Option<&str> {
         let preferred = if kind == OperationKind::Cut { "cut-05" } else { "drill-5" };
         let mut of_kind = self.first_seeds().filter(|hold| hold.kind == kind);
@@ -118,6 +124,7 @@ impl Reproduction {
 pub const KINDS: [OperationKind; 2] = [OperationKind::Cut, OperationKind::Drill];
 
 /// The name of a kind of operation in the tables.
+#[must_use]
 pub fn task(kind: OperationKind) -> &'static str {
     match kind {
         OperationKind::Cut => "cutting",

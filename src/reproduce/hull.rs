@@ -10,6 +10,7 @@ fn turn(a: Point2, b: Point2, c: Point2) -> f64 {
 
 /// The corners of the convex hull in counter-clockwise order, by Andrew's monotone chain (A. M. Andrew, "Another
 /// efficient algorithm for convex hulls in two dimensions", 1979).
+#[must_use]
 pub fn convex_hull(mut points: Vec<Point2>) -> Vec<Point2> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut hull = half(points.iter().copied());

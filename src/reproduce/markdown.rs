@@ -20,6 +20,7 @@ use crate::{
 // Writing to a string does not fail, so the results of `writeln!` are ignored.
 
 /// The report. It refers to pictures and CSV files in the same folder.
+#[must_use]
 pub fn report(reproduction: &Reproduction) -> String {
     let mut text = String::from("# The paper, reproduced and verified in simulation\n\n");
     text.push_str(
@@ -257,11 +258,13 @@ fn failures<'a>(text: &mut String, holds: impl Iterator<Item = &'a HoldRow>) {
 }
 
 /// The file name of a picture.
+#[must_use]
 pub fn picture_name(hold: &HoldRow) -> String {
     format!("{}-{}.svg", hold.operation, hold.planner)
 }
 
 /// The title of a picture.
+#[must_use]
 pub fn picture_title(hold: &HoldRow) -> String {
     format!(
         "{}, {} planner: muscular comfort {}, peripersonal comfort {}",

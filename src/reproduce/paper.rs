@@ -51,6 +51,7 @@ impl PaperOperation {
 
 /// All operations in the order of tables: the cuts counter-clockwise about +z_O, starting at +x_O; the holes row by row from
 /// (-x_O, -y_O).
+#[must_use]
 pub fn operations() -> Vec<PaperOperation> {
     (1..=CUTS).map(cut).chain((1..=DRILLS).map(drill)).collect()
 }

@@ -48,16 +48,19 @@ fn find(rows: &[Printed], task: OperationKind, planner: PlannerKind) -> Option<P
 }
 
 /// Table I: comforts divided by those of the random planner.
+#[must_use]
 pub fn table(task: OperationKind, planner: PlannerKind) -> Option<Printed> {
     find(&PAPER.table, task, planner)
 }
 
 /// The captions of the configurations in the figures.
+#[must_use]
 pub fn caption(task: OperationKind, planner: PlannerKind) -> Option<Printed> {
     find(&PAPER.caption, task, planner)
 }
 
 /// The duration of planning.
+#[must_use]
 pub fn plan_time() -> PlanTime {
     PAPER.plan_s
 }

@@ -19,6 +19,7 @@ pub struct Assumption {
 
 impl Assumption {
     /// The jobs for one operation under this assumption.
+    #[must_use]
     pub fn jobs(&self, scenario: &Scenario, random_seeds: u64) -> Vec<Job> {
         let mut scenario = scenario.clone();
         (self.change)(&mut scenario);
@@ -60,6 +61,7 @@ pub const VARIANTS: [Assumption; 10] = [
 ];
 
 /// True for an operation of the analysis.
+#[must_use]
 pub fn includes(operation: &str) -> bool {
     OPERATIONS.contains(&operation)
 }

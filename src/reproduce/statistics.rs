@@ -1,12 +1,14 @@
 //! Mean, standard deviation and quantiles of a sample.
 
 /// The mean; `None` of an empty sample.
+#[must_use]
 pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0_u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))
 }
 
 /// The standard deviation of a sample, `sqrt(sum (x - mean)^2 / (n - 1))`; `None` for fewer than two values.
+#[must_use]
 pub fn standard_deviation(values: &[f64]) -> Option<f64> {
     let mean = mean(values.iter().copied())?;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -14,6 +16,7 @@ pub fn standard_deviation(values: &[f64]) -> Option<f64> {
 }
 
 /// The quantile at `share` from 0 to 1, interpolated linearly; `None` of an empty sample.
+#[must_use]
 pub fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;

@@ -31,6 +31,7 @@ pub struct Row {
 
 /// The rows by kind of operation and planner; kinds without results are left out. As in the paper, the means are normalised,
 /// not the single figures.
+#[must_use]
 pub fn rows<'a>(holds: impl Iterator<Item = &'a HoldRow> + Clone) -> Vec<Row> {
     let mut rows = Vec::new();
     for kind in KINDS {

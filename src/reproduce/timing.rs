@@ -6,6 +6,7 @@ use super::{evaluation::Reproduction, printed, statistics};
 use crate::model::scenario::PlannerKind;
 
 /// Mean, standard deviation and percentiles of the durations of planning, by planner, and of simulation.
+#[must_use]
 pub fn summary(reproduction: &Reproduction) -> String {
     let mut text = String::from("time, ms      n    mean      sd     p50     p90     max\n");
     for planner in PlannerKind::ALL {

@@ -1,4 +1,4 @@
-//! The description and the URDF put together, with every entry checked against the tree.
+//! Combines a description with its URDF and checks every entry against the tree.
 
 use std::ops::Range;
 
@@ -12,16 +12,16 @@ use super::{
 };
 use crate::model::frames::Pose;
 
-/// Stands for the name of each arm in turn, and for its first letter.
+/// Placeholders for the name of an arm and for its first letter.
 const PLACEHOLDERS: [&str; 2] = ["{arm}", "{a}"];
 
-/// The sine of the largest angle between a finger's axis and y_G: what quarter turns written with six digits leave.
+/// Maximum sine of the angle between a finger's axis and y_G: the rounding of quarter turns with six digits.
 const AXIS_TOLERANCE: f64 = 1e-5;
 
-/// How far a gripper's opening may be from what the finger joints' limits give, m: published gaps have 0.1 mm.
+/// Tolerance of a gripper's opening relative to the finger joints' limits, m: published gaps are rounded to 0.1 mm.
 const OPENING_TOLERANCE_M: f64 = 1e-4;
 
-/// Puts a description and its URDF together.
+/// Combines a description with its URDF.
 pub(super) fn assemble(
     name: &str,
     source: &Source,
@@ -58,7 +58,7 @@ pub(super) fn assemble(
     Ok(robot)
 }
 
-/// What all checks need.
+/// The shared input of all checks.
 struct Context<'a> {
     source: &'a Source<'a>,
     /// See [`Robot::carriers`].
@@ -120,7 +120,7 @@ impl Context<'_> {
         })
     }
 
-    /// The joints of an arm: exactly those that move between its base link and its gripper's frame.
+    /// The joints of an arm: exactly the moving joints between its base link and its gripper's frame.
     fn arm_joints(&self, robot: &Robot, entry: &ArmEntry) -> Result<Vec<usize>, RobotError> {
         let base = self.link(robot, "base_link", &entry.base_link)?;
         let mut link = self.link(robot, "frame_link", &entry.gripper.frame_link)?;
@@ -195,7 +195,7 @@ impl Context<'_> {
         Ok(gripper)
     }
 
-    /// The opening must agree with what pads and joint limits allow.
+    /// Checks the opening against pads and joint limits.
     fn check_opening(&self, gripper: &Gripper, entry: &GripperEntry) -> Result<(), RobotError> {
         let closed: f64 = gripper.fingers.iter().map(|finger| finger.pad.offset_m).sum();
         let travel: f64 = gripper.fingers.iter().map(|finger| finger.max_travel_m).sum();
@@ -210,7 +210,7 @@ impl Context<'_> {
         Err(self.error(&entry.opening_m, "opening_m", format!("{narrow} to {wide}"), expected))
     }
 
-    /// A finger, and the side of the plane y_G = 0 on which its pad lies, 1 or -1.
+    /// A finger, and the side of the plane y_G = 0 of its pad, 1 or -1.
     fn finger(&self, robot: &Robot, hand: &Hand, entry: &FingerEntry) -> Result<(Finger, f64), RobotError> {
         let joint_index = self.joint(robot, "joint", &entry.joint, JointKind::Prismatic)?;
         let joint = &robot.joints[joint_index];
@@ -230,7 +230,7 @@ impl Context<'_> {
                 format!("{} along ({:.4}, {:.4}, {:.4}) of the frame_link", joint.name, axis_g.x, axis_g.y, axis_g.z);
             return Err(self.error(&entry.joint, "joint", found, "an axis along its y"));
         }
-        // Position 0, or the limit next to it, is where `x_wl` has the finger; its side is judged half open.
+        // `x_wl` has the finger at position 0 or the limit nearest to 0; its side is determined half open.
         let here = 0.0_f64.clamp(joint.lower, joint.upper);
         let along_y = axis_g.y.signum();
         let middle = (joint.lower + joint.upper) / 2.0 - here;
@@ -268,7 +268,7 @@ impl Context<'_> {
         Ok(pairs)
     }
 
-    /// Links that never move against each other: whatever they do, they do always.
+    /// Pairs of links that do not move relative to each other.
     fn rigid_pairs(&self, robot: &Robot) -> Vec<[usize; 2]> {
         let solid = |link: &usize| !robot.links[*link].shapes.is_empty();
         let solid: Vec<usize> = (0..robot.links.len()).filter(solid).collect();
@@ -302,16 +302,16 @@ impl Context<'_> {
     }
 }
 
-/// What both fingers of a gripper share.
+/// The shared input of both fingers of a gripper.
 struct Hand<'a> {
     frame_link: usize,
     palm_link: usize,
     entry: &'a GripperEntry,
-    /// Poses of all links at position 0, or at the limit next to it.
+    /// Poses of all links with every joint at 0 or at the limit nearest to 0.
     x_wl: Vec<Pose>,
 }
 
-/// Names with placeholders once for every arm, names without as they are.
+/// Names with placeholders once per arm, names without unchanged.
 fn expand<const N: usize>(robot: &Robot, names: [&String; N]) -> Vec<[String; N]> {
     if !names.iter().any(|name| PLACEHOLDERS.iter().any(|placeholder| name.contains(placeholder))) {
         return vec![names.map(Clone::clone)];

@@ -1,24 +1,22 @@
-//! The solutions of several arms that hold one object, best first.
+//! Combinations of the solutions of several arms that hold one object, in order of cost.
 //!
-//! Each arm has a list of solutions; a combination takes one of each. Combinations are made one by one, in the order of
-//! their cost, so that a caller who needs the best that passes a test pays for no more. This module knows nothing of
-//! what the costs mean.
+//! Each arm has a list of solutions; a combination has one of each. Combinations are generated lazily in order of their cost,
+//! so the first one that passes a test is the best.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use super::inverse::ClosedForm;
 use crate::model::frames::Pose;
 
-/// One arm's solutions in the order of their cost.
+/// One arm's solutions in order of cost.
 #[derive(Clone, Debug)]
 pub struct RankedSolutions {
-    /// Cost and angles (rad), the least cost first.
+    /// Cost and angles (rad), lowest cost first.
     solutions: Vec<(f64, Vec<f64>)>,
 }
 
 impl RankedSolutions {
-    /// Solutions ranked by `cost`, of any unit. Those whose cost is no number or infinite are left out. Equal costs stay
-    /// in the order given.
+    /// Solutions sorted by `cost`. Solutions with a cost that is not finite are left out. The sort is stable.
     pub fn new(solutions: impl IntoIterator<Item = Vec<f64>>, cost: impl Fn(&[f64]) -> f64) -> Self {
         let ranked = solutions.into_iter().map(|q_rad| (cost(&q_rad), q_rad));
         let mut solutions: Vec<_> = ranked.filter(|(cost, _)| cost.is_finite()).collect();
@@ -26,8 +24,7 @@ impl RankedSolutions {
         Self { solutions }
     }
 
-    /// The samples of every branch of an arm whose gripper holds, at `x_og`, an object at `x_wo`. Empty when the arm does
-    /// not reach it.
+    /// The samples of all branches of an arm with its gripper at `x_og` on an object at `x_wo`. Empty if there is no solution.
     pub fn of_grasp(arm: &ClosedForm, x_wo: &Pose, x_og: &Pose, cost: impl Fn(&[f64]) -> f64) -> Self {
         let motion = arm.branches(&(x_wo * x_og));
         let samples = motion.branches().iter().flat_map(|branch| branch.samples());
@@ -39,7 +36,7 @@ impl RankedSolutions {
         self.solutions.len()
     }
 
-    /// True when the arm has no solution.
+    /// True if the arm has no solution.
     pub fn is_empty(&self) -> bool {
         self.solutions.is_empty()
     }
@@ -54,12 +51,12 @@ pub struct Combination<'a> {
     pub q_rad: Vec<&'a [f64]>,
 }
 
-/// All combinations of the solutions of any number of arms, the least sum of costs first; equal sums in the order of
-/// the first arm's solutions, then the second's. None when an arm has no solution, or there is no arm.
+/// Iterator over all combinations of the solutions of any number of arms, lowest sum of costs first; equal sums in the order
+/// of the first arm's solutions, then the second's. Empty if an arm has no solution or there is no arm.
 ///
-/// A heap holds the combinations that may be next. From one that is taken, its successors are those with one arm's next
-/// solution, for the arms from the last that is not at its first solution onward: thus each comes from one predecessor
-/// only, whose cost is not greater. The k-th takes `O(log k)` and nothing is computed ahead of it.
+/// A heap holds the candidates for the next combination. The successors of a combination advance one arm to its next
+/// solution, for the arms from the last one that is not at its first solution on. So each combination has exactly one
+/// predecessor, whose cost is not greater. The k-th combination costs `O(log k)`.
 #[derive(Clone, Debug)]
 pub struct Combinations<'a> {
     arms: &'a [RankedSolutions],
@@ -67,7 +64,7 @@ pub struct Combinations<'a> {
 }
 
 impl<'a> Combinations<'a> {
-    /// The combinations of these arms. A test of pairs (such as whether the arms touch) is `.filter(..)` after this.
+    /// The combinations of these arms. Filter the iterator for tests of pairs, such as collisions between the arms.
     pub fn new(arms: &'a [RankedSolutions]) -> Self {
         let mut combinations = Self { arms, next: BinaryHeap::new() };
         if !arms.is_empty() && arms.iter().all(|arm| !arm.is_empty()) {
@@ -100,7 +97,7 @@ impl<'a> Iterator for Combinations<'a> {
     }
 }
 
-/// The places of a combination in the arms' lists.
+/// The indices of a combination in the arms' lists.
 #[derive(Clone, Debug)]
 struct Candidate {
     cost: f64,
@@ -108,7 +105,7 @@ struct Candidate {
 }
 
 impl Ord for Candidate {
-    /// The greatest is taken first: the least cost.
+    /// Reversed, since the heap returns the greatest element first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.cost.total_cmp(&self.cost).then_with(|| other.ranks.cmp(&self.ranks))
     }

@@ -1,14 +1,13 @@
-//! One arm as a serial chain: what is fixed together is merged, so that kinematics and statics cost little.
+//! One arm as a serial chain of revolute joints, with rigidly connected links merged.
 //!
-//! The chain carries its gripper and fingers as rigid parts of its last link. It knows nothing of grasps, loads or
-//! collisions.
+//! Gripper and fingers are rigid parts of the last link.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Unit, UnitQuaternion, Vector3, Vector6};
 
 use super::tree::{ArmState, Robot};
 use crate::model::{GRAVITY_W, frames::Pose};
 
-/// An arm's moving joints, the fixed transforms between them, and the merged inertia of what each carries.
+/// An arm's joints, the fixed transforms between them, and the merged inertia of the links that each carries.
 #[derive(Clone, Debug)]
 pub struct Chain {
     joints: Vec<ChainJoint>,
@@ -19,18 +18,18 @@ pub struct Chain {
     effort_nm: Vec<f64>,
 }
 
-/// A revolute joint and the rigid segment that it carries.
+/// A revolute joint and the inertia of the links that it carries.
 #[derive(Clone, Debug)]
 struct ChainJoint {
-    /// Pose of the joint's frame in the frame of the joint before it, in W for the first.
+    /// Pose of the joint's frame in the frame of the previous joint, in W for the first.
     x_pj: Pose,
     axis_j: Unit<Vector3<f64>>,
-    segment: Segment,
+    inertia: SpatialInertia,
 }
 
-/// Rigidly joined links, in the frame of the joint that carries them.
+/// Mass properties of rigidly connected links, in the frame of the joint that carries them.
 #[derive(Clone, Debug)]
-struct Segment {
+struct SpatialInertia {
     mass_kg: f64,
     com_j: Vector3<f64>,
     /// About the centre of mass, kg m^2.
@@ -38,8 +37,8 @@ struct Segment {
 }
 
 impl Chain {
-    /// The chain of an arm (an index into [`Robot::arms`]) with both fingers at this travel from their closed limits.
-    /// Everything else that moves stands at 0, or at the limit next to it.
+    /// The chain of an arm (an index into [`Robot::arms`]) with both fingers at this travel from their closed limits. All other
+    /// joints are at 0 or at the limit nearest to 0.
     pub fn new(robot: &Robot, arm_index: usize, finger_travel_m: f64) -> Self {
         let arm = &robot.arms[arm_index];
         let q_rad = vec![0.0; arm.joints.len()];
@@ -53,13 +52,14 @@ impl Chain {
             ChainJoint {
                 x_pj: if number == 0 { x_wj[0] } else { x_wj[number - 1].inverse() * x_wj[number] },
                 axis_j: robot.joints[arm.joints[number]].axis_j,
-                segment: merge(robot, carried, &x_wj[number], &x_wl),
+                inertia: merge(robot, carried, &x_wj[number], &x_wl),
             }
         });
         let limit = |of: fn(&super::tree::Joint) -> f64| arm.joints.iter().map(|&j| of(&robot.joints[j])).collect();
         Self {
             joints: joints.collect(),
-            x_lg: x_wj[x_wj.len() - 1].inverse() * x_wl[arm.gripper.frame_link],
+            // A gripper without an arm stands in the world.
+            x_lg: x_wj.last().unwrap_or(&Pose::identity()).inverse() * x_wl[arm.gripper.frame_link],
             lower: limit(|joint| joint.lower),
             upper: limit(|joint| joint.upper),
             effort_nm: arm.effort_nm.clone(),
@@ -86,7 +86,7 @@ impl Chain {
         &self.effort_nm
     }
 
-    /// True when every angle is within its limits, give or take `tolerance_rad`.
+    /// True if every angle is within its limits, with a tolerance of `tolerance_rad`.
     pub fn within_limits(&self, q_rad: &[f64], tolerance_rad: f64) -> bool {
         let limits = self.lower.iter().zip(&self.upper);
         q_rad.iter().zip(limits).all(|(q, (lo, hi))| *q >= lo - tolerance_rad && *q <= hi + tolerance_rad)
@@ -101,7 +101,7 @@ impl Chain {
         x_wj * self.x_lg
     }
 
-    /// The pose in W of each joint's frame, turned with the joint: the frame of the link that it carries.
+    /// The pose in W of each joint's moving frame, which is that of its child link.
     pub fn joint_frames(&self, q_rad: &[f64]) -> Vec<Pose> {
         let mut x_wj = Pose::identity();
         let turn = |(joint, &angle): (&ChainJoint, &f64)| {
@@ -111,21 +111,21 @@ impl Chain {
         self.joints.iter().zip(q_rad).map(turn).collect()
     }
 
-    /// The first joint's axis in W, which never moves: a point on it and its direction.
+    /// The first joint's axis in W, which is fixed: a point on it and its direction.
     pub fn first_axis_w(&self) -> (Vector3<f64>, Vector3<f64>) {
         let joint = &self.joints[0];
         (joint.x_pj.translation.vector, joint.x_pj.rotation * joint.axis_j.into_inner())
     }
 
-    /// The last joint's axis in W when G is at `x_wg`, whatever that joint's angle: its origin and its direction.
+    /// The last joint's axis in W for a gripper pose: a point on it and its direction. It does not depend on that joint's angle.
     pub fn last_axis_w(&self, x_wg: &Pose) -> (Vector3<f64>, Vector3<f64>) {
         let x_wl = x_wg * self.x_lg.inverse();
         let axis_l = self.joints.last().map_or(Vector3::z(), |joint| joint.axis_j.into_inner());
         (x_wl.translation.vector, x_wl.rotation * axis_l)
     }
 
-    /// The angle of the last joint that turns G as closely to `x_wg` as that joint alone can, the others being at
-    /// `q_rad`, within a turn of zero, rad.
+    /// The angle of the last joint that minimises the rotation error of G to `x_wg` with all other joints at `q_rad`, rad, in
+    /// [-pi, pi].
     pub fn last_angle_towards(&self, q_rad: &[f64], x_wg: &Pose) -> f64 {
         let Some(joint) = self.joints.last() else { return 0.0 };
         let mut q_rad = q_rad.to_vec();
@@ -134,7 +134,7 @@ impl Chain {
         }
         let turn = self.gripper_pose(&q_rad).rotation * self.x_lg.rotation.inverse();
         let wanted = turn.inverse() * x_wg.rotation * self.x_lg.rotation.inverse();
-        // The part of the rotation about the axis: its angle is that of the quaternion's projection on it.
+        // The twist of the rotation about the axis, from the quaternion's projection on it.
         let along = wanted.vector().dot(&joint.axis_j);
         let angle_rad = 2.0 * along.atan2(wanted.scalar());
         angle_rad.sin().atan2(angle_rad.cos())
@@ -147,7 +147,7 @@ impl Chain {
         self.jacobian_from_frames(&frames)
     }
 
-    /// The Jacobian of G, see [`Chain::jacobian_w`], when the frames are at hand.
+    /// [`Chain::jacobian_w`] from the frames of all joints.
     pub fn jacobian_from_frames(&self, frames: &[Pose]) -> Matrix6xX<f64> {
         let p_wg = self.gripper_from_frames(frames).translation.vector;
         let mut jacobian = Matrix6xX::zeros(self.dof());
@@ -161,8 +161,7 @@ impl Chain {
         jacobian
     }
 
-    /// X_WG, and the columns of [`Chain::jacobian_w`] written into `columns` (dof of them): for solvers that call it
-    /// many times.
+    /// X_WG; writes the columns of [`Chain::jacobian_w`] into `columns`. Does not allocate.
     pub(super) fn pose_and_columns(&self, q_rad: &[f64], columns: &mut [Vector6<f64>]) -> Pose {
         let mut x_wj = Pose::identity();
         for ((joint, &angle), column) in self.joints.iter().zip(q_rad).zip(columns.iter_mut()) {
@@ -185,13 +184,12 @@ impl Chain {
         frames.last().map_or(self.x_lg, |x_wl| x_wl * self.x_lg)
     }
 
-    /// The axis of each joint in W, for the frames of all joints.
+    /// The axis of each joint in W from the frames of all joints.
     pub fn axes_w(&self, frames: &[Pose]) -> Vec<Vector3<f64>> {
         self.joints.iter().zip(frames).map(|(joint, x_wj)| x_wj.rotation * joint.axis_j.into_inner()).collect()
     }
 
-    /// The torque that the motors must supply to hold the arm still against gravity, N m: the gradient of the potential
-    /// energy, `tau_i = -g . z_i x l_i` with `l_i = sum_{k >= i} (c_k - p_i) m_k`.
+    /// The joint torques that hold the arm against gravity, N m: the gradient of the potential energy, `tau_i = -g . z_i x l_i` with `l_i = sum_{k >= i} (c_k - p_i) m_k`.
     pub fn gravity_torque_nm(&self, q_rad: &[f64]) -> DVector<f64> {
         let frames = self.joint_frames(q_rad);
         let (axes_w, levers_kg_m) = (self.axes_w(&frames), self.carried_moments_w(&frames));
@@ -200,7 +198,7 @@ impl Chain {
         DVector::from_iterator(self.dof(), torques)
     }
 
-    /// How that torque changes with the angles, dof x dof, N m/rad: the second derivative of the potential energy,
+    /// The derivative of the gravity torques by the angles, dof x dof, N m/rad: the Hessian of the potential energy,
     /// `dtau_i/dq_j = -g . z_i x (z_j x l_j)` for `i <= j`, and symmetric.
     pub fn gravity_stiffness_nm_rad(&self, q_rad: &[f64]) -> DMatrix<f64> {
         let frames = self.joint_frames(q_rad);
@@ -223,7 +221,7 @@ impl Chain {
         let mut mass_kg = 0.0;
         let mut moment_kg_m = Vector3::zeros();
         for (number, (joint, x_wj)) in self.joints.iter().zip(frames).enumerate().rev() {
-            let segment = &joint.segment;
+            let segment = &joint.inertia;
             mass_kg += segment.mass_kg;
             moment_kg_m += (x_wj.rotation * segment.com_j + x_wj.translation.vector) * segment.mass_kg;
             levers_kg_m[number] = moment_kg_m - x_wj.translation.vector * mass_kg;
@@ -237,7 +235,7 @@ impl Chain {
         let axes_w = self.axes_w(&frames);
         let mut mass = DMatrix::zeros(self.dof(), self.dof());
         for (number, (joint, x_wj)) in self.joints.iter().zip(&frames).enumerate() {
-            let segment = &joint.segment;
+            let segment = &joint.inertia;
             let com_w = x_wj.rotation * segment.com_j + x_wj.translation.vector;
             let rotation = x_wj.rotation.to_rotation_matrix();
             let inertia_w = rotation.matrix() * segment.inertia_j * rotation.matrix().transpose();
@@ -252,16 +250,16 @@ impl Chain {
         mass
     }
 
-    /// The centre of mass of everything that the chain carries, weighted: `(sum m, sum m c)` in kg and kg m, W.
+    /// Mass and first moment of all links that the chain carries: `(sum m, sum m c)`, kg and kg m, W.
     pub fn mass_and_moment_w(&self, q_rad: &[f64]) -> (f64, Vector3<f64>) {
         let frames = self.joint_frames(q_rad);
         self.joints.iter().zip(&frames).fold((0.0, Vector3::zeros()), |(mass, moment), (joint, x_wj)| {
-            let com_w = x_wj.rotation * joint.segment.com_j + x_wj.translation.vector;
-            (mass + joint.segment.mass_kg, moment + com_w * joint.segment.mass_kg)
+            let com_w = x_wj.rotation * joint.inertia.com_j + x_wj.translation.vector;
+            (mass + joint.inertia.mass_kg, moment + com_w * joint.inertia.mass_kg)
         })
     }
 
-    /// The origin of the first joint in W, m: it never moves.
+    /// The origin of the first joint in W, m; it is fixed.
     pub fn shoulder_w(&self) -> Vector3<f64> {
         self.joints[0].x_pj.translation.vector
     }
@@ -273,7 +271,7 @@ impl Chain {
     }
 }
 
-/// For each link the last of these joints on the way from the root, as a place in `joints`; none outside the chain.
+/// For each link the last of `joints` between the root and the link, as an index into `joints`; `None` outside the chain.
 fn carriers_within(robot: &Robot, joints: &[usize]) -> Vec<Option<usize>> {
     let mut carriers: Vec<Option<usize>> = Vec::with_capacity(robot.links.len());
     for link in &robot.links {
@@ -284,13 +282,13 @@ fn carriers_within(robot: &Robot, joints: &[usize]) -> Vec<Option<usize>> {
     carriers
 }
 
-/// The links as one rigid body in the frame `x_wj`.
-fn merge(robot: &Robot, links: impl Iterator<Item = usize> + Clone, x_wj: &Pose, x_wl: &[Pose]) -> Segment {
+/// The mass properties of links as one rigid body in the frame `x_wj`.
+fn merge(robot: &Robot, links: impl Iterator<Item = usize> + Clone, x_wj: &Pose, x_wl: &[Pose]) -> SpatialInertia {
     let placed: Vec<_> = links.map(|link| (&robot.links[link], x_wj.inverse() * x_wl[link])).collect();
     let mass_kg: f64 = placed.iter().map(|(link, _)| link.mass_kg).sum();
     let com_of = |link: &super::tree::Link, x_jl: &Pose| x_jl.rotation * link.com_l + x_jl.translation.vector;
     let moment: Vector3<f64> = placed.iter().map(|(link, x_jl)| com_of(link, x_jl) * link.mass_kg).sum();
-    // A segment without mass may have its centre anywhere.
+    // Without mass the centre is arbitrary.
     let com_j = if mass_kg > 0.0 { moment / mass_kg } else { Vector3::zeros() };
     let mut inertia_j = Matrix3::zeros();
     for (link, x_jl) in &placed {
@@ -299,5 +297,5 @@ fn merge(robot: &Robot, links: impl Iterator<Item = usize> + Clone, x_wj: &Pose,
         let steiner = Matrix3::from_diagonal_element(offset.norm_squared()) - offset * offset.transpose();
         inertia_j += rotation.matrix() * link.inertia_l * rotation.matrix().transpose() + steiner * link.mass_kg;
     }
-    Segment { mass_kg, com_j, inertia_j }
+    SpatialInertia { mass_kg, com_j, inertia_j }
 }

@@ -1,10 +1,10 @@
-//! What a robot is made of, as plain data.
+//! The data types of a robot, and forward kinematics of its links.
 
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use crate::model::{frames::Pose, plan::ArmHold};
 
-/// A robot: a tree of links, the arms that can hold something, and figures that no URDF carries.
+/// A robot: a tree of links, its arms, and the data of the description.
 #[derive(Clone, Debug)]
 pub struct Robot {
     /// The name or path by which it was loaded.
@@ -15,9 +15,9 @@ pub struct Robot {
     pub joints: Vec<Joint>,
     /// The arms that can hold a board, in the description's order.
     pub arms: Vec<Arm>,
-    /// Pairs of links (indices, smaller first) that may overlap: neighbours, and primitives larger than the part.
+    /// Pairs of links (indices, smaller first) that may overlap: neighbours, and primitives larger than their part.
     pub allowed_collisions: Vec<[usize; 2]>,
-    /// Points spread over the robot's surface, for the peripersonal metric.
+    /// Points on the robot's surface for the peripersonal metric (docs/method.md#51-point-sets).
     pub body_points: Vec<BodyPoint>,
     /// Height of the floor in W, m.
     pub floor_z_m: f64,
@@ -28,7 +28,7 @@ pub struct Robot {
 pub struct Link {
     /// The URDF's name.
     pub name: String,
-    /// The joint that carries it, an index into [`Robot::joints`]; none for the root.
+    /// The joint that carries it, an index into [`Robot::joints`]; `None` for the root.
     pub parent_joint: Option<usize>,
     /// Mass, kg.
     pub mass_kg: f64,
@@ -36,7 +36,7 @@ pub struct Link {
     pub com_l: Vector3<f64>,
     /// Inertia about the centre of mass in axes of the link's frame, kg m^2.
     pub inertia_l: Matrix3<f64>,
-    /// Primitive geometry, for collisions and for pictures alike.
+    /// Primitive geometry for collisions and pictures.
     pub shapes: Vec<PlacedShape>,
 }
 
@@ -51,10 +51,10 @@ pub struct PlacedShape {
     pub rgba: [f64; 4],
 }
 
-/// A primitive about its own centre.
+/// A primitive centred at its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// A box of these half sides, m.
+    /// A box.
     Box {
         /// Half sides along x, y, z, m.
         half_m: [f64; 3],
@@ -73,14 +73,14 @@ pub enum Shape {
     },
 }
 
-/// How a joint moves.
+/// The type of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Not at all.
+    /// Does not move.
     Fixed,
-    /// Turns about its axis.
+    /// Rotates about its axis.
     Revolute,
-    /// Slides along its axis.
+    /// Translates along its axis.
     Prismatic,
 }
 
@@ -89,7 +89,7 @@ pub enum JointKind {
 pub struct Joint {
     /// The URDF's name.
     pub name: String,
-    /// How it moves.
+    /// Its type.
     pub kind: JointKind,
     /// Index of the parent link.
     pub parent_link: usize,
@@ -106,7 +106,7 @@ pub struct Joint {
 }
 
 impl Shape {
-    /// How far the shape reaches from its centre along a unit direction of its own axes, m.
+    /// Support of the shape along a unit direction in its frame: maximum extent from its centre, m.
     pub fn half_extent_m(&self, direction_s: &Vector3<f64>) -> f64 {
         match *self {
             Self::Box { half_m } => Vector3::from(half_m).dot(&direction_s.abs()),
@@ -125,13 +125,13 @@ pub struct Arm {
     pub name: String,
     /// Its moving joints, indices into [`Robot::joints`], from the base outward.
     pub joints: Vec<usize>,
-    /// The largest torque of each joint, N m: the description's where it overrides the URDF's.
+    /// Maximum torque of each joint, N m: from the description if given, else from the URDF.
     pub effort_nm: Vec<f64>,
     /// Stiffness of each joint's position control, N m/rad.
     pub stiffness_nm_rad: Vec<f64>,
     /// Damping of each joint's position control, N m s/rad.
     pub damping_nm_s_rad: Vec<f64>,
-    /// What it holds with.
+    /// Its gripper.
     pub gripper: Gripper,
 }
 
@@ -140,13 +140,13 @@ pub struct Arm {
 pub struct Gripper {
     /// The link whose frame is G: z out of the gripper, fingers opening along y.
     pub frame_link: usize,
-    /// The link that the finger joints hang on.
+    /// The parent link of the finger joints.
     pub palm_link: usize,
     /// The finger on the +y_G side, then the one on the -y_G side.
     pub fingers: [Finger; 2],
-    /// Gap between the pads when closed and when open, m; what is thinner or thicker cannot be held.
+    /// Gap between the pads when closed and when open, m: the range of thicknesses that it can hold.
     pub opening_m: [f64; 2],
-    /// The largest force with which each finger can be pushed, N.
+    /// Maximum force of each finger, N.
     pub max_force_n: f64,
 }
 
@@ -155,11 +155,11 @@ pub struct Gripper {
 pub struct Finger {
     /// The prismatic joint that moves it, an index into [`Robot::joints`].
     pub joint: usize,
-    /// The joint's position at travel 0, where the finger is closed as far as it goes: one of the joint's limits, m.
+    /// The joint's position at travel 0, fully closed: one of the joint's limits, m.
     pub closed_m: f64,
-    /// 1 when the joint's position grows as the finger opens, else -1.
+    /// 1 if the joint's position increases as the finger opens, else -1.
     pub opening_sign: f64,
-    /// The largest travel, m.
+    /// Maximum travel, m.
     pub max_travel_m: f64,
     /// Its pad.
     pub pad: Pad,
@@ -183,7 +183,7 @@ pub struct Pad {
     pub size_m: [f64; 2],
     /// Centre along x_G and z_G, m.
     pub centre_m: [f64; 2],
-    /// Distance of the face from the plane y_G = 0 when the finger's travel is 0, m; it grows with the travel.
+    /// Distance of the face from the plane y_G = 0 at travel 0, m; it increases with the travel.
     pub offset_m: f64,
 }
 
@@ -194,14 +194,14 @@ impl Gripper {
         gap_m / 2.0 - self.fingers[finger].pad.offset_m
     }
 
-    /// Which pad is which on a board: `upper` lies on the worked face (+z_O), `lower` on the other.
+    /// Name of a pad on a board: `upper` on the front face (+z_O), `lower` on the other.
     pub fn pad_name(&self, finger: usize, x_og: &Pose) -> &'static str {
         let y_g_in_o = x_og.rotation * Vector3::y();
         let finger_is_up = (finger == 0) == (y_g_in_o.z > 0.0);
         if finger_is_up { "upper" } else { "lower" }
     }
 
-    /// The centre between the pads in G: the point about which a hand grasps.
+    /// The grasp point in G: the centre between the pads, m.
     pub fn grasp_point_g(&self) -> Vector3<f64> {
         let [x, z] = self.fingers[0].pad.centre_m;
         Vector3::new(x, 0.0, z)
@@ -239,8 +239,7 @@ impl Robot {
         self.links.iter().position(|link| link.name == name)
     }
 
-    /// The poses of all links in W when arms hold a board of this thickness as planned; arms that the robot does not have are
-    /// left out.
+    /// The poses of all links in W for planned arms that hold a board of this thickness. Unknown arms are ignored.
     pub fn planned_link_poses(&self, holds: &[ArmHold], thickness_m: f64) -> Vec<Pose> {
         let states = holds.iter().filter_map(|hold| {
             let arm = self.arm_index(&hold.name)?;
@@ -251,8 +250,8 @@ impl Robot {
         self.link_poses(&self.positions(&states.collect::<Vec<_>>()))
     }
 
-    /// The positions of all joints, in the order of [`Robot::joints`], rad or m. Joints of no given arm are at 0, or at
-    /// their limit next to 0. Angles of the arms are taken as they are, also beyond the limits.
+    /// The positions of all joints, in the order of [`Robot::joints`], rad or m. Joints of no given arm are at 0 or at the limit
+    /// nearest to 0. Angles of the arms are not clamped to the limits.
     pub fn positions(&self, arms: &[ArmState]) -> Vec<f64> {
         let mut positions: Vec<f64> = self.joints.iter().map(|joint| 0.0_f64.clamp(joint.lower, joint.upper)).collect();
         for state in arms {
@@ -267,7 +266,7 @@ impl Robot {
         positions
     }
 
-    /// The poses in W of all links, in the order of [`Robot::links`]. `positions` has one entry a joint, rad or m;
+    /// The poses in W of all links, in the order of [`Robot::links`]. `positions` has one entry per joint, rad or m;
     /// those of fixed joints are ignored.
     pub fn link_poses(&self, positions: &[f64]) -> Vec<Pose> {
         let mut x_wl: Vec<Pose> = Vec::with_capacity(self.links.len());
@@ -283,7 +282,7 @@ impl Robot {
         x_wl
     }
 
-    /// For each link the moving joint that carries it, at once or through fixed joints; none for what stands still.
+    /// For each link the moving joint that carries it, directly or through fixed joints; `None` for fixed links.
     pub fn carriers(&self) -> Vec<Option<usize>> {
         let mut carriers: Vec<Option<usize>> = Vec::with_capacity(self.links.len());
         for link in &self.links {
@@ -307,7 +306,7 @@ impl Joint {
     }
 }
 
-/// Why a robot could not be loaded.
+/// An error of loading a robot.
 #[derive(Debug, thiserror::Error)]
 pub enum RobotError {
     /// A file could not be read.
@@ -321,7 +320,7 @@ pub enum RobotError {
     /// Neither a built-in robot nor a file.
     #[error("found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file")]
     Unknown {
-        /// What was asked for.
+        /// The name or path.
         found: String,
         /// The built-in names.
         builtin: String,
@@ -331,7 +330,7 @@ pub enum RobotError {
     Invalid {
         /// The file.
         file: String,
-        /// Line, key, what was found and what was expected.
+        /// Line, key, value found and value expected.
         problem: String,
     },
 }

@@ -1,7 +1,7 @@
-//! URDF text to links and joints.
+//! Reads a URDF into links and joints.
 //!
-//! urdf-rs reads the XML; this module checks what it read and turns it into a [`Tree`] whose parents come before their
-//! children. It must never know what a robot is used for: arms and grippers are the description's business.
+//! urdf-rs parses the XML; this module checks the result and converts it into a [`Tree`] with parents before children.
+//! Arms and grippers are defined by the description.
 
 use std::collections::BTreeMap;
 
@@ -11,13 +11,13 @@ use urdf_rs::{Geometry, JointType};
 use super::tree::{Joint, JointKind, Link, PlacedShape, Shape};
 use crate::model::frames::Pose;
 
-/// The colour of geometry whose visual names none.
+/// Colour of geometry without a colour in its visual.
 const DEFAULT_RGBA: [f64; 4] = [0.6, 0.6, 0.6, 1.0];
 
-/// How far below zero an eigenvalue of an inertia may fall, as a share of the largest: published figures are rounded.
+/// Tolerance of negative eigenvalues of an inertia, relative to the largest, since published values are rounded.
 const INERTIA_TOLERANCE: f64 = 1e-6;
 
-/// What a URDF says, parents before children.
+/// The content of a URDF, parents before children.
 pub(super) struct Tree {
     /// The root comes first.
     pub links: Vec<Link>,
@@ -30,7 +30,7 @@ pub(super) struct Tree {
 /// Reads a URDF.
 ///
 /// # Errors
-/// Says which link or joint is at fault, what was found and what was expected.
+/// The message names the link or joint, the value found and the value expected.
 pub(super) fn read(text: &str) -> Result<Tree, String> {
     let robot = urdf_rs::read_from_string(text).map_err(|error| format!("found malformed urdf: {error}"))?;
     let colours = global_colours(&robot.materials);
@@ -48,10 +48,10 @@ pub(super) fn read(text: &str) -> Result<Tree, String> {
     Ok(tree)
 }
 
-/// Which joint carries which link, by indices into the URDF's lists.
+/// The tree by indices into the URDF's lists.
 struct Hierarchy {
     root: usize,
-    /// For each link the joints that hang on it and their child links, in file order.
+    /// For each link its child joints and child links, in file order.
     children: Vec<Vec<(usize, usize)>>,
 }
 
@@ -83,7 +83,7 @@ impl Hierarchy {
 }
 
 impl Tree {
-    /// Adds a link and everything that hangs on it; recursion is as deep as the longest chain of the robot.
+    /// Adds a link and its descendants; the recursion depth is that of the tree.
     fn add(
         &mut self,
         robot: &urdf_rs::Robot,
@@ -127,7 +127,7 @@ fn read_link(
     let (mass_kg, com_l, inertia_l) = read_inertial(&link.inertial).map_err(at)?;
     let mut shapes = Vec::with_capacity(link.collision.len());
     for (number, collision) in link.collision.iter().enumerate() {
-        // The shapes are drawn as they collide; the visuals only lend their colours.
+        // Pictures show the collision shapes with the colours of the visuals.
         let visual =
             if link.visual.len() == link.collision.len() { link.visual.get(number) } else { link.visual.first() };
         shapes.push(PlacedShape {
@@ -204,7 +204,7 @@ fn read_joint(joint: &urdf_rs::Joint, parent_link: usize, child_link: usize) -> 
             return Err(at(format!("found type {other:?}, expected fixed, revolute, continuous or prismatic")));
         }
     };
-    // The fingers of a gripper often mimic each other in a URDF; the description says so for us.
+    // Fingers of a gripper often mimic each other in a URDF; the description defines that instead.
     if joint.mimic.is_some() && kind != JointKind::Prismatic {
         return Err(at("found a joint that mimics another, expected joints that move by themselves".into()));
     }
@@ -219,7 +219,7 @@ fn read_joint(joint: &urdf_rs::Joint, parent_link: usize, child_link: usize) -> 
     Ok((read, joint.limit.effort))
 }
 
-/// A fixed joint has none; a continuous joint turns half a turn either way, for every pose is within that.
+/// Limits of a joint: zero for a fixed joint, half a turn either way for a continuous joint.
 fn read_limits(joint: &urdf_rs::Joint) -> Result<(f64, f64), String> {
     match joint.joint_type {
         JointType::Fixed => return Ok((0.0, 0.0)),

@@ -4,12 +4,10 @@ use std::path::Path;
 
 use super::{InputError, InputErrorKind, locate};
 use crate::{
+    check::{BOARD_SIDE_M, ON_BOARD_M},
     model::{FORMAT, frames::Pose},
     robot::{Arm, RobotError},
 };
-
-/// Largest distance of a tool point outside the board, m: rounding of written numbers.
-const ON_BOARD_TOLERANCE_M: f64 = 1e-9;
 
 /// Reads `format` before the other keys: a file of another format may have other keys.
 #[derive(serde::Deserialize)]
@@ -125,7 +123,7 @@ impl<'a> Checker<'a> {
         arms: impl Iterator<Item = &'r Arm>,
     ) -> Result<(), InputError> {
         for (index, &side) in size_m.iter().enumerate() {
-            self.within(&format!("{key}[{index}]"), side, 0.001, 5.0, "m")?;
+            self.within(&format!("{key}[{index}]"), side, BOARD_SIDE_M[0], BOARD_SIDE_M[1], "m")?;
         }
         let thickness_key = format!("{key}[2]");
         for arm in arms {
@@ -158,8 +156,8 @@ impl<'a> Checker<'a> {
         let p_ot = x_ot.translation.vector;
         let [x, y, z] = size_m.map(|side| side / 2.0);
         let half_m = nalgebra::Vector3::new(x, y, z);
-        let inside = (p_ot.abs() - half_m).max() <= ON_BOARD_TOLERANCE_M;
-        if p_ot.z.abs() > z + ON_BOARD_TOLERANCE_M {
+        let inside = (p_ot.abs() - half_m).max() <= ON_BOARD_M;
+        if p_ot.z.abs() > z + ON_BOARD_M {
             return Err(self.value(key, format!("z = {}", p_ot.z), format!("a point on the board: |z| <= {z} m")));
         }
         let expected = format!("a point on the board: |x| <= {x} m, |y| <= {y} m");

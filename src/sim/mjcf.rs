@@ -66,11 +66,11 @@ struct ExportedArm<'a> {
 /// # Errors
 /// If the conditions or the load over time are invalid.
 pub fn mjcf(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<String, SimError> {
-    let CheckedPlan { robot, plan, .. } = *checked;
+    let (robot, plan) = (checked.robot(), checked.plan());
     conditions.check()?;
     let tool = ToolLoad::new(plan, conditions)?;
     let arms: Vec<_> = checked
-        .arms
+        .arms()
         .iter()
         .map(|&CheckedArm { index, hold, .. }| {
             let arm = &robot.arms[index];

@@ -115,7 +115,7 @@ const LOST_AFTER_S: f64 = 0.1;
 /// # Errors
 /// If the settings or the load over time are invalid, or a moving part of the robot has no mass.
 pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Trace, SimError> {
-    let tool = ToolLoad::new(checked.plan, conditions)?;
+    let tool = ToolLoad::new(checked.plan(), conditions)?;
     let timestep_s = conditions.settings.timestep_s;
     let mut scene = SimScene::new(checked, conditions)?;
     let mut person = PersonMonitor::of(checked, conditions);
@@ -149,9 +149,9 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
 
 /// A trace with room for every sample, so that steps do not allocate.
 fn empty_trace(checked: &CheckedPlan<'_>, conditions: &Conditions, samples: usize) -> Trace {
-    let plan = checked.plan;
-    let arms = checked.arms.iter().map(|CheckedArm { index, hold, .. }| {
-        let arm = &checked.robot.arms[*index];
+    let plan = checked.plan();
+    let arms = checked.arms().iter().map(|CheckedArm { index, hold, .. }| {
+        let arm = &checked.robot().arms[*index];
         ArmTrace {
             name: hold.name.clone(),
             joints: hold.joints.clone(),

@@ -40,12 +40,12 @@ pub(super) struct PersonMonitor<'a> {
 impl<'a> PersonMonitor<'a> {
     /// The monitor of a plan's person; `None` if the plan has no person.
     pub fn of(checked: &CheckedPlan<'a>, conditions: &Conditions) -> Option<Self> {
-        checked.human.as_ref()?;
+        checked.person()?;
         Some(Self {
-            robot: checked.robot,
-            model: CollisionModel::new(checked.robot),
-            person: PersonClearance::new(&checked.person_parts(), checked.plan.object.size_m),
-            arms: checked.arms.iter().map(|arm| arm.index).collect(),
+            robot: checked.robot(),
+            model: CollisionModel::new(checked.robot()),
+            person: PersonClearance::new(&checked.person_parts(), checked.plan().object.size_m),
+            arms: checked.arms().iter().map(|arm| arm.index).collect(),
             interval_steps: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             distance_m: f64::INFINITY,
             touch: None,

@@ -64,14 +64,14 @@ impl SimScene {
     /// # Errors
     /// If the conditions are invalid, or a moving part of the robot has no mass.
     pub fn new(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Self, SimError> {
-        let plan = checked.plan;
+        let plan = checked.plan();
         conditions.check()?;
         let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
         let mut world = new_world(conditions.settings.timestep_s, stiffness_scale, plan.object.mass_kg);
         let board = insert_board(&mut world, &plan.object, conditions.real_friction());
-        let mut arms = Vec::with_capacity(checked.arms.len());
-        for CheckedArm { index, hold, .. } in &checked.arms {
-            arms.push(SimArm::new(&mut world, checked.robot, *index, hold, &plan.object, conditions)?);
+        let mut arms = Vec::with_capacity(checked.arms().len());
+        for CheckedArm { index, hold, .. } in checked.arms() {
+            arms.push(SimArm::new(&mut world, checked.robot(), *index, hold, &plan.object, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;

@@ -26,12 +26,12 @@ impl ContactModel {
     /// # Errors
     /// If a pad is off the board.
     pub fn of_plan(checked: &CheckedPlan<'_>, friction: f64) -> Result<Self, ContactModelError> {
-        let object = &checked.plan.object;
+        let object = &checked.plan().object;
         let hand = |arm: &CheckedArm<'_>| {
-            HandModel::new(&checked.robot.arms[arm.index], &arm.chain, arm.hold, object, friction)
+            HandModel::new(&checked.robot().arms[arm.index], &arm.chain, arm.hold, object, friction)
         };
-        let hands: Result<Vec<_>, _> = checked.arms.iter().map(hand).collect();
-        Ok(Self::from_hands(hands?, object, &checked.plan.operation))
+        let hands: Result<Vec<_>, _> = checked.arms().iter().map(hand).collect();
+        Ok(Self::from_hands(hands?, object, &checked.plan().operation))
     }
 
     /// The contact model of these hands, see [`HandModel::new`].

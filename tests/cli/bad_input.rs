@@ -226,8 +226,8 @@ fn a_hand_that_is_not_where_its_angles_put_it() {
     assert_plan_refused(
         "0.6406253063497958",
         "0.7",
-        "bad.json:71: arms[0].x_og: found the hand 59.37 mm and 0.00 degrees from where q_rad puts it, expected x_wo x_og \
-         to equal the arm's forward kinematics within 1 mm and 0.1 degrees",
+        "bad.json:71: arms[0].x_og: found the gripper 59.37 mm and 0.00 degrees from where q_rad puts it, expected x_wo \
+         x_og to equal the arm's forward kinematics within 1 mm and 0.1 degrees",
     );
 }
 

@@ -2,11 +2,12 @@
 
 use benchdog::{
     check::{CheckedPlan, Flaw},
-    human::default_tool,
+    human::{Human, default_tool},
     model::plan::Plan,
     robot::Robot,
     scenario::read_plan,
 };
+use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::common::{checked, root};
 
@@ -29,7 +30,7 @@ fn a_good_plan_has_no_flaw() {
     assert_eq!(flaws(|_| ()), []);
     let (plan, robot) = load();
     let checked = checked(&robot, &plan);
-    assert_eq!(checked.arms.len(), 2);
+    assert_eq!(checked.arms().len(), 2);
     assert_eq!(checked.first_contact(), None);
 }
 
@@ -120,6 +121,33 @@ fn all_faults_are_found_at_once() {
     assert_eq!(keys, ["object.mass_kg", "arms[0].grip_force_n", "arms[1].q_rad[0]", "human.q_rad[0]"]);
 }
 
+/// What cannot follow from a fault is still checked, and what follows from it is not reported.
+#[test]
+fn a_fault_hides_no_other_fault() {
+    let keys = |change: fn(&mut Plan)| flaws(change).iter().map(Flaw::key).collect::<Vec<_>>();
+    let weak_and_off = keys(|plan| {
+        plan.arms[0].grip_force_n = 0.0;
+        plan.arms[0].x_og.translation.vector.x += 2e-3;
+    });
+    assert_eq!(weak_and_off, ["arms[0].grip_force_n", "arms[0].x_og"]);
+    // No thickness: neither is the tool off the board, nor does no gripper close on it.
+    assert_eq!(keys(|plan| plan.object.size_m[2] = f64::NAN), ["object.size_m[2]"]);
+    assert_eq!(keys(|plan| plan.object.size_m[0] = -0.1), ["object.size_m[0]"]);
+}
+
+#[test]
+fn fingers_that_lean_do_not_close_across() {
+    let lean = |angle_deg: f64| {
+        flaws(|plan| {
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle_deg.to_radians());
+            plan.arms[0].x_og.rotation *= turn;
+        })
+    };
+    assert_eq!(lean(0.09), []);
+    let [Flaw::FingersAcross { arm: 0, off_rad, .. }] = lean(2.0)[..] else { panic!("{:?}", lean(2.0)) };
+    assert!((off_rad.to_degrees() - 2.0).abs() < 1e-6);
+}
+
 /// A board that no gripper closes on has a flaw for each arm.
 #[test]
 fn a_thick_board_is_a_flaw_of_both_arms() {
@@ -127,11 +155,26 @@ fn a_thick_board_is_a_flaw_of_both_arms() {
     assert!(flaws.iter().filter(|flaw| matches!(flaw, Flaw::Thickness { .. })).count() == 2, "{flaws:?}");
 }
 
-/// 0.9 mm off is within the tolerance of given plans, and beyond that of the planner's own.
+/// 0.9 mm off is within the tolerance of given plans, and beyond that of the planner's own. Each message states its own.
 #[test]
 fn the_two_tolerances_differ() {
     let (mut plan, robot) = load();
     plan.arms[0].x_og.translation.vector.x += 0.9e-3;
     let checked = checked(&robot, &plan);
-    assert!(checked.inexact().iter().any(|flaw| matches!(flaw, Flaw::Hand { arm: 0, .. })));
+    let inexact = checked.inexact();
+    let flaw = inexact.iter().find(|flaw| matches!(flaw, Flaw::Hand { arm: 0, .. })).unwrap().to_string();
+    assert!(flaw.contains("9.0e-4 m and ") && flaw.ends_with("within 1e-6 m and 1e-6 rad"), "{flaw}");
+    let beyond = flaws(|plan| plan.arms[0].x_og.translation.vector.x += 2e-3)[0].to_string();
+    assert!(beyond.contains("2.00 mm and ") && beyond.ends_with("within 1 mm and 0.1 degrees"), "{beyond}");
+}
+
+/// Written numbers may exceed a limit by their rounding, the planner's own angles may not.
+#[test]
+fn the_planner_keeps_limits_exactly() {
+    let (mut plan, robot) = load();
+    let human = Human::new(&plan.human.unwrap().person(), &default_tool(plan.operation.kind)).unwrap();
+    plan.human.as_mut().unwrap().q_rad[0] = human.arm().limits_rad[0][1] + 1e-7;
+    let checked = checked(&robot, &plan);
+    assert!(checked.inexact().iter().any(|flaw| matches!(flaw, Flaw::PersonAngle { joint: 0, .. })));
+    assert_eq!(flaws(|plan| plan.human.as_mut().unwrap().q_rad[0] = 9.0)[0].key(), "human.q_rad[0]");
 }

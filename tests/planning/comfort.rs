@@ -1,11 +1,11 @@
-//! How a scenario's `[comfort]` and the person's lean reach the plan and the check of it.
+//! Effect of a scenario's `[comfort]` and the person's lean on the plan and its verification.
 
 use benchdog::model::{plan::MeanComfort, scenario::ResponseKind};
 
 use crate::shared::{fast, flaws, plan, verified};
 
 #[test]
-fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
+fn the_objective_of_a_mean_scenario_is_that_of_the_mean_response() {
     let mut scenario = fast("cut-rim");
     scenario.comfort.person = ResponseKind::Mean;
     let plan = plan(&scenario);
@@ -15,7 +15,7 @@ fn the_mean_answer_is_the_objective_of_a_scenario_that_asks_for_it() {
     assert!(responses > 100);
     // The default weights; rounding of one sum.
     assert!((comfort.objective - (muscular_regularised + 64.0 * peripersonal_m)).abs() < 1e-12);
-    // The posture in the plan is the best answer that the search found, not a middling one.
+    // The posture in the plan is the best response that the search found.
     let of_posture = comfort.muscular_regularised + 64.0 * comfort.peripersonal_m;
     assert!(of_posture > comfort.objective);
 
@@ -38,7 +38,7 @@ fn a_saturated_metric_and_a_leaning_person_pass_the_check() {
     // A trunk that leans scores 2 in table B.
     assert!(comfort.rula.unwrap().neck_trunk_legs >= 2);
     assert_eq!(plan.human.unwrap().lean_deg, 10.0);
-    // The same plan is another one to a scenario without saturation.
+    // Without saturation the plan's comfort is different.
     scenario.comfort.saturation_m = None;
     assert!(flaws(&plan, &scenario)[0].starts_with("comfort.peripersonal_m is"));
 }

@@ -1,5 +1,4 @@
-//! Collision checks of the built-in Baxter: distances worked out by hand, and every pair of primitives compared without
-//! a broad phase.
+//! Collision checks of the built-in Baxter against distances computed by hand and by brute force over all pairs of primitives.
 
 use benchdog::{
     collision::{Body, CollisionModel, PersonClearance, PersonPart, Scene},
@@ -20,7 +19,7 @@ use crate::common::baxter;
 
 const BOARD_SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
 
-/// The angles at which the maker parks the arms, rad: the elbows bent, the forearms level.
+/// The manufacturer's neutral posture of an arm, rad: elbow bent, forearm level.
 const NEUTRAL_RAD: [f64; 7] = [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0];
 
 fn link_poses(robot: &Robot, left_rad: &[f64], right_rad: &[f64]) -> Vec<Pose> {
@@ -29,7 +28,7 @@ fn link_poses(robot: &Robot, left_rad: &[f64], right_rad: &[f64]) -> Vec<Pose> {
     robot.link_poses(&robot.positions(&[state("left", left_rad), state("right", right_rad)]))
 }
 
-/// A board behind the robot, out of everything's way.
+/// A board behind the robot, out of reach.
 fn far_away() -> Pose {
     Isometry3::translation(-3.0, 0.0, 0.0)
 }
@@ -141,7 +140,7 @@ fn only_the_fingers_of_a_holding_gripper_may_touch_the_board() {
     assert_eq!(too_deep.bodies, [Body::Link(robot.arms[left].gripper.palm_link), Body::Board]);
 }
 
-/// A primitive where it is, as parry has it: converted here a second time, on purpose.
+/// A primitive in W, converted independently of the library.
 fn placed_at(shape: &PlacedShape, x_wl: &Pose) -> (ParryPose, SharedShape) {
     let x_ws = x_wl * shape.x_ls;
     match shape.shape {
@@ -167,7 +166,7 @@ fn distance_m(a: &Shapes, b: &Shapes) -> f64 {
     pairs.map(|(a, b)| query::distance(&a.0, &*a.1, &b.0, &*b.1).unwrap().distance).fold(f64::INFINITY, f64::min)
 }
 
-/// Every link's primitives where they are.
+/// The primitives of all links in W.
 fn links_w(robot: &Robot, link_poses: &[Pose]) -> Vec<Shapes> {
     let placed = robot.links.iter().zip(link_poses);
     placed.map(|(link, x_wl)| link.shapes.iter().map(|shape| placed_at(shape, x_wl)).collect()).collect()
@@ -183,7 +182,7 @@ fn capsule_w(part: &PersonPart) -> Shapes {
     vec![(ParryPose::IDENTITY, SharedShape::capsule(p0, p1, part.radius_m))]
 }
 
-/// The least margin over all pairs of primitives, m.
+/// The minimum margin over all pairs of primitives, m.
 fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
     let links = links_w(robot, scene.link_poses);
     let board = board_w(scene.board_size_m, &scene.x_wo);
@@ -213,7 +212,7 @@ fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
     margin_m
 }
 
-/// Angles about the parked posture, where some robots are free and some are not.
+/// Angles near the neutral posture, with and without collisions.
 fn posture() -> impl Strategy<Value = Vec<f64>> {
     NEUTRAL_RAD.map(|q| q - 0.9..q + 0.9).to_vec()
 }
@@ -229,7 +228,7 @@ fn the_depth_of_an_overlap_is_a_negative_distance() {
     let spread = [0.7, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let poses = link_poses(robot, &spread, &spread.map(|q| -q));
     for depth_m in [0.002, 0.01] {
-        // Into the front bulge of the torso, which ends at x = 0.1995; the distance to keep counts on top.
+        // Into the front of the torso, which ends at x = 0.1995; the required distance adds to the depth.
         let x_m = 0.1995 + 0.1 - depth_m;
         let person = [part([x_m, 0.0, 0.0], [x_m, 0.0, 0.15], 0.1)];
         let scene = scene(&poses, &[], far_away(), &person);
@@ -241,7 +240,7 @@ fn the_depth_of_an_overlap_is_a_negative_distance() {
 }
 
 #[test]
-fn what_goes_with_the_tool_is_not_in_the_way_of_the_board_it_works_on() {
+fn tool_hand_and_forearm_are_ignored_near_the_board() {
     let robot = baxter();
     let model = CollisionModel::new(robot);
     let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
@@ -290,7 +289,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn nobody_nearer_to_the_person_is_overlooked(
+    fn the_nearest_body_is_found(
         left in posture(), right in posture(), place in point(), turn in [-3.0..3.0, -3.0..3.0, -3.0..3.0],
         ends in [point(), point()], radius_m in 0.03..0.12, within_m in 0.0..0.6,
     ) {
@@ -313,7 +312,7 @@ proptest! {
     }
 
     #[test]
-    fn the_broad_phase_loses_nothing(
+    fn the_broad_phase_misses_no_pair(
         left in posture(), right in posture(), place in point(), turn in [-3.0..3.0, -3.0..3.0, -3.0..3.0],
         ends in [point(), point()], radius_m in 0.03..0.12, holds in any::<bool>(),
         clearance in prop::option::of(0.0..0.05),

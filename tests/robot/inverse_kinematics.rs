@@ -150,7 +150,7 @@ fn six_joints_are_searched() {
 }
 
 #[test]
-fn answers_are_always_the_same() {
+fn solutions_are_deterministic() {
     let [chain, _] = chains();
     let [targets, _] = targets();
     for inverse in [InverseKinematics::for_chain(chain), InverseKinematics::General(General::new(chain))] {
@@ -177,7 +177,7 @@ fn targets_without_solutions_are_outcomes() {
 }
 
 #[test]
-fn a_stretched_arm_is_answered() {
+fn a_stretched_arm_is_solved() {
     for chain in chains() {
         // Straight elbow and wrist: the Jacobian loses rank, and the self-motion shrinks.
         let q_rad = [0.3, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -195,7 +195,7 @@ fn a_stretched_arm_is_answered() {
 }
 
 #[test]
-fn a_slice_holds_the_posture_that_it_came_from() {
+fn a_slice_contains_the_posture_that_it_came_from() {
     let mut generator = rand_pcg::Pcg64::seed_from_u64(1);
     let mut missed = 0;
     for chain in chains() {

@@ -1,17 +1,17 @@
-//! The branches of the built-in Baxter's solutions, combinations of two arms, and figures of a posture.
+//! The branches of the built-in Baxter's solutions, and combinations of two arms.
 
 use std::sync::LazyLock;
 
 use approx::assert_relative_eq;
 use benchdog::{
-    model::{frames::Pose, wrench::Wrench},
+    model::frames::Pose,
     robot::{
         Chain, InverseKinematics, Robot, Solution,
         bimanual::{Combinations, RankedSolutions},
         inverse::{Branch, ClosedForm, RESIDUAL_TOLERANCE, SelfMotion},
     },
 };
-use nalgebra::{Isometry3, Matrix6xX, Vector3};
+use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 
@@ -28,19 +28,19 @@ fn random_posture(chain: &Chain, generator: &mut rand_pcg::Pcg64) -> Vec<f64> {
     limits.map(|(lower, upper)| generator.random_range(*lower..*upper)).collect()
 }
 
-/// True when a sample is at a limit of some joint.
+/// True if a joint of a sample is at a limit.
 fn at_a_limit(chain: &Chain, q_rad: &[f64]) -> bool {
     q_rad.iter().zip(chain.lower().iter().zip(chain.upper())).any(|(q, (lower, upper))| q == lower || q == upper)
 }
 
 #[test]
-fn every_random_posture_is_on_one_branch() {
+fn every_random_posture_is_on_exactly_one_branch() {
     let mut generator = rand_pcg::Pcg64::seed_from_u64(3);
     for (chain, arm) in chains().iter().zip(arms()) {
         for number in 0..150 {
             let q_rad = random_posture(chain, &mut generator);
             let motion = arm.branches(&chain.gripper_pose(&q_rad));
-            // Both are solutions to 1e-9; the way between them is that over the smallest singular value.
+            // Both are solutions to 1e-9, so they differ by that over the smallest singular value.
             let holding = motion.branches().iter().filter(|branch| branch.contains(&q_rad, 1e-6)).count();
             assert_eq!(holding, 1, "posture {number}: {q_rad:?}");
         }
@@ -64,43 +64,11 @@ fn branches_are_solutions_from_limit_to_limit() {
                 assert!(ends.iter().all(|q_rad| at_a_limit(chain, q_rad)), "{ends:?}");
             }
             for [from, to] in samples.array_windows() {
-                // The tracer's longest step with what the interpolation adds.
+                // The tracer's longest step plus the interpolation.
                 assert!((from.arc_rad..from.arc_rad + 0.3).contains(&to.arc_rad), "{} {}", from.arc_rad, to.arc_rad);
             }
         }
     }
-}
-
-fn assert_intervals(chain: &Chain, target: &Pose, branch: &Branch) {
-    let intervals = branch.intervals();
-    assert_eq!(intervals[0].arc_rad[0], 0.0);
-    assert_eq!(intervals[intervals.len() - 1].arc_rad[1], branch.length_rad());
-    for interval in &intervals {
-        let [from, to] = interval.redundancy_rad;
-        let w1_rad = 0.5 * (from + to);
-        let found = branch.at_redundancy(w1_rad);
-        found.iter().for_each(|q_rad| {
-            assert_solves(chain, target, q_rad);
-            assert!((q_rad[5] - w1_rad).abs() < 1e-9);
-        });
-        let covering = intervals.iter().filter(|other| {
-            let [a, b] = other.redundancy_rad;
-            (a.min(b)..a.max(b)).contains(&w1_rad)
-        });
-        assert_eq!(found.len(), covering.count(), "{w1_rad} {intervals:?}");
-    }
-}
-
-#[test]
-fn an_interval_has_one_solution_for_each_value_of_the_redundancy() {
-    let [chain, _] = chains();
-    let [arm, _] = arms();
-    let target = chain.gripper_pose(&[0.2, -0.4, 0.6, 1.3, -0.8, 0.9, 0.5]);
-    let motion = arm.branches(&target);
-    assert!(!motion.branches().is_empty());
-    motion.branches().iter().filter(|branch| branch.length_rad() > 0.5).for_each(|branch| {
-        assert_intervals(chain, &target, branch);
-    });
 }
 
 #[test]
@@ -119,28 +87,6 @@ fn slices_are_on_the_branches() {
 }
 
 #[test]
-fn places_on_a_branch_are_solutions_and_are_found_again() {
-    let [chain, _] = chains();
-    let [arm, _] = arms();
-    let target = chain.gripper_pose(&[0.2, -0.4, 0.6, 1.3, -0.8, 0.9, 0.5]);
-    let motion = arm.branches(&target);
-    let branch = &motion.branches()[0];
-    for share in [0.0, 0.1, 0.37, 0.5, 0.83, 1.0] {
-        let arc_rad = share * branch.length_rad();
-        let q_rad = branch.at(arc_rad).unwrap();
-        assert_solves(chain, &target, &q_rad);
-        let (found_rad, nearest) = branch.nearest(&q_rad).unwrap();
-        assert!(distance_rad(&nearest, &q_rad) < 1e-7);
-        // Places are told along chords, from which the branch strays by a few per cent of a step of 0.25 rad.
-        assert!((found_rad - arc_rad).abs() < 0.02, "{found_rad} {arc_rad}");
-    }
-    assert_eq!(branch.at(-0.1), None);
-    assert_eq!(branch.at(f64::NAN), None);
-    assert_eq!(branch.nearest(&[f64::NAN; 7]), None);
-    assert_eq!(branch.nearest(&[0.0; 3]), None);
-}
-
-#[test]
 fn targets_without_branches_are_outcomes() {
     let [chain, _] = chains();
     let [arm, _] = arms();
@@ -148,7 +94,7 @@ fn targets_without_branches_are_outcomes() {
     let inside: Pose = Isometry3::from_parts(chain.shoulder_w().into(), nalgebra::UnitQuaternion::identity());
     assert!(matches!(arm.branches(&inside), SelfMotion::NotFound));
     assert!(matches!(arm.branches(&Isometry3::translation(f64::NAN, 0.0, 0.0)), SelfMotion::Malformed));
-    // Stretched and turned in: singular, whatever is found must be true.
+    // Stretched and singular: any solution found must be exact.
     let stretched = chain.gripper_pose(&[0.3, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0]);
     for branch in arm.branches(&stretched).branches() {
         branch.samples().iter().for_each(|sample| assert_solves(chain, &stretched, &sample.q_rad));
@@ -162,12 +108,12 @@ fn the_arms_are_mirror_images() {
     for _ in 0..10 {
         let q_rad = random_posture(left, &mut generator);
         let targets = [left.gripper_pose(&q_rad), right.gripper_pose(&mirrored(&q_rad))];
-        // The URDF's mount is written with a dozen digits.
+        // The URDF's mount has a dozen digits.
         let [a, b] = targets.map(|target| target.translation.vector);
         assert!((a - Vector3::new(b.x, -b.y, b.z)).norm() < 1e-6, "{a} {b}");
         let motions = [arms()[0].branches(&targets[0]), arms()[1].branches(&targets[1])];
         let lengths = motions.each_ref().map(|motion| motion.branches().iter().map(Branch::length_rad).sum::<f64>());
-        // Lengths are those of chords, and the chords differ.
+        // Lengths are sums of chords, and the chords differ.
         assert_relative_eq!(lengths[0], lengths[1], max_relative = 0.02);
     }
 }
@@ -198,7 +144,7 @@ fn combinations_come_in_the_order_of_their_cost() {
 }
 
 #[test]
-fn both_arms_hold_one_board() {
+fn both_arms_grasp_one_board() {
     let x_wo = Isometry3::translation(0.6, 0.0, 0.2);
     let turn = nalgebra::UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
     // From either side, fingers along the board's y.
@@ -219,53 +165,6 @@ fn both_arms_hold_one_board() {
         }
     }
     assert!(last > 0.0);
-}
-
-#[test]
-fn manipulability_is_the_product_of_the_singular_values() {
-    let [chain, _] = chains();
-    let bent = chain.manipulability(&[0.2, -0.4, 0.6, 1.3, -0.8, 0.9, 0.5]);
-    assert!(bent > 0.01, "{bent}");
-    let six: f64 = {
-        let jacobian: Matrix6xX<f64> = chain.jacobian_w(&[0.2, -0.4, 0.6, 1.3, -0.8, 0.9, 0.5]);
-        jacobian.singular_values().iter().product()
-    };
-    // Both are products of the same singular values.
-    assert_relative_eq!(bent, six, max_relative = 1e-9);
-}
-
-#[test]
-fn distances_to_limits_are_shares() {
-    let [chain, _] = chains();
-    let middle: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(a, b)| 0.5 * (a + b)).collect();
-    chain.limit_distances(&middle).iter().for_each(|share| assert_relative_eq!(*share, 1.0, epsilon = 1e-12));
-    chain.limit_distances(chain.lower()).iter().for_each(|share| assert_eq!(*share, 0.0));
-    let beyond: Vec<f64> = chain.upper().iter().map(|upper| upper + 0.1).collect();
-    chain.limit_distances(&beyond).iter().for_each(|share| assert!(*share < 0.0));
-}
-
-#[test]
-fn a_weight_in_the_gripper_loads_the_motors_like_a_heavier_arm() {
-    let [chain, _] = chains();
-    let q_rad = [0.2, -0.4, 0.6, 1.3, -0.8, 0.9, 0.5];
-    // A mass at G pushes the gripper down: the gripper pushes up. Its potential energy is m g z_G(q).
-    let force_n = 10.0;
-    let loaded = chain.holding_torque_nm(&q_rad, &Wrench::from_force(Vector3::new(0.0, 0.0, force_n)));
-    let gravity = chain.gravity_torque_nm(&q_rad);
-    for joint in 0..7 {
-        let z_at = |step: f64| {
-            let mut q_rad = q_rad;
-            q_rad[joint] += step;
-            chain.gripper_pose(&q_rad).translation.vector.z
-        };
-        let slope = (z_at(1e-6) - z_at(-1e-6)) / 2e-6;
-        // Rounding of a metre over 2e-6 is 1e-10, times the force.
-        assert_relative_eq!(loaded[joint] - gravity[joint], force_n * slope, epsilon = 1e-7);
-    }
-    let idle = chain.effort_distances(&q_rad, &Wrench::default());
-    for (joint, share) in idle.iter().enumerate() {
-        assert_relative_eq!(*share, 1.0 - gravity[joint].abs() / chain.effort_nm()[joint], epsilon = 1e-12);
-    }
 }
 
 proptest! {
@@ -290,7 +189,7 @@ proptest! {
     }
 
     #[test]
-    fn what_a_search_finds_is_a_solution(q_rad in posture(), seed in posture()) {
+    fn a_found_solution_is_exact(q_rad in posture(), seed in posture()) {
         for chain in chains() {
             let target = chain.gripper_pose(&q_rad);
             if let Solution::Found(found) = InverseKinematics::for_chain(chain).local(&target, &seed) {

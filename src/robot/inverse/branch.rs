@@ -1,22 +1,20 @@
-//! A branch of solutions: a stretch of a self-motion within the joint limits.
+//! Branches of solutions: the parts of a self-motion within the joint limits.
 
 use std::f64::consts::TAU;
 
 use super::{
-    RESIDUAL_TOLERANCE,
+    solution::RESIDUAL_TOLERANCE,
     trace::{Angles, Curve, Point, Tracer},
 };
 use crate::{model::frames::Pose, robot::chain::Chain};
 
-/// A connected set of solutions within the joint limits: the arm moves along it while its gripper stands still.
+/// A connected set of solutions within the joint limits: a path of the arm with its gripper fixed.
 ///
-/// Places on it are told by the length of the way from its start, in the space of joint angles, rad. The redundancy
-/// parameter (the angle of W1) may turn back on the way: then one value of it has several solutions on one branch.
+/// Positions on it are arc lengths from its start in joint space, rad.
 #[derive(Clone, Debug)]
 pub struct Branch {
     chain: Chain,
     target: Pose,
-    free_joint: usize,
     samples: Vec<BranchSample>,
     closed: bool,
 }
@@ -28,27 +26,18 @@ pub struct BranchSample {
     pub q_rad: [f64; 7],
     /// The unit tangent of the branch.
     pub tangent: [f64; 7],
-    /// Length of the way from the start of the branch, along the chords between samples, rad.
+    /// Arc length from the start of the branch, along the chords between samples, rad.
     pub arc_rad: f64,
 }
 
-/// A stretch of a branch on which each value of the redundancy parameter has one solution.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// The redundancy parameter at its start and at its end, rad; the first may be the greater.
-    pub redundancy_rad: [f64; 2],
-    /// Its start and its end on the branch, rad.
-    pub arc_rad: [f64; 2],
-}
-
 impl Branch {
-    /// The solutions from which all others are interpolated: both ends, the places where the redundancy parameter turns
-    /// back, and so many between that the branch strays from the chords by a few per cent of their length.
+    /// The samples: both ends, the turning points of the free joint W1, and enough between that the branch deviates from the
+    /// chords by a few per cent of their length.
     pub fn samples(&self) -> &[BranchSample] {
         &self.samples
     }
 
-    /// True when no limit ends the branch: its last sample is its first.
+    /// True if the branch is a closed curve; the last sample is then the first.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
@@ -58,57 +47,8 @@ impl Branch {
         self.samples.last().map_or(0.0, |sample| sample.arc_rad)
     }
 
-    /// The branch in stretches on which the redundancy parameter goes one way.
-    pub fn intervals(&self) -> Vec<Interval> {
-        let mut intervals: Vec<Interval> = Vec::new();
-        let mut direction = 0.0;
-        for [from, to] in self.samples.array_windows() {
-            let [w_from, w_to] = [from.q_rad[self.free_joint], to.q_rad[self.free_joint]];
-            let onward = (w_to - w_from).signum();
-            match intervals.last_mut() {
-                Some(last) if onward == direction => {
-                    last.redundancy_rad[1] = w_to;
-                    last.arc_rad[1] = to.arc_rad;
-                }
-                _ => intervals.push(Interval { redundancy_rad: [w_from, w_to], arc_rad: [from.arc_rad, to.arc_rad] }),
-            }
-            direction = onward;
-        }
-        intervals
-    }
-
-    /// The solution at a place on the branch; none outside `0..=length_rad`, and where a singularity keeps the Newton
-    /// iteration from its tolerance.
-    pub fn at(&self, arc_rad: f64) -> Option<Vec<f64>> {
-        let number = self.segment(arc_rad)?;
-        let [from, to] = [&self.samples[number], &self.samples[number + 1]];
-        let share = (arc_rad - from.arc_rad) / (to.arc_rad - from.arc_rad);
-        let guess = Segment::between(from, to).point(share);
-        let settled = Tracer::new(&self.chain, &self.target)?.settled(guess.q, &guess.tangent, &guess.q)?;
-        Some(self.clamped(&settled.q))
-    }
-
-    /// The solutions of the branch at a value of the redundancy parameter, rad.
-    pub fn at_redundancy(&self, redundancy_rad: f64) -> Vec<Vec<f64>> {
-        let Some(tracer) = Tracer::new(&self.chain, &self.target) else { return Vec::new() };
-        let mut row = Angles::zeros();
-        row[self.free_joint] = 1.0;
-        let mut solutions: Vec<Vec<f64>> = Vec::new();
-        for [from, to] in self.samples.array_windows() {
-            for share in Segment::between(from, to).joint(self.free_joint).crossings(redundancy_rad) {
-                let mut q = Segment::between(from, to).point(share).q;
-                let guess = q;
-                q[self.free_joint] = redundancy_rad;
-                let near = |point: &Point| (point.q - guess).norm() < to.arc_rad - from.arc_rad;
-                let settled = tracer.settled(q, &row, &q).filter(near).map(|point| self.clamped(&point.q));
-                solutions.extend(settled.filter(|q_rad| !super::holds(&solutions, q_rad)));
-            }
-        }
-        solutions
-    }
-
-    /// The place on the branch that is nearest to these angles, and the solution there; none for malformed angles.
-    pub fn nearest(&self, q_rad: &[f64]) -> Option<(f64, Vec<f64>)> {
+    /// The arc length and the solution nearest to these angles; `None` if the angles are malformed.
+    fn nearest(&self, q_rad: &[f64]) -> Option<(f64, Vec<f64>)> {
         let wanted = Angles::from_row_slice(<&[f64; 7]>::try_from(q_rad).ok()?);
         let mut best = (f64::INFINITY, 0, 0.0);
         for (number, [from, to]) in self.samples.array_windows().enumerate() {
@@ -123,7 +63,7 @@ impl Branch {
         let [from, to] = [&self.samples[best.1], &self.samples[best.1 + 1]];
         let guess = Segment::between(from, to).point(best.2);
         let tracer = Tracer::new(&self.chain, &self.target)?;
-        // The foot of the perpendicular: the tangent is taken anew where the last one led.
+        // The foot of the perpendicular, in two iterations of the tangent.
         let foot = tracer
             .settled(guess.q, &guess.tangent, &wanted)
             .and_then(|foot| tracer.settled(foot.q, &foot.tangent, &wanted))
@@ -141,29 +81,20 @@ impl Branch {
         }
     }
 
-    /// True when a solution on the branch is within `tolerance_rad` of these angles in every joint.
+    /// True if a solution on the branch is within `tolerance_rad` of these angles in every joint.
     pub fn contains(&self, q_rad: &[f64], tolerance_rad: f64) -> bool {
         let near = |found: &[f64]| found.iter().zip(q_rad).all(|(a, b)| (a - b).abs() <= tolerance_rad);
         self.nearest(q_rad).is_some_and(|(_, found)| near(&found))
     }
 
-    /// The chord that a place is on.
-    fn segment(&self, arc_rad: f64) -> Option<usize> {
-        if !(0.0..=self.length_rad()).contains(&arc_rad) || self.samples.len() < 2 {
-            return None;
-        }
-        let after = self.samples.partition_point(|sample| sample.arc_rad <= arc_rad);
-        Some(after.clamp(1, self.samples.len() - 1) - 1)
-    }
-
-    /// Angles within limits; what is beyond is rounding.
+    /// Clamps angles that are beyond the limits by rounding.
     fn clamped(&self, q: &Angles) -> Vec<f64> {
         let limits = self.chain.lower().iter().zip(self.chain.upper());
         q.iter().zip(limits).map(|(q, (lower, upper))| q.clamp(*lower, *upper)).collect()
     }
 }
 
-/// How far along a chord the place nearest to these angles is (0 to 1), and its squared distance.
+/// The nearest point of a chord: position on it (0 to 1) and squared distance.
 fn nearest_on_chord(from: &BranchSample, to: &BranchSample, wanted: &Angles) -> (f64, f64) {
     let from_q = Angles::from(from.q_rad);
     let (chord, offset) = (Angles::from(to.q_rad) - from_q, wanted - from_q);
@@ -188,23 +119,23 @@ pub(super) fn branches_of(curve: &Curve, chain: &Chain, target: &Pose, free_join
             BranchSample { q_rad: point.q.into(), tangent: point.tangent.into(), arc_rad }
         });
         let samples = samples.collect();
-        Branch { chain: chain.clone(), target: *target, free_joint, samples, closed }
+        Branch { chain: chain.clone(), target: *target, samples, closed }
     };
     arcs.into_iter().map(branch).collect()
 }
 
-/// A curve on its way into arcs within limits.
+/// Cuts a curve into arcs within the limits.
 struct Clip<'a> {
     chain: &'a Chain,
     tracer: Tracer<'a>,
     free_joint: usize,
     arcs: Vec<Vec<Point>>,
-    /// The arc that the last segment ended in.
+    /// The arc at the end of the last segment.
     open: Option<Vec<Point>>,
 }
 
 impl Clip<'_> {
-    /// Cuts a segment where it crosses limits and where the free joint turns back.
+    /// Cuts a segment at limits and at turning points of the free joint.
     fn add(&mut self, segment: &Segment) {
         let mut cuts: Vec<(f64, Option<(usize, f64)>)> = vec![(0.0, None), (1.0, None)];
         for joint in 0..7 {
@@ -231,7 +162,7 @@ impl Clip<'_> {
         }
     }
 
-    /// Adds the places at which a joint crosses its limits, on any turn.
+    /// Adds the positions at which a joint crosses its limits, modulo full turns.
     fn add_crossings(&self, cuts: &mut Vec<(f64, Option<(usize, f64)>)>, joint: usize, cubic: &Cubic) {
         let [least, most] = cubic.bounds();
         for limit in [self.chain.lower()[joint], self.chain.upper()[joint]] {
@@ -243,7 +174,7 @@ impl Clip<'_> {
         }
     }
 
-    /// What brings every angle within its limits, whole turns in rad; none when one is outside.
+    /// Full turns, rad, that bring every angle within its limits; `None` if there are none.
     fn turns_within(&self, q: &Angles) -> Option<Angles> {
         let mut turns = Angles::zeros();
         for joint in 0..7 {
@@ -256,8 +187,8 @@ impl Clip<'_> {
         Some(turns)
     }
 
-    /// A place of a segment as a solution: at a limit where the cut is one. None when that cannot be had, or lies beyond
-    /// another limit; the arc then ends at its last sample.
+    /// The solution at a cut of a segment, exactly at the limit if the cut is one. `None` if the iteration does not converge or
+    /// another limit is exceeded; the arc then ends at its last sample.
     fn settled(&self, segment: &Segment, (share, limit): (f64, Option<(usize, f64)>), turns: &Angles) -> Option<Point> {
         let mut guess = segment.point(share);
         let along = guess.tangent;
@@ -282,7 +213,7 @@ impl Clip<'_> {
         Some(Point { q, tangent })
     }
 
-    /// The arcs, each with whether it is closed. Where the trace began inside an arc, its two parts are joined.
+    /// The arcs, and whether each is closed. Joins the two parts of an arc in which the trace began.
     fn finished(mut self, curve: &Curve) -> Vec<(Vec<Point>, bool)> {
         let meets = |end: &Point, start: &Point| (end.q - start.q).amax() < 1e-6;
         if let Some(mut last) = self.open.take().filter(|arc| arc.len() > 1) {
@@ -307,10 +238,10 @@ impl Clip<'_> {
     }
 }
 
-/// What the interpolation's end may be beyond a second limit, rad: rounding of the Newton iteration.
+/// Tolerance of limits at the end of an arc, rad: rounding of the Newton iteration.
 const LIMIT_SLACK_RAD: f64 = 1e-9;
 
-/// A stretch of a curve between two points, interpolated by cubics through both tangents.
+/// A part of a curve between two points: cubic Hermite interpolation.
 pub(super) struct Segment {
     coefficients: [Angles; 4],
     pub length_rad: f64,
@@ -329,7 +260,7 @@ impl Segment {
         Self::new(&point(from), &point(to))
     }
 
-    /// Angles and tangent at a share of the way from 0 to 1.
+    /// Angles and tangent at a parameter from 0 to 1.
     pub fn point(&self, share: f64) -> Point {
         let [a, b, c, d] = &self.coefficients;
         let q = a + (b + (c + d * share) * share) * share;
@@ -358,7 +289,7 @@ impl Cubic {
         [corners.into_iter().fold(f64::INFINITY, f64::min), corners.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// Where it turns back, strictly between 0 and 1, in order.
+    /// Turning points strictly between 0 and 1, in order.
     fn turning_points(&self) -> Vec<f64> {
         let [_, b, c, d] = self.0;
         let discriminant = c * c - 3.0 * b * d;
@@ -372,7 +303,7 @@ impl Cubic {
         roots
     }
 
-    /// Where it takes this value, from 0 to 1.
+    /// Parameters from 0 to 1 at which it has this value.
     fn crossings(&self, level: f64) -> Vec<f64> {
         let [least, most] = self.bounds();
         if !(least..=most).contains(&level) {
@@ -387,7 +318,7 @@ impl Cubic {
             if at_low * at_high > 0.0 {
                 continue;
             }
-            // Halving 45 times ends at rounding.
+            // 45 bisections reach rounding.
             for _ in 0..45 {
                 let middle = 0.5 * (low + high);
                 if (self.at(middle) - level) * at_low > 0.0 { low = middle } else { high = middle }

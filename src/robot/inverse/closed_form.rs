@@ -1,179 +1,102 @@
 //! The closed form for seven joints whose axes intersect in pairs.
 //!
 //! The joints S0 S1 E0 E1 W0 W1 W2 have axes z, a1, f, y, d, a, Z, each normal to the next; S1 meets E0, E1 meets W0,
-//! W1 meets W2. Three offsets keep shoulder, elbow and wrist from being spherical:
+//! W1 meets W2. With three offsets, shoulder, elbow and wrist are not spherical:
 //!
 //! ```text
 //! r_E = A u + r,   r = L1 f + B x_E       the elbow from the shoulder's axis z, at the height of a1
 //! r_M = r_E + L2 d + C (a x d)            the wrist, where W1 meets W2
 //! ```
 //!
-//! with `u = a1 x z` and `x_E = y x f`. The target gives the wrist `r_M` and the axes `X, Y, Z` of its frame M. One
-//! joint is free; with W1 chosen, W2 and S0 are bound by one equation, the length of the upper arm:
+//! with `u = a1 x z` and `x_E = y x f`. The target determines the wrist `r_M` and the axes `X, Y, Z` of its frame M. One joint
+//! is free; for a given W1, one equation relates W2 and S0, the length of the upper arm:
 //!
 //! ```text
 //! c0 = r_M - (C sin w1 + L2 cos w1) Z     k = C cos w1 - L2 sin w1     b(w2) = X cos w2 - Y sin w2
 //! |q - k b(w2)|^2 = L1^2 + B^2,  q(s0) = c0 - A u(s0)
 //! ```
 //!
-//! so that each S0 leaves at most two W2, in closed form. Then `r = q - k b` and the forearm's direction `d` are known,
-//! the elbow's axis is one of `+-(r x d) / |r x d|`, and what is left is one residual, `f . a1 = 0`, whose zeros along
-//! S0 are the solutions of the slice. The angles follow by `atan2`.
+//! Each S0 has at most two W2, in closed form. They give `r = q - k b`, the forearm's direction `d`, and the elbow's axis, one
+//! of `+-(r x d) / |r x d|`. The zeros along S0 of the remaining residual `f . a1 = 0` are the solutions of the slice. The
+//! angles follow by `atan2`.
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::{
-    General, holds, is_finite,
+    general::General,
+    geometry::Geometry,
     slice::{Slice, Zero},
+    solution::{contains, is_finite},
     trace::Angles,
 };
 use crate::{model::frames::Pose, robot::chain::Chain};
 
-/// How far axes may be from normal and intersecting (1, m): quarter turns written with five decimals leave 4e-6. The
-/// polishing takes out what that does to the angles.
-const STRUCTURE_TOLERANCE: f64 = 1e-5;
-
-/// An offset of the shoulder below this leaves nothing to turn about, m.
-const MIN_SHOULDER_OFFSET_M: f64 = 1e-3;
-
-/// How far a closed-form angle may be beyond its limit before the polishing clamps it, rad: its own rounding.
+/// Tolerance of limits for angles of the closed form before Newton's method clamps them, rad: rounding.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
-/// An arm is nearly stretched when the wrist is farther away than this share of its length.
+/// Fraction of the arm's length beyond which the arm counts as nearly stretched.
 const NEARLY_STRETCHED: f64 = 0.93;
 
-/// The joint that is chosen freely: W1.
+/// The free joint: W1.
 pub(super) const FREE_JOINT: usize = 5;
 
 /// The inverse kinematics of a chain of this structure.
 #[derive(Clone, Debug)]
 pub struct ClosedForm {
     general: General,
-    /// The shoulder's frame in W: on the axis of S0 at the height of S1; z along S0, y along S1 at zero angles.
-    pub(super) x_wf: Pose,
-    /// The wrist's frame M in G: where W1 meets W2; z along W2, y along W1 at zero angles.
-    pub(super) x_gm: Pose,
-    /// A, m.
-    pub(super) shoulder_m: f64,
-    /// L1 and B, m.
-    pub(super) upper_arm_m: [f64; 2],
-    /// L2 and C, m.
-    pub(super) forearm_m: [f64; 2],
-    /// What a joint's angle is short of the angle in the formulas, rad.
-    pub(super) offset_rad: [f64; 7],
-}
-
-/// Axes and points of a chain at zero angles, W.
-struct ZeroPosture {
-    axes: [Vector3<f64>; 7],
-    origins: [Vector3<f64>; 7],
-}
-
-impl ZeroPosture {
-    fn new(chain: &Chain) -> Option<Self> {
-        let frames = chain.joint_frames(&vec![0.0; chain.dof()]);
-        let axes: [Vector3<f64>; 7] = chain.axes_w(&frames).try_into().ok()?;
-        let origins: Vec<Vector3<f64>> = frames.iter().map(|x_wj| x_wj.translation.vector).collect();
-        let normal = axes.windows(2).all(|pair| pair[0].dot(&pair[1]).abs() < STRUCTURE_TOLERANCE);
-        normal.then_some(Self { axes, origins: origins.try_into().ok()? })
-    }
-
-    /// Where two axes that are normal to each other meet; none when they pass each other.
-    fn meeting(&self, first: usize, second: usize) -> Option<Vector3<f64>> {
-        let (along_first, along_second) = (self.axes[first], self.axes[second]);
-        let between = self.origins[second] - self.origins[first];
-        let passing = between.dot(&along_first.cross(&along_second));
-        let on_first = self.origins[first] + along_first * between.dot(&along_first);
-        (passing.abs() < STRUCTURE_TOLERANCE).then_some(on_first)
-    }
+    geometry: Geometry,
 }
 
 impl ClosedForm {
-    /// The closed form for this chain, when it has the structure.
+    /// The closed form of a chain; `None` if the chain does not have the structure.
     pub fn new(chain: &Chain) -> Option<Self> {
-        let zero = ZeroPosture::new(chain)?;
-        let [z, a1, f, y, d, a, tool] = zero.axes;
-        let (shoulder, elbow, wrist) = (zero.meeting(1, 2)?, zero.meeting(3, 4)?, zero.meeting(5, 6)?);
-        let u = a1.cross(&z);
-        let x_e = y.cross(&f);
-        let x_f = a.cross(&d);
-        let from_base = shoulder - zero.origins[0];
-        let (upper_arm, forearm) = (elbow - shoulder, wrist - elbow);
-        let aside = [from_base.dot(&a1), upper_arm.dot(&y), forearm.dot(&a)];
-        let shoulder_m = from_base.dot(&u);
-        if aside.iter().any(|m| m.abs() > STRUCTURE_TOLERANCE) || shoulder_m.abs() < MIN_SHOULDER_OFFSET_M {
-            return None;
-        }
-        let down = |s1: f64| -u * s1.sin() - z * s1.cos();
-        let s1 = (-f.dot(&z)).atan2(f.dot(&u));
-        let e1 = d.dot(&x_e).atan2(d.dot(&f));
-        let across = x_e * e1.cos() - f * e1.sin();
-        let x_wf = frame(shoulder - u * shoulder_m, [u, a1, z]);
-        let x_wm = frame(wrist, [a.cross(&tool), a, tool]);
-        Some(Self {
-            general: General::new(chain),
-            x_wf,
-            x_gm: chain.gripper_pose(&[0.0; 7]).inverse() * x_wm,
-            shoulder_m,
-            upper_arm_m: [upper_arm.dot(&f), upper_arm.dot(&x_e)],
-            forearm_m: [forearm.dot(&d), forearm.dot(&x_f)],
-            offset_rad: [
-                0.0,
-                s1,
-                x_e.dot(&a1).atan2(x_e.dot(&down(s1))),
-                e1,
-                (-a.dot(&across)).atan2(a.dot(&y)),
-                tool.dot(&x_f).atan2(tool.dot(&d)),
-                0.0,
-            ],
-        })
+        Some(Self { general: General::new(chain), geometry: Geometry::new(chain)? })
     }
 
-    /// The search for the same chain.
+    /// The general solver of the same chain.
     pub(super) fn general(&self) -> &General {
         &self.general
     }
 
-    /// The range of the formulas' S0 that the limits leave, at most one turn, rad.
+    /// The range of S0 within its limits, at most one turn, rad.
     pub(super) fn s0_range(&self) -> [f64; 2] {
         let chain = self.general.chain();
         [chain.lower()[0], chain.upper()[0].min(chain.lower()[0] + std::f64::consts::TAU)]
     }
 
-    /// The solutions over the self-motion of the arm: those of `slices` angles of the joint W1, evenly spread over its
-    /// range, in that order.
+    /// Samples of the self-motion: the solutions at `slices` angles of the joint W1, evenly spread over its range, in order.
     pub fn manifold(&self, target: &Pose, slices: usize) -> Vec<Vec<f64>> {
         let (lower, upper) = (self.general.chain().lower()[FREE_JOINT], self.general.chain().upper()[FREE_JOINT]);
         let angle = |number: usize| lower + (upper - lower) * (number as f64 + 0.5) / slices as f64;
         (0..slices).flat_map(|number| self.slice(target, angle(number))).collect()
     }
 
-    /// All solutions within limits that have the joint W1 at `w1_rad`, but for pairs that nearly coincide, which
-    /// [`ClosedForm::branches`] finds. Empty when
-    /// there are none, when the target is not finite, and at the one angle (k = 0) at which W2 does not move the elbow.
+    /// All solutions within limits with the joint W1 at `w1_rad`. May miss pairs that nearly coincide, which
+    /// [`ClosedForm::branches`] finds. Empty if there are none, if the target is not finite, and at the one angle (k = 0) at
+    /// which W2 does not move the elbow.
     pub fn slice(&self, target: &Pose, w1_rad: f64) -> Vec<Vec<f64>> {
         if !is_finite(target) || !w1_rad.is_finite() {
             return Vec::new();
         }
-        let slice = Slice::new(self, target, w1_rad);
+        let slice = Slice::new(&self.geometry, target, w1_rad);
         let mut solutions: Vec<Vec<f64>> = Vec::new();
         for zero in slice.zeros(self.s0_range()) {
             let polished = self.angles(&slice, &zero).and_then(|q_rad| self.general.polished(target, q_rad));
-            solutions.extend(polished.filter(|q_rad| !holds(&solutions, q_rad)));
+            solutions.extend(polished.filter(|q_rad| !contains(&solutions, q_rad)));
         }
         solutions
     }
 
-    /// The solutions with the joint W1 at `w1_rad`, whatever the limits of the others; good to about 1e-4 rad.
+    /// The solutions with the joint W1 at `w1_rad`, without limits of the others, to about 1e-4 rad.
     pub(super) fn unlimited_slice(&self, target: &Pose, w1_rad: f64) -> Vec<Angles> {
-        let slice = Slice::new(self, target, w1_rad);
+        let slice = Slice::new(&self.geometry, target, w1_rad);
         let zeros = slice.zeros([-std::f64::consts::PI, std::f64::consts::PI]);
         zeros.iter().filter_map(|zero| self.unlimited_angles(&slice, zero)).collect()
     }
 
-    /// The joint angles at a zero of the residual; none when one is beyond its limits.
+    /// The joint angles at a zero of the residual; `None` if one is beyond its limits.
     fn angles(&self, slice: &Slice, zero: &Zero) -> Option<Vec<f64>> {
         let chain = self.general.chain();
         let limits = chain.lower().iter().zip(chain.upper());
@@ -181,19 +104,19 @@ impl ClosedForm {
         angles.iter().zip(limits).map(|(angle, (lower, upper))| turned_into(*angle, *lower, *upper)).collect()
     }
 
-    /// The joint angles at a zero of the residual, but for whole turns.
+    /// The joint angles at a zero of the residual, modulo full turns.
     fn unlimited_angles(&self, slice: &Slice, zero: &Zero) -> Option<Angles> {
         let at = slice.elbow(zero.s0, zero.w2_sign);
         let m = at.r.cross(&at.d).norm();
-        // At m = 0 the arm is stretched and the elbow's axis undefined: the neighbouring slices stand for this one.
+        // At m = 0 the arm is stretched and the elbow's axis undefined. Neighbouring slices cover this case.
         let y = at.r.cross(&at.d) * (zero.elbow_sign / (m > 0.0).then_some(m)?);
         Some(self.angles_at(slice, zero.s0, [slice.w1, at.w2()], [&at.r, &at.d, &y]))
     }
 
-    /// The joint angles when S0, the wrist (W1 and W2), r, d and the elbow's axis y are known.
+    /// The joint angles from S0, the wrist (W1 and W2), r, d and the elbow's axis y.
     fn angles_at(&self, slice: &Slice, s0: f64, [w1, w2]: [f64; 2], [r, d, y]: [&Vector3<f64>; 3]) -> Angles {
         let (u, a1) = (Vector3::new(s0.cos(), s0.sin(), 0.0), Vector3::new(-s0.sin(), s0.cos(), 0.0));
-        let [l1, b] = self.upper_arm_m;
+        let [l1, b] = self.geometry.upper_arm_m;
         let f = (r * l1 - y.cross(r) * b).normalize();
         let x_e = y.cross(&f);
         let s1 = (-f.z).atan2(f.dot(&u));
@@ -203,24 +126,24 @@ impl ClosedForm {
         let a = slice.x * w2.sin() + slice.y * w2.cos();
         let e0 = x_e.dot(&a1).atan2(x_e.dot(&down));
         let w0 = (-a.dot(&across)).atan2(a.dot(y));
-        Angles::from([s0, s1, e0, e1, w0, w1, w2]) - Angles::from(self.offset_rad)
+        Angles::from([s0, s1, e0, e1, w0, w1, w2]) - Angles::from(self.geometry.offset_rad)
     }
 
-    /// Postures near the target in which the arm is stretched, r along d, when the target is that far. There the whole
-    /// upper arm turns about r while W1 hardly moves, so that slices may miss it. `turns` postures for each way in which
-    /// shoulder and wrist can point.
+    /// Stretched postures (r along d) near a far target. There the upper arm rotates about r while W1 hardly moves, so slices may
+    /// miss the curve. `turns` postures per configuration of shoulder and wrist.
     pub(super) fn stretched(&self, target: &Pose, turns: usize) -> Vec<Angles> {
-        let frame = Slice::new(self, target, 0.0);
+        let frame = Slice::new(&self.geometry, target, 0.0);
         let wrist = frame.wrist();
-        let length_m = self.upper_arm_m[0].hypot(self.upper_arm_m[1]) + self.forearm_m[0].hypot(self.forearm_m[1]);
+        let length_m = self.geometry.upper_arm_m[0].hypot(self.geometry.upper_arm_m[1])
+            + self.geometry.forearm_m[0].hypot(self.geometry.forearm_m[1]);
         let mut postures = Vec::new();
         for s0 in [wrist.y.atan2(wrist.x), (-wrist.y).atan2(-wrist.x)] {
-            let to_wrist = wrist - Vector3::new(s0.cos(), s0.sin(), 0.0) * self.shoulder_m;
+            let to_wrist = wrist - Vector3::new(s0.cos(), s0.sin(), 0.0) * self.geometry.shoulder_m;
             if to_wrist.norm() < NEARLY_STRETCHED * length_m {
                 continue;
             }
             let d = to_wrist.normalize();
-            let r = d * self.upper_arm_m[0].hypot(self.upper_arm_m[1]);
+            let r = d * self.geometry.upper_arm_m[0].hypot(self.geometry.upper_arm_m[1]);
             let Some(a) = d.cross(&frame.z).try_normalize(f64::EPSILON) else { continue };
             for a in [a, -a] {
                 let wrist =
@@ -236,14 +159,7 @@ impl ClosedForm {
     }
 }
 
-/// A frame of these axes.
-fn frame(origin: Vector3<f64>, axes: [Vector3<f64>; 3]) -> Pose {
-    // Axes that are normal only within the structure's tolerance need a proper rotation.
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&Matrix3::from_columns(&axes)));
-    Isometry3::from_parts(origin.into(), rotation)
-}
-
-/// The angle plus whole turns that lies within the limits, if there is one, rad.
+/// The angle plus full turns that is within the limits, if there is one, rad.
 fn turned_into(angle: f64, lower: f64, upper: f64) -> Option<f64> {
     let turn = std::f64::consts::TAU;
     let least = angle + ((lower - LIMIT_TOLERANCE_RAD - angle) / turn).ceil() * turn;

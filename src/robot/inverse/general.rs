@@ -2,31 +2,31 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::{RESIDUAL_TOLERANCE, Solution, holds, is_finite};
+use super::solution::{RESIDUAL_TOLERANCE, Solution, contains, is_finite};
 use crate::{model::frames::Pose, robot::chain::Chain};
 
-/// Where the iteration stops: a tenth of what is promised.
+/// Residual at which the iteration stops: a tenth of the tolerance.
 const TARGET_RESIDUAL: f64 = 0.1 * RESIDUAL_TOLERANCE;
 
-/// Steps after which a start is given up; what converges does so in 5 to 30.
+/// Maximum number of steps; converging starts need 5 to 30.
 const MAX_STEPS: usize = 60;
 
-/// Damping of the first step, and what it is multiplied by after a good and after a bad step.
+/// Initial damping, and its factors after a good and after a bad step.
 const DAMPING: f64 = 1e-3;
 const DAMPING_AFTER_GOOD: f64 = 0.1;
 const DAMPING_AFTER_BAD: f64 = 8.0;
 
-/// The damping beyond which no step can improve any more: a minimum beside the target.
+/// Damping at which the search stops at a local minimum.
 const MAX_DAMPING: f64 = 1e6;
 
-/// Levenberg-Marquardt on the pose error, with joints frozen while they push against a limit.
+/// Levenberg-Marquardt on the pose error, with joints fixed while they push against a limit.
 #[derive(Clone, Debug)]
 pub struct General {
     chain: Chain,
 }
 
 impl General {
-    /// The search for this chain.
+    /// The solver of this chain.
     pub fn new(chain: &Chain) -> Self {
         Self { chain: chain.clone() }
     }
@@ -36,14 +36,14 @@ impl General {
         &self.chain
     }
 
-    /// The solution that the search reaches from `seed`, which is clamped to the limits first.
+    /// The solution to which the search converges from `seed`, clamped to the limits.
     ///
     /// Minimises `|p_t - p|^2 + |log(R_t R')|^2` (m, rad) with steps `J' (J J' + mu I)^-1 e`.
     pub fn solve_from(&self, target: &Pose, seed: &[f64]) -> Solution {
         self.solve_within(target, seed, MAX_STEPS)
     }
 
-    /// As [`General::solve_from`], giving up after so many steps.
+    /// As [`General::solve_from`] with a maximum number of steps.
     pub fn solve_within(&self, target: &Pose, seed: &[f64], max_steps: usize) -> Solution {
         if seed.len() != self.chain.dof() || !seed.iter().all(|q| q.is_finite()) || !is_finite(target) {
             return Solution::Malformed;
@@ -82,7 +82,7 @@ impl General {
         }
     }
 
-    /// The angles after one damped step; none when the system has no solution.
+    /// The angles after one damped step; `None` if the system is singular.
     fn step(&self, here: &State, damping: f64) -> Option<Vec<f64>> {
         let mut normal = Matrix6::from_diagonal_element(damping);
         let free: Vec<bool> = (0..self.chain.dof()).map(|joint| !self.is_blocked(here, joint)).collect();
@@ -94,7 +94,7 @@ impl General {
         Some(self.clamped(moved.map(|((q, column), free)| if *free { q + column.dot(&lambda) } else { *q }).collect()))
     }
 
-    /// True for a joint at a limit that the descent would push beyond it.
+    /// True for a joint at a limit that the step would push beyond it.
     fn is_blocked(&self, here: &State, joint: usize) -> bool {
         let slope = here.columns[joint].dot(&here.error);
         let q = here.q_rad[joint];
@@ -109,8 +109,8 @@ impl General {
         q_rad
     }
 
-    /// The first solution that is reached from at most `starts` postures, which fill the joint ranges evenly, the middle
-    /// first; failing that the outcome that came nearest.
+    /// The first solution from at most `starts` postures, which fill the joint ranges evenly, the middle first; else the outcome
+    /// with the smallest residual.
     pub fn solve(&self, target: &Pose, starts: usize) -> Solution {
         let mut nearest = Solution::NotFound { residual: f64::INFINITY };
         for start in 0..starts {
@@ -124,7 +124,7 @@ impl General {
         nearest
     }
 
-    /// The solutions that are reached from `starts` postures, which fill the joint ranges evenly; each solution once.
+    /// The distinct solutions from `starts` postures, which fill the joint ranges evenly.
     pub fn solutions(&self, target: &Pose, starts: usize) -> Vec<Vec<f64>> {
         let mut solutions: Vec<Vec<f64>> = Vec::new();
         for start in 0..starts {
@@ -133,15 +133,14 @@ impl General {
                 Solution::NotFound { .. } => continue,
                 Solution::OutOfReach { .. } | Solution::Malformed => break,
             };
-            if !holds(&solutions, &q_rad) {
+            if !contains(&solutions, &q_rad) {
                 solutions.push(q_rad);
             }
         }
         solutions
     }
 
-    /// The posture of this number in a sequence that fills the joint ranges evenly, the middle first: the additive
-    /// recurrence on powers of `1 / phi`, `phi^(n + 1) = phi + 1` (M. Roberts, "The unreasonable effectiveness of
+    /// Element of a quasirandom sequence that fills the joint ranges evenly, the middle first: the additive recurrence on powers of `1 / phi`, `phi^(n + 1) = phi + 1` (M. Roberts, "The unreasonable effectiveness of
     /// quasirandom sequences", 2018).
     pub(super) fn start(&self, number: usize) -> Vec<f64> {
         let dof = self.chain.dof();
@@ -154,11 +153,10 @@ impl General {
         limits.enumerate().map(|(joint, (lower, upper))| lower + (upper - lower) * place(joint)).collect()
     }
 
-    /// A solution within limits that differs from a nearly exact one by rounding only; none when there is none.
+    /// Refines a nearly exact solution by Newton's method within the limits; `None` if it does not converge.
     pub(super) fn polished(&self, target: &Pose, q_rad: Vec<f64>) -> Option<Vec<f64>> {
         let mut here = State::new(&self.chain, target, self.clamped(q_rad));
-        // Newton doubles the digits with each step: from 1e-4 three are enough, the fourth is for arms near a
-        // singularity.
+        // Quadratic convergence from 1e-4 needs three steps; the fourth is for arms near a singularity.
         for _ in 0..4 {
             if here.residual <= TARGET_RESIDUAL {
                 break;
@@ -169,7 +167,7 @@ impl General {
     }
 }
 
-/// Angles with everything that a step needs.
+/// Angles, Jacobian and pose error of a step.
 struct State {
     q_rad: Vec<f64>,
     /// Columns of the Jacobian in W axes.

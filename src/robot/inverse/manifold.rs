@@ -1,27 +1,25 @@
-//! Every branch of solutions of an arm with the closed form: slices find the curves of the self-motion, the tracer
-//! follows them, the limits cut them.
+//! All branches of solutions of an arm with the closed form: slices find the curves of the self-motion, the tracer follows
+//! them, and the joint limits cut them.
 
 use std::f64::consts::TAU;
 
 use super::{
-    ClosedForm,
     branch::{Branch, Segment, branches_of},
-    closed_form::FREE_JOINT,
-    is_finite,
+    closed_form::{ClosedForm, FREE_JOINT},
+    solution::is_finite,
     trace::{Angles, Curve, Tracer},
 };
 use crate::model::frames::Pose;
 
-/// Slices, from limit to limit of the free joint, in which curves are looked for.
+/// Number of slices over the range of the free joint that seed curves.
 const SEED_SLICES: usize = 20;
 
-/// Stretched postures for each way of shoulder and wrist, and postures from all over the joint ranges, from which curves
-/// are looked for that lie between two slices. With these numbers 1 of 20,000 random postures was on no branch; with
-/// slices alone 28 of 1,000 were.
+/// Numbers of stretched postures per configuration of shoulder and wrist, and of postures over the joint ranges, that seed
+/// curves between two slices. With these numbers 1 of 20,000 random postures was on no branch; with slices alone 28 of 1,000.
 const STRETCHED_TURNS: usize = 4;
 const SEED_STARTS: usize = 32;
 
-/// A seed this near to a curve is on it, as a share of the curve's step: the interpolation is good to a hundredth.
+/// Distance within which a seed is on a curve, relative to the curve's step; the interpolation error is a hundredth.
 const ON_CURVE: f64 = 0.02;
 
 /// All solutions of a target.
@@ -29,7 +27,7 @@ const ON_CURVE: f64 = 0.02;
 pub enum SelfMotion {
     /// The branches, longest first: at least one.
     Found(Vec<Branch>),
-    /// The target lies farther from the shoulder than the chain is long.
+    /// The target is farther from the first joint than the chain's reach.
     OutOfReach {
         /// Distance of the target from the first joint, m.
         distance_m: f64,
@@ -38,12 +36,12 @@ pub enum SelfMotion {
     },
     /// No solution within the limits was found.
     NotFound,
-    /// The target has a component that is not a finite number.
+    /// The target is not finite.
     Malformed,
 }
 
 impl SelfMotion {
-    /// The branches; empty when there are none, whatever the reason.
+    /// The branches; empty if there are none.
     pub fn branches(&self) -> &[Branch] {
         match self {
             Self::Found(branches) => branches,
@@ -53,8 +51,8 @@ impl SelfMotion {
 }
 
 impl ClosedForm {
-    /// Every branch of solutions within the joint limits. The limits of a joint must be at most one turn apart; of a
-    /// wider range only the first turn is searched.
+    /// All branches of solutions within the joint limits, longest first. Of a joint range wider than one turn only the first turn
+    /// is searched.
     pub fn branches(&self, target: &Pose) -> SelfMotion {
         let chain = self.general().chain();
         if !is_finite(target) {
@@ -71,7 +69,7 @@ impl ClosedForm {
         if branches.is_empty() { SelfMotion::NotFound } else { SelfMotion::Found(branches) }
     }
 
-    /// The curves of the self-motion that come within the limits of the free joint, beyond the limits of the others too.
+    /// The curves of the self-motion within the limits of the free joint, without limits of the others.
     fn curves(&self, target: &Pose) -> Vec<Curve> {
         let chain = self.general().chain();
         let Some(tracer) = Tracer::new(chain, target) else { return Vec::new() };
@@ -84,7 +82,7 @@ impl ClosedForm {
             let start = tracer.seeded(*seed).filter(|start| !curves.iter().any(|curve| passes(curve, &start.q)));
             let Some(start) = start else { return };
             let curve = tracer.curve(start);
-            // A start in a sharp bend may look new; the curve through it does not.
+            // Near a sharp bend a start may not match the curve that it is on; the curve through it does.
             if !curves.iter().any(|other| passes(&curve, &other.points[0].q)) {
                 curves.push(curve);
             }
@@ -96,7 +94,7 @@ impl ClosedForm {
         for start in self.stretched(target, STRETCHED_TURNS) {
             tracer.projected(start).iter().for_each(&mut add);
         }
-        // A curve between two slices is short: the search from afar finds it all the same.
+        // A curve between two slices is short; a search from afar finds it.
         for number in 0..SEED_STARTS {
             let start = Angles::from_column_slice(&self.general().start(number));
             tracer.projected(start).iter().for_each(&mut add);
@@ -105,7 +103,7 @@ impl ClosedForm {
     }
 }
 
-/// True when the curve goes through these angles, whole turns aside.
+/// True if the curve passes through these angles, modulo full turns.
 fn passes(curve: &Curve, seed: &Angles) -> bool {
     curve.points.array_windows().any(|[from, to]| {
         let step = (to.q - from.q).norm();
@@ -113,7 +111,7 @@ fn passes(curve: &Curve, seed: &Angles) -> bool {
             let offset = seed[joint] - from.q[joint];
             offset - (offset / TAU).round() * TAU
         };
-        // Most segments are ruled out by one joint.
+        // One joint excludes most segments.
         if near(FREE_JOINT).abs() > 1.1 * step || near(0).abs() > 1.1 * step {
             return false;
         }

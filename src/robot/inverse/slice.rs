@@ -5,31 +5,31 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::closed_form::ClosedForm;
+use super::geometry::Geometry;
 use crate::model::frames::Pose;
 
-/// Samples over the range of S0 that look for windows in which the upper arm's length can be had.
+/// Number of samples over the range of S0 that detect windows.
 const WINDOW_SAMPLES: usize = 48;
 
-/// Samples of the residual over a window as wide as the range of S0, and the fewest.
+/// Number of samples of the residual over a window as wide as the range of S0, and the minimum per window.
 const RESIDUAL_SAMPLES: usize = 64;
 const MIN_RESIDUAL_SAMPLES: usize = 8;
 
-/// Golden sections that look for two zeros hidden between samples: they narrow the search to 1 % of the spacing.
+/// Number of golden sections that detect two zeros between samples: to 1 % of the spacing.
 const DIP_SECTIONS: usize = 10;
 
-/// Where the elbow's axis turns fast, it is sampled at these tangents of its turn, either way.
+/// Tangents of the elbow axis's rotation at which a fast rotation is sampled, in both directions.
 const TURN_TANGENTS: [f64; 6] = [0.0, 0.3, 0.7, 1.2, 2.2, 5.0];
 
-/// How far from the end of a window that does not close the residual is first sampled, rad of theta.
+/// Distance of the first sample from an open end of a window, rad of theta.
 const INSET: f64 = 1e-9;
 
-/// Which way round the elbow's axis.
+/// Signs of the elbow's axis.
 const ELBOW_SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// A target with one angle of W1, in the shoulder's frame.
 pub(super) struct Slice<'a> {
-    arm: &'a ClosedForm,
+    arm: &'a Geometry,
     /// W1 as in the formulas, rad.
     pub w1: f64,
     /// The wrist frame's axes.
@@ -48,16 +48,16 @@ pub(super) struct Zero {
     pub s0: f64,
     /// Which of the two W2, 1 or -1.
     pub w2_sign: f64,
-    /// Which way round the elbow's axis, 1 or -1.
+    /// Sign of the elbow's axis, 1 or -1.
     pub elbow_sign: f64,
 }
 
-/// What is known of the elbow when S0 and W2 are.
+/// The elbow for given S0 and W2.
 pub(super) struct Elbow {
     pub a1: Vector3<f64>,
     /// Sine and cosine of W2.
     w2_sin_cos: [f64; 2],
-    /// From where S1 meets E0 to where E1 meets W0, m.
+    /// From the intersection of S1 and E0 to that of E1 and W0, m.
     pub r: Vector3<f64>,
     /// The direction of the forearm.
     pub d: Vector3<f64>,
@@ -81,31 +81,31 @@ struct Sample {
 }
 
 impl Sample {
-    /// Above zero where two W2 solve the equation, zero where they merge, m^4.
+    /// Positive if two W2 solve the equation, zero where they merge, m^4.
     fn discriminant(&self) -> f64 {
         self.x * self.x + self.y * self.y - self.n * self.n
     }
 }
 
-/// A range of S0 in which the upper arm's length can be had, rad.
+/// A range of S0 in which the equation of the upper arm's length has solutions, rad.
 #[derive(Clone, Copy)]
 struct Window {
     from: f64,
     to: f64,
-    /// True for an end at which the two W2 merge, false for one at a limit of S0.
+    /// True for an end at which both W2 merge, false for an end at a limit of S0.
     closes: [bool; 2],
 }
 
 impl Window {
-    /// S0 over the window, and which W2: with theta from 0 to pi the one, from pi to 2 pi the other. Where two W2 merge
-    /// they change as the root of the distance to the window's end; in theta everything is smooth.
+    /// S0 and the sign of W2 for a parameter theta: one W2 for theta in [0, pi], the other in [pi, 2 pi]. Near an end at which W2
+    /// merge, they vary as the root of the distance; in theta they are smooth.
     fn at(&self, theta: f64) -> (f64, f64) {
         let (middle, half) = (0.5 * (self.from + self.to), 0.5 * (self.to - self.from));
         (middle - half * theta.cos(), if theta.rem_euclid(TAU) <= PI { 1.0 } else { -1.0 })
     }
 
-    /// Ranges of theta in which the residual is continuous. A closed curve overlaps itself by `spacing`, so that every
-    /// place has neighbours.
+    /// Ranges of theta in which the residual is continuous. A closed curve overlaps itself by `spacing`, so every sample has
+    /// neighbours.
     fn runs(&self, spacing: f64) -> Vec<[f64; 2]> {
         match self.closes {
             [true, true] => vec![[0.0, TAU + spacing]],
@@ -117,7 +117,7 @@ impl Window {
 }
 
 impl<'a> Slice<'a> {
-    pub fn new(arm: &'a ClosedForm, target: &Pose, w1_rad: f64) -> Self {
+    pub fn new(arm: &'a Geometry, target: &Pose, w1_rad: f64) -> Self {
         let x_fm = arm.x_wf.inverse() * target * arm.x_gm;
         let axes = x_fm.rotation.to_rotation_matrix();
         let column = |number: usize| axes.matrix().column(number).into_owned();
@@ -156,7 +156,7 @@ impl<'a> Slice<'a> {
         let Sample { x, y, n, .. } = self.sample(s0);
         let (sin, cos) = s0.sin_cos();
         let (u, a1) = (Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0));
-        // The equation of W2 solved for cosine and sine without going through the angle.
+        // Solves the equation of W2 for cosine and sine.
         let (square, root) = (x * x + y * y, (x * x + y * y - n * n).max(0.0).sqrt() * w2_sign);
         let (cos2, sin2) = ((n * x + root * y) / square, (root * x - n * y) / square);
         let b = self.x * cos2 - self.y * sin2;
@@ -165,15 +165,14 @@ impl<'a> Slice<'a> {
         Elbow { a1, w2_sin_cos: [sin2, cos2], r: q - b * self.k, d: self.z * cos1 - b * sin1 }
     }
 
-    /// The part of the forearm's direction that is normal to r, times |r|: what the elbow's axis is normal to, m.
+    /// The component of the forearm's direction normal to r, times |r|, m. The elbow's axis is normal to it.
     fn across(&self, window: &Window, theta: f64) -> Vector3<f64> {
         let (s0, w2_sign) = window.at(theta);
         let at = self.elbow(s0, w2_sign);
         (at.d * self.length_squared - at.r * at.r.dot(&at.d)) / self.length_squared.sqrt()
     }
 
-    /// `f . a1` times `|r x d| (L1^2 + B^2)`, for the elbow's axis one way round and the other: continuous wherever there
-    /// is a W2.
+    /// `f . a1` times `|r x d| (L1^2 + B^2)` for both signs of the elbow's axis; continuous wherever there is a W2.
     fn residuals(&self, window: &Window, theta: f64) -> [f64; 2] {
         let (s0, w2_sign) = window.at(theta);
         let at = self.elbow(s0, w2_sign);
@@ -184,7 +183,7 @@ impl<'a> Slice<'a> {
         ELBOW_SIGNS.map(|sign| l1 * along_r * m - sign * b * (self.length_squared * along_d - r_d * along_r))
     }
 
-    /// The zeros of the residual in a range of S0, rad; some of them twice.
+    /// The zeros of the residual in a range of S0, rad; some may occur twice.
     pub fn zeros(&self, range: [f64; 2]) -> Vec<Zero> {
         let mut zeros = Vec::new();
         for window in self.windows(range) {
@@ -211,8 +210,8 @@ impl<'a> Slice<'a> {
         zeros
     }
 
-    /// Where the residual is sampled: evenly over the run, and densely where r and d are nearly parallel, since there
-    /// the elbow's axis turns by half a turn within `|across| / |across'|`.
+    /// Samples of the residual: evenly over the run, and densely where r and d are nearly parallel, since there the elbow's axis
+    /// rotates by half a turn within `|across| / |across'|`.
     fn places(&self, window: &Window, run: [f64; 2], spacing: f64) -> Vec<f64> {
         let count = ((run[1] - run[0]) / spacing).ceil() as usize;
         let place = |number: usize| run[0] + (run[1] - run[0]) * number as f64 / count as f64;
@@ -235,10 +234,10 @@ impl<'a> Slice<'a> {
         places
     }
 
-    /// The place near `theta` at which r and d are nearest to parallel, and the width of the turn there, rad of theta.
+    /// The parameter near `theta` at which r and d are closest to parallel, and the width of the rotation there, rad of theta.
     fn fast_turn(&self, window: &Window, theta: f64, spacing: f64) -> (f64, f64) {
         let (mut middle, mut width) = (theta, spacing);
-        // Newton on |across|^2, with the derivative from a difference across a shrinking width.
+        // Newton's method on |across|^2 with differences over a shrinking width.
         for _ in 0..3 {
             let step = 0.1 * width.clamp(1e-6, spacing);
             let here = self.across(window, middle);
@@ -270,7 +269,7 @@ impl<'a> Slice<'a> {
         windows
     }
 
-    /// Samples of the discriminant, evenly spread, and those at which a window narrower than their spacing may hide:
+    /// Samples of the discriminant, evenly spread, and at possible windows narrower than their spacing:
     /// the peaks of the parabolas through three negative samples, and the zeros of n between two.
     fn samples(&self, [lower, upper]: [f64; 2]) -> Vec<Sample> {
         let spacing = (upper - lower) / WINDOW_SAMPLES as f64;
@@ -295,9 +294,9 @@ impl<'a> Slice<'a> {
         samples
     }
 
-    /// The last angle on the way from `inside` to `outside` at which the discriminant is not negative.
+    /// The last angle from `inside` to `outside` at which the discriminant is not negative.
     fn edge(&self, mut inside: f64, mut outside: f64) -> f64 {
-        // Halving 0.07 rad 44 times ends at the spacing of floating-point numbers.
+        // 44 bisections of 0.07 rad reach the spacing of floating-point numbers.
         for _ in 0..44 {
             let middle = 0.5 * (inside + outside);
             if self.sample(middle).discriminant() >= 0.0 { inside = middle } else { outside = middle }
@@ -306,8 +305,8 @@ impl<'a> Slice<'a> {
     }
 }
 
-/// Adds samples `(place, value)` beyond zero where the value comes near zero and turns back between samples: there two
-/// zeros may hide. Golden sections, until the value has changed its sign or the turning point is known.
+/// Adds samples at local extrema near zero that have the other sign, so that both zeros next to them are found. Golden section
+/// search, until the sign changes or the extremum is bracketed.
 fn add_dips(samples: &mut Vec<(f64, f64)>, value: impl Fn(f64) -> f64) {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let mut found = Vec::new();
@@ -332,10 +331,10 @@ fn add_dips(samples: &mut Vec<(f64, f64)>, value: impl Fn(f64) -> f64) {
     samples.sort_by(|a, b| a.0.total_cmp(&b.0));
 }
 
-/// The zero between two places with values of different signs, by the Illinois variant of the false position.
+/// The zero between two points with values of different signs, by the Illinois variant of regula falsi.
 fn zero_between(value: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -> f64 {
     let scale = low.1.abs().max(high.1.abs());
-    // The polishing needs 1e-4, and this converges with order 1.4: a dozen steps are ample.
+    // 1e-4 is sufficient for Newton's method; convergence of order 1.4 needs about a dozen steps.
     for _ in 0..30 {
         let place = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         if !place.is_finite() {

@@ -1,54 +1,54 @@
-//! The self-motion of a seven-joint arm, followed as a curve.
+//! Continuation of the self-motion of a seven-joint arm.
 //!
-//! The postures that hold the gripper at a pose are closed curves on the torus of joint angles, `q' = t` with `J t = 0`,
+//! The solutions for a gripper pose are closed curves on the torus of joint angles, `q' = t` with `J t = 0`,
 //! `|t| = 1`. A curve is followed by prediction along its tangent and correction by Newton's method in the plane normal
 //! to it: `[J; t'] dq = [e; 0]` (E. L. Allgower, K. Georg, "Introduction to Numerical Continuation Methods", 1990). Joint
-//! limits are none of this module's business.
+//! limits are ignored here.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{Const, LU, Matrix6, SMatrix, SVector, Vector6};
 
-use super::{RESIDUAL_TOLERANCE, is_finite};
+use super::solution::{RESIDUAL_TOLERANCE, is_finite};
 use crate::{model::frames::Pose, robot::chain::Chain};
 
-/// Joint angles, or their rates, of an arm that has one joint more than a pose has numbers.
+/// Joint angles of a seven-joint arm, or their derivatives.
 pub(super) type Angles = SVector<f64, 7>;
 
 type System = SMatrix<f64, 7, 7>;
 
-/// The longest step, the first, and that below which a curve is given up, rad.
+/// Maximum, initial and minimum step, rad.
 const MAX_STEP_RAD: f64 = 0.25;
 const FIRST_STEP_RAD: f64 = 0.05;
 const MIN_STEP_RAD: f64 = 1e-6;
 
-/// The turn of the tangent that a step aims at, and that above which it is tried again with half its length, rad: chords
-/// then stray from the curve by 3 % of their length.
+/// Desired rotation of the tangent per step, and the maximum above which the step is halved, rad. Chords then deviate from the
+/// curve by 3 % of their length.
 const STEP_TURN_RAD: f64 = 0.2;
 const MAX_TURN_RAD: f64 = 0.45;
 
-/// The longest correction of a prediction, as a share of the step: another curve is farther away.
+/// Maximum correction of a prediction relative to the step; other curves are farther away.
 const MAX_CORRECTION: f64 = 0.15;
 
 /// Corrections shorter than this leave an error of about their square, rad.
 const LAST_CORRECTION_RAD: f64 = 1e-4;
 
-/// Corrections before a step is given up: four digits double to eight, and one is to spare.
+/// Maximum number of corrections per step: convergence is quadratic, with one to spare.
 const MAX_CORRECTIONS: usize = 4;
 
-/// Steps after which a projection is given up: about a stretched arm it crawls along a valley. After the first few it is
-/// given up at once unless it is in one.
+/// Maximum number of steps of a projection, which is slow near a stretched arm. After `FREE_STEPS` it stops if the residual is
+/// above `HOPELESS`.
 const PROJECTION_STEPS: usize = 150;
 const FREE_STEPS: usize = 24;
 const HOPELESS: f64 = 1e-2;
 
-/// The residual at which a projection is good enough to be settled (m, rad).
+/// Residual at which a projection has converged (m, rad).
 const PROJECTED: f64 = 1e-6;
 
-/// Points on one curve; of a thousand random poses none had more than 500.
+/// Maximum number of points of a curve; a thousand random poses had at most 500.
 const MAX_POINTS: usize = 5000;
 
-/// A place on a curve.
+/// A point on a curve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
     pub q: Angles,
@@ -56,10 +56,10 @@ pub(super) struct Point {
     pub tangent: Angles,
 }
 
-/// A curve as it was followed, angles without jumps.
+/// A traced curve with continuous angles.
 pub(super) struct Curve {
     pub points: Vec<Point>,
-    /// True when the last point is the first again, but for whole turns of joints.
+    /// True if the last point is the first, modulo full turns of joints.
     pub closed: bool,
 }
 
@@ -70,12 +70,12 @@ pub(super) struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    /// For seven joints and a finite target; else none.
+    /// `None` unless the chain has seven joints and the target is finite.
     pub fn new(chain: &'a Chain, target: &Pose) -> Option<Self> {
         (chain.dof() == 7 && is_finite(target)).then_some(Self { chain, target: *target })
     }
 
-    /// The pose error (m, rad) and the Jacobian, below it a row that is left to the caller.
+    /// The pose error (m, rad) and the Jacobian with an empty seventh row.
     fn linearised(&self, q: &Angles) -> (Vector6<f64>, System) {
         let mut columns = [Vector6::zeros(); 7];
         let x_wg = self.chain.pose_and_columns(q.as_slice(), &mut columns);
@@ -86,8 +86,8 @@ impl<'a> Tracer<'a> {
         (error, system)
     }
 
-    /// The point on the curve at which `row . q` is `row . anchor`, by Newton's method from `q`; none when it does not
-    /// come within [`RESIDUAL_TOLERANCE`]. The tangent's sign is that of `row`.
+    /// The point on the curve at which `row . q` is `row . anchor`, by Newton's method from `q`; `None` if it does not
+    /// converge to [`RESIDUAL_TOLERANCE`]. The tangent's sign is that of `row`.
     pub fn settled(&self, mut q: Angles, row: &Angles, anchor: &Angles) -> Option<Point> {
         for _ in 0..8 {
             let (error, mut system) = self.linearised(&q);
@@ -101,8 +101,8 @@ impl<'a> Tracer<'a> {
         None
     }
 
-    /// The angles on a self-motion that a damped search without limits reaches from `q`; none when it ends beside one.
-    /// Where the arm is stretched it needs many steps, and finds curves so short that nothing else does.
+    /// The angles on a self-motion to which a damped search without limits converges from `q`, or `None`. Near a stretched arm it
+    /// needs many steps, and finds short curves that slices miss.
     pub fn projected(&self, mut q: Angles) -> Option<Angles> {
         let (mut error, mut system) = self.linearised(&q);
         let mut damping = 1e-2;
@@ -126,7 +126,7 @@ impl<'a> Tracer<'a> {
         None
     }
 
-    /// A point on the curve near angles that are nearly on it, by the shortest way; none when there is none near.
+    /// The nearest point on the curve for angles nearly on it; `None` if the iteration does not converge.
     pub fn seeded(&self, mut q: Angles) -> Option<Point> {
         for _ in 0..12 {
             let (error, system) = self.linearised(&q);
@@ -143,7 +143,7 @@ impl<'a> Tracer<'a> {
         None
     }
 
-    /// The whole curve through a point: once around, or as far as it can be followed either way.
+    /// The curve through a point: the closed curve, or as far as it can be traced in both directions.
     pub fn curve(&self, start: Point) -> Curve {
         let forward = self.followed(start);
         if forward.closed {
@@ -159,10 +159,9 @@ impl<'a> Tracer<'a> {
     fn followed(&self, start: Point) -> Curve {
         let mut points = vec![start];
         let (mut here, mut step_rad) = (start, FIRST_STEP_RAD);
-        // How the tangent turns, rad a rad: for a prediction of second order.
+        // Derivative of the tangent by arc length, for a second-order prediction.
         let mut bend = Angles::zeros();
-        // The sign of `det [J; t']` never changes along a curve; it does when a step goes straight across a place where two
-        // curves nearly meet.
+        // The sign of `det [J; t']` is constant along a curve. It changes if a step jumps to a neighbouring curve.
         let (_, mut system) = self.linearised(&start.q);
         let side = bordered(&mut system, &start.tangent).determinant().signum();
         while points.len() < MAX_POINTS && step_rad > MIN_STEP_RAD {
@@ -184,7 +183,7 @@ impl<'a> Tracer<'a> {
         Curve { points, closed: false }
     }
 
-    /// The next point and the turn of the tangent on the way, rad; none when the step is too long.
+    /// The next point and the rotation of the tangent, rad; `None` if the step is too long.
     fn step(&self, here: &Point, bend: &Angles, step_rad: f64, side: f64) -> Option<(Point, f64)> {
         let mut q = here.q + here.tangent * step_rad + bend * (0.5 * step_rad * step_rad);
         for _ in 0..MAX_CORRECTIONS {
@@ -207,20 +206,20 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// The system with this row below the Jacobian, factorised.
+/// The LU factors of the Jacobian with this seventh row.
 fn bordered(system: &mut System, row: &Angles) -> LU<f64, Const<7>, Const<7>> {
     system.set_row(6, &row.transpose());
     system.lu()
 }
 
-/// The unit vector along the curve: what the Jacobian takes to zero and the last row to a positive number.
+/// The unit tangent: in the null space of the Jacobian, with a positive product with the last row.
 fn tangent(lu: &LU<f64, Const<7>, Const<7>>) -> Option<Angles> {
     let along = lu.solve(&Vector6::zeros().push(1.0))?;
     let norm = along.norm();
     (norm.is_finite() && norm > 0.0).then(|| along / norm)
 }
 
-/// The start of a curve, turned to where the trace is, when the step from `here` to `there` goes past it.
+/// The start of a curve, modulo full turns near the trace, if the step from `here` to `there` passes it.
 fn meeting(here: &Point, there: &Point, start: &Point) -> Option<Point> {
     let turned = start.q.zip_map(&here.q, |q, near| q + ((near - q) / TAU).round() * TAU);
     let (chord, to_start) = (there.q - here.q, turned - here.q);

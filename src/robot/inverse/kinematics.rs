@@ -1,0 +1,74 @@
+//! The choice of a solver by the geometry of a chain.
+
+use super::{closed_form::ClosedForm, general::General, solution::Solution};
+use crate::{model::frames::Pose, robot::chain::Chain};
+
+/// Maximum number of steps from a near seed.
+const NEAR_STEPS: usize = 12;
+
+/// Numbers of slices and of starts that are tried if there is no solution near a seed.
+const FALLBACK_SLICES: usize = 32;
+const FALLBACK_STARTS: usize = 60;
+
+/// The inverse kinematics of one chain.
+#[derive(Clone, Debug)]
+pub enum InverseKinematics {
+    /// For seven joints whose axes intersect in pairs.
+    ClosedForm(Box<ClosedForm>),
+    /// For all other chains.
+    General(General),
+}
+
+impl InverseKinematics {
+    /// The closed form if the chain has its structure, else the general solver.
+    pub fn for_chain(chain: &Chain) -> Self {
+        match ClosedForm::new(chain) {
+            Some(closed_form) => Self::ClosedForm(Box::new(closed_form)),
+            None => Self::General(General::new(chain)),
+        }
+    }
+
+    /// The solution to which damped least squares converges from `seed` (rad, one angle per joint). It is near the seed if the
+    /// target is near the seed's pose. Fast, but the search may end at a limit.
+    pub fn local(&self, target: &Pose, seed: &[f64]) -> Solution {
+        self.general().solve_from(target, seed)
+    }
+
+    /// As [`InverseKinematics::local`] with few steps, for a seed that is near a solution.
+    pub fn near(&self, target: &Pose, seed: &[f64]) -> Solution {
+        self.general().solve_within(target, seed, NEAR_STEPS)
+    }
+
+    /// The solution of [`InverseKinematics::local`] or, if there is none, the nearest to `seed` of
+    /// [`InverseKinematics::samples`], which takes a thousand times longer.
+    pub fn nearest(&self, target: &Pose, seed: &[f64]) -> Solution {
+        let local = self.local(target, seed);
+        if !matches!(local, Solution::NotFound { .. }) {
+            return local;
+        }
+        let mut solutions = self.samples(target, FALLBACK_SLICES);
+        if solutions.is_empty() {
+            solutions = self.general().solutions(target, FALLBACK_STARTS);
+        }
+        let distance = |q_rad: &[f64]| q_rad.iter().zip(seed).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let nearest = solutions.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.map_or(local, Solution::Found)
+    }
+
+    /// Solutions spread over the set of solutions, within the limits, in a fixed order. `effort` is the number of slices of the
+    /// closed form, evenly spread over the range of its free joint, each with up to a dozen solutions; or the number of starts
+    /// of the general solver, each with at most one. Empty if none was found.
+    pub fn samples(&self, target: &Pose, effort: usize) -> Vec<Vec<f64>> {
+        match self {
+            Self::ClosedForm(closed_form) => closed_form.manifold(target, effort),
+            Self::General(general) => general.solutions(target, effort),
+        }
+    }
+
+    fn general(&self) -> &General {
+        match self {
+            Self::ClosedForm(closed_form) => closed_form.general(),
+            Self::General(general) => general,
+        }
+    }
+}
