@@ -59,7 +59,7 @@ struct Gain {
     load_factor: f64,
 }
 
-/// The prediction for a plan at the friction that it assumes, or why there is none.
+/// The prediction for a plan at the friction that it assumes, or the reason for its absence.
 pub fn predicted(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Predicted, String> {
     let model = ContactModel::of_plan(checked, scenario.grip.friction).map_err(|error| error.to_string())?;
     of_model(&model, scenario).map_err(|error| error.to_string())?

@@ -21,7 +21,7 @@ const RELATIVE_WIDTH: f64 = 1e-3;
 /// The result of the search for the failing load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailingLoad {
-    /// The largest factor at which the grasp holds; 0 if there is none.
+    /// The largest factor at which the grasp holds; 0 without one.
     pub holds_at: f64,
     /// The smallest factor at which it fails, at most 0.1 % more; `None` if it holds 100 times the load, 0 if it fails
     /// without a load.

@@ -39,7 +39,7 @@ pub fn search(
     rank(evaluator, found)
 }
 
-/// Starts from screening the library; the posture map is made if there is none.
+/// Starts from screening the library; without a posture map it makes one.
 pub fn screened(
     evaluator: &mut Evaluator<'_>,
     library: &GraspLibrary,

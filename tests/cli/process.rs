@@ -33,7 +33,7 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// A JSON document; panics with the message of the command if it is none.
+/// A JSON document; panics with the message of the command if it is invalid.
 pub fn printed_json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", stderr(output)))
 }

@@ -163,7 +163,7 @@ impl Linearization {
         self.stability_is_updated = true;
     }
 
-    /// Recomputes an updated gradient of the utilisation; false if there is none.
+    /// Recomputes an updated gradient of the utilisation; false without one.
     pub fn refresh_stability(&mut self, evaluator: &mut Evaluator<'_>, here: &Feasible) -> bool {
         if !self.stability_is_updated {
             return false;

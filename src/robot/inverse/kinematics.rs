@@ -39,7 +39,7 @@ impl InverseKinematics {
         self.general().solve_within(target, seed, NEAR_STEPS)
     }
 
-    /// The solution of [`InverseKinematics::local`] or, if there is none, the nearest to `seed` of
+    /// The solution of [`InverseKinematics::local`] or, without one, the nearest to `seed` of
     /// [`InverseKinematics::samples`], which takes a thousand times longer.
     pub fn nearest(&self, target: &Pose, seed: &[f64]) -> Solution {
         let local = self.local(target, seed);
