@@ -73,7 +73,9 @@ fn by_clarabel(program: &Program) -> DVector<f64> {
 fn sparse(rows: usize, columns: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64> {
     let (mut i, mut j, mut v) = (Vec::new(), Vec::new(), Vec::new());
     for &(row, column, value) in entries {
-        (i.push(row), j.push(column), v.push(value));
+        i.push(row);
+        j.push(column);
+        v.push(value);
     }
     CscMatrix::new_from_triplets(rows, columns, i, j, v)
 }

@@ -69,7 +69,6 @@ impl Planner {
     }
 
     /// A search of a scenario, for several plans or with an observer.
-    #[must_use]
     pub fn search<'a>(&'a self, scenario: &'a Scenario) -> Search<'a> {
         Search { planner: self, scenario, observer: None }
     }

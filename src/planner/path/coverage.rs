@@ -46,7 +46,7 @@ struct Estimate {
     objective: f64,
 }
 
-impl<'a, 'o> PathProblem<'a> {
+impl<'a> PathProblem<'a> {
     /// The problem of the points; `None` if there are none.
     pub fn new(
         points: &'a [Scenario],
