@@ -324,7 +324,7 @@ impl WarmStartBudget {
                 };
                 let first =
                     SearchBudget { starts: 16, rounds: rounds(&[[16, 8], [6, 20]]), warm_starts: 0, ..later.clone() };
-                Some(Self { first, later, passes: 3, resampled_boards: 1_000 })
+                Some(Self { first, later, passes: 3, resampled_boards: 1_500 })
             }
             Budget::Exhaustive => {
                 let later = SearchBudget {
