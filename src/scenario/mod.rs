@@ -11,18 +11,17 @@ mod locate;
 pub mod material;
 pub mod plan_file;
 mod resolve;
+mod robot_file;
 
 use std::path::{Path, PathBuf};
 
 pub use error::{InputError, InputErrorKind};
 pub use plan_file::read_plan;
+pub use robot_file::robot_parameters;
 
 use crate::{
-    model::{
-        plan::Plan,
-        scenario::{ArmParameters, PadParameters, RobotParameters, Scenario},
-    },
-    robot::{BUILTIN, Robot, RobotError, source_files},
+    model::{plan::Plan, scenario::Scenario},
+    robot::{Robot, source_files},
 };
 
 /// A resolved scenario with its robot and, if the file names one, its plan.
@@ -102,48 +101,6 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
 /// The folder that the paths in a file are relative to.
 fn folder_of(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
-}
-
-/// Loads a robot for a file in `folder`. If the description is a path, the robot's `description` becomes the absolute
-/// path, because a plan that names it may be written to another folder.
-///
-/// # Errors
-/// If there is no such robot or its files are invalid.
-fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
-    let mut robot = Robot::load(description, folder)?;
-    if !BUILTIN.contains(&description)
-        && let Ok(path) = folder.join(description).canonicalize()
-    {
-        robot.description = path.display().to_string();
-    }
-    Ok(robot)
-}
-
-/// The parameters of a robot that results depend on.
-#[must_use]
-pub fn robot_parameters(robot: &Robot) -> RobotParameters {
-    let arms = robot
-        .arms
-        .iter()
-        .map(|arm| ArmParameters {
-            name: arm.name.clone(),
-            joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
-            stiffness_nm_rad: arm.stiffness_nm_rad.clone(),
-            damping_nm_s_rad: arm.damping_nm_s_rad.clone(),
-            effort_nm: arm.effort_nm.clone(),
-            pads: arm
-                .gripper
-                .fingers
-                .iter()
-                .map(|finger| PadParameters {
-                    name: finger.pad.name.clone(),
-                    size_m: finger.pad.size_m,
-                    centre_m: finger.pad.centre_m,
-                })
-                .collect(),
-        })
-        .collect();
-    RobotParameters { description: robot.description.clone(), arms }
 }
 
 /// Reads a plan file and the scenario to judge the plan by: that of the file `scenario`, which must have the plan's robot,

@@ -6,7 +6,8 @@ use super::{
     InputError, InputErrorKind,
     check::{Checker, FormatProbe},
     error::read_text,
-    load_robot, resolve,
+    resolve,
+    robot_file::load_robot,
 };
 use crate::{
     check::{CheckedPlan, Flaw},

@@ -8,9 +8,9 @@ use super::{
     InputError,
     check::Checker,
     file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
-    load_robot,
     load_section::{self, check_load, check_uncertainty},
-    material, robot_parameters,
+    material,
+    robot_file::{load_robot, robot_parameters},
 };
 use crate::{
     human::{body::MAX_LEAN_DEG, tools::default_tool},

@@ -120,7 +120,9 @@ fn a_plan_in_the_output_folder_is_simulated_and_left_as_it_is() {
 
 #[test]
 fn an_edited_plan_does_not_replace_the_original_of_the_same_name() {
-    let folder = folder(&[("plan.json", PLAN), ("edited.json", &PLAN.replace("30.0", "29.0"))]);
+    // As Benchdog's planner writes it.
+    let planned = PLAN.replacen('{', r#"{"planner": {"kind": "comfort", "seed": 1, "evaluations": 9},"#, 1);
+    let folder = folder(&[("plan.json", &planned), ("edited.json", &planned.replace("30.0", "29.0"))]);
     let simulate = |plan: &str, out: &str| {
         let output = benchdog(folder.path(), &["simulate", plan, "--record", "never", "--out", out]);
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
@@ -134,4 +136,17 @@ fn an_edited_plan_does_not_replace_the_original_of_the_same_name() {
     // The same plan again, and the other one elsewhere.
     assert_eq!(simulate("plan.json", "out").0, Some(0));
     assert_eq!(simulate("edited.json", "elsewhere").0, Some(0));
+}
+
+/// The copy of a plan from elsewhere is no original: the edited plan can be simulated again and again.
+#[test]
+fn a_plan_from_elsewhere_can_be_edited_and_simulated_again() {
+    let folder = folder(&[("plan.json", PLAN)]);
+    let simulate = || benchdog(folder.path(), &["simulate", "plan.json", "--record", "never", "--out", "out"]);
+    assert_eq!(simulate().status.code(), Some(0));
+    let edited = PLAN.replace("30.0", "29.0");
+    fs::write(folder.path().join("plan.json"), &edited).unwrap();
+    let output = simulate();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(fs::read_to_string(folder.path().join("out/cut-rim/plan.json")).unwrap().contains("29"));
 }

@@ -1,0 +1,50 @@
+//! The robot that a scenario or plan file names.
+
+use std::path::Path;
+
+use crate::{
+    model::scenario::{ArmParameters, PadParameters, RobotParameters},
+    robot::{BUILTIN, Robot, RobotError},
+};
+
+/// Loads a robot for a file in `folder`. If the description is a path, the robot's `description` becomes the absolute
+/// path, because a plan that names it may be written to another folder.
+///
+/// # Errors
+/// If there is no such robot or its files are invalid.
+pub fn load_robot(description: &str, folder: &Path) -> Result<Robot, RobotError> {
+    let mut robot = Robot::load(description, folder)?;
+    if !BUILTIN.contains(&description)
+        && let Ok(path) = folder.join(description).canonicalize()
+    {
+        robot.description = path.display().to_string();
+    }
+    Ok(robot)
+}
+
+/// The parameters of a robot that results depend on.
+#[must_use]
+pub fn robot_parameters(robot: &Robot) -> RobotParameters {
+    let arms = robot
+        .arms
+        .iter()
+        .map(|arm| ArmParameters {
+            name: arm.name.clone(),
+            joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
+            stiffness_nm_rad: arm.stiffness_nm_rad.clone(),
+            damping_nm_s_rad: arm.damping_nm_s_rad.clone(),
+            effort_nm: arm.effort_nm.clone(),
+            pads: arm
+                .gripper
+                .fingers
+                .iter()
+                .map(|finger| PadParameters {
+                    name: finger.pad.name.clone(),
+                    size_m: finger.pad.size_m,
+                    centre_m: finger.pad.centre_m,
+                })
+                .collect(),
+        })
+        .collect();
+    RobotParameters { description: robot.description.clone(), arms }
+}
