@@ -19,10 +19,10 @@ fn the_objective_of_a_mean_scenario_is_that_of_the_mean_response() {
     let of_posture = comfort.muscular_regularised + 64.0 * comfort.peripersonal_m;
     assert!(of_posture > comfort.objective);
 
-    let mut spoiled = plan;
+    let mut changed = plan;
     let average = MeanComfort { responses, muscular_regularised: 1.01 * muscular_regularised, peripersonal_m };
-    spoiled.comfort.as_mut().unwrap().average = Some(average);
-    assert!(flaws(&spoiled, &scenario)[0].starts_with("comfort.average.muscular_regularised is"));
+    changed.comfort.as_mut().unwrap().average = Some(average);
+    assert!(flaws(&changed, &scenario)[0].starts_with("comfort.average.muscular_regularised: found "));
 }
 
 #[test]
