@@ -36,8 +36,9 @@ fn a_good_plan_has_no_flaw() {
 
 #[test]
 fn each_fault_is_one_flaw_with_its_key() {
-    type Change = fn(&mut Plan);
-    let cases: [(&str, Change, fn(&Flaw) -> bool); 20] = [
+    /// A key, a change of the plan, and the flaw that it makes.
+    type Case = (&'static str, fn(&mut Plan), fn(&Flaw) -> bool);
+    let cases: [Case; 20] = [
         ("object.size_m[0]", |plan| plan.object.size_m[0] = 6.0, |flaw| matches!(flaw, Flaw::BoardSide { .. })),
         ("object.mass_kg", |plan| plan.object.mass_kg = 0.0, |flaw| matches!(flaw, Flaw::BoardMass { .. })),
         (
