@@ -1,8 +1,8 @@
 //! The search for a grasp that is comfortable for the person and stable under the tool's force (docs/method.md#3-planning).
 //!
-//! [`Planner`] is the way in. Candidates come from two precomputed maps: what the robot can grasp ([`library`]) and which
-//! postures suit the person; exact checks filter them ([`screen`], [`evaluate`]); sequential quadratic programming refines
-//! the rest ([`refine`]). A plan usually starts from [`warm_starts`], solutions of similar tasks. Every plan is checked
+//! [`Planner`] is the way in. Candidates come from two precomputed maps: what the robot can grasp (`library`) and which
+//! postures suit the person; exact checks filter them (`screen`, `evaluate`); sequential quadratic programming refines
+//! the rest (`refine`). A plan usually starts from `warm_starts`, solutions of similar tasks. Every plan is checked
 //! ([`verify()`]) before it is returned.
 //!
 //! The work of a search is counted in candidates, never in time: the same scenario and seed give the same plan, bit for bit.

@@ -26,8 +26,8 @@ pub const APART_M: f64 = 0.05;
 pub const APART_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
 /// Plans in which a joint of the robot differs by more than this differ, rad: 30 degrees.
 pub const JOINT_APART_RAD: f64 = 30.0 * std::f64::consts::PI / 180.0;
-/// True if two plans differ: an arm grasps another edge, the board is farther away than [`APART_M`] or turned by more than
-/// [`APART_RAD`], or a joint of the robot differs by more than [`JOINT_APART_RAD`]. The person's posture does not count.
+/// True if two plans differ: an arm grasps another edge, the board is farther away than 5 cm or turned by more than
+/// 15 degrees, or a joint of the robot differs by more than 30 degrees. The person's posture does not count.
 #[must_use]
 pub fn differ(one: &Plan, other: &Plan) -> bool {
     let (a, b) = (&one.object.x_wo, &other.object.x_wo);

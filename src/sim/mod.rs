@@ -1,4 +1,4 @@
-//! The rapier simulation of a grasp under load: a [`Plan`] in, a [`Trace`] out (docs/method.md#7-simulation).
+//! The rapier simulation of a grasp under load: a [`CheckedPlan`] in, a [`Trace`] out (docs/method.md#7-simulation).
 //!
 //! It shows what no static formula does: whether the hands keep their grip while compliant, position-controlled arms
 //! deflect. It must not judge the trace, nor depend on how the plan was found.
