@@ -7,7 +7,7 @@
 use super::{
     candidate::Candidate,
     evaluate::{Evaluator, Feasible},
-    library::{ArmGrasp, GraspingArm},
+    library::{ArmGrasp, GraspingArm, largest_joint_difference_rad},
     params::select::{COMBINATIONS, CONFIGURATIONS, SOLUTION_STARTS},
 };
 use crate::{
@@ -35,7 +35,7 @@ pub fn other_configurations(evaluator: &mut Evaluator<'_>, found: &Feasible, apa
             break;
         }
         let other = with_joints(candidate, &combination);
-        let differs = |known: &Candidate| largest_difference_rad(known, &other) > apart_rad;
+        let differs = |known: &Candidate| largest_joint_difference_rad(&known.arms, &other.arms) > apart_rad;
         if !differs(candidate) || !kept.iter().all(|known| differs(&known.candidate)) {
             continue;
         }
@@ -70,10 +70,4 @@ fn with_joints(candidate: &Candidate, combination: &Combination<'_>) -> Candidat
     let arms = candidate.arms.iter().zip(&combination.q_rad);
     let arms = arms.map(|(arm, q_rad)| ArmGrasp { grasp: arm.grasp, q_rad: q_rad.to_vec() }).collect();
     Candidate { work: candidate.work, arms }
-}
-
-/// The largest difference of a joint, rad.
-fn largest_difference_rad(one: &Candidate, other: &Candidate) -> f64 {
-    let arms = one.arms.iter().zip(&other.arms);
-    arms.flat_map(|(a, b)| a.q_rad.iter().zip(&b.q_rad).map(|(a, b)| (a - b).abs())).fold(0.0, f64::max)
 }

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     comfort,
     human::Human,
-    model::scenario::{PlannerKind, PlannerSettings, ResponseKind},
+    model::scenario::{PlannerKind, PlannerSettings, ResponseKind, Scenario},
 };
 
 /// The candidates that the scenario's planner finds, the best first.
@@ -56,7 +56,7 @@ pub fn screened(
 }
 
 /// The posture map of the scenario's task family.
-fn own_postures(human: &Human, scenario: &crate::model::scenario::Scenario) -> PostureMap {
+fn own_postures(human: &Human, scenario: &Scenario) -> PostureMap {
     problem::posture_map(TaskFamily::of(scenario).scenario(), human)
 }
 

@@ -33,3 +33,9 @@ pub type GraspPattern = ArrayVec<(Edge, bool), 4>;
 pub fn pattern(arms: &[ArmGrasp]) -> GraspPattern {
     arms.iter().take(4).map(|arm| (arm.grasp.edge, arm.grasp.flipped)).collect()
 }
+
+/// The largest difference of a joint between two configurations of the same arms, rad.
+pub fn largest_joint_difference_rad(one: &[ArmGrasp], other: &[ArmGrasp]) -> f64 {
+    let joints = one.iter().zip(other).flat_map(|(a, b)| a.q_rad.iter().zip(&b.q_rad).map(|(a, b)| (a - b).abs()));
+    joints.fold(0.0, f64::max)
+}

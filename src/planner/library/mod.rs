@@ -11,7 +11,7 @@ mod postures;
 mod reach;
 mod resample;
 
-pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, pattern};
+pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, largest_joint_difference_rad, pattern};
 pub use grasping_robot::{GraspingArm, GraspingRobot};
 pub use grasps::{GraspLibrary, LibraryEntry, draw_grasp};
 pub use postures::{COARSE_POINTS, MEDIUM_POINTS, Posture, PostureLoad, PostureMap, posture_muscular, within_strength};

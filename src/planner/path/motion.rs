@@ -7,7 +7,7 @@
 
 use super::{
     super::{
-        library::{ArmGrasp, BoardGrasp, GraspingRobot},
+        library::{ArmGrasp, BoardGrasp, GraspingRobot, largest_joint_difference_rad},
         params::path::{JUMP_RAD, STEP_M, STEP_RAD},
     },
     coverage::PathProblem,
@@ -25,7 +25,7 @@ pub struct MotionStep {
 
 /// The steps from one pose to another with the same grasp, both ends included; `None` if a step cannot be made.
 pub fn between(problem: &PathProblem<'_>, from: &BoardGrasp, to: &BoardGrasp) -> Option<Vec<MotionStep>> {
-    let steps = steps(&from.x_wo, &to.x_wo, largest_joint_distance_rad(from, to));
+    let steps = steps(&from.x_wo, &to.x_wo, largest_joint_difference_rad(&from.arms, &to.arms));
     let mut path = vec![step(from)];
     let mut here = from.clone();
     for number in 1..=steps {
@@ -38,7 +38,7 @@ pub fn between(problem: &PathProblem<'_>, from: &BoardGrasp, to: &BoardGrasp) ->
         } else {
             reached(&problem.library.robot, &here, interpolated(&from.x_wo, &to.x_wo, share), seeds)?
         };
-        if largest_joint_distance_rad(&here, &there) > JUMP_RAD || !problem.is_clear(&there) {
+        if largest_joint_difference_rad(&here.arms, &there.arms) > JUMP_RAD || !problem.is_clear(&there) {
             return None;
         }
         path.push(step(&there));
@@ -82,13 +82,6 @@ fn steps(from: &Pose, to: &Pose, joints_rad: f64) -> usize {
     let turn_rad = from.rotation.angle_to(&to.rotation);
     let shift_m = (to.translation.vector - from.translation.vector).norm();
     (joints_rad.max(turn_rad) / STEP_RAD).max(shift_m / STEP_M).ceil() as usize
-}
-
-/// The largest difference of a joint, rad.
-pub fn largest_joint_distance_rad(one: &BoardGrasp, other: &BoardGrasp) -> f64 {
-    let arms = one.arms.iter().zip(&other.arms);
-    let joints = arms.flat_map(|(a, b)| a.q_rad.iter().zip(&b.q_rad).map(|(a, b)| (a - b).abs()));
-    joints.fold(0.0, f64::max)
 }
 
 fn interpolated(from: &Pose, to: &Pose, share: f64) -> Pose {

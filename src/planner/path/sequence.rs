@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::{
     super::{
         domain::uniform,
-        library::BoardGrasp,
+        library::{BoardGrasp, largest_joint_difference_rad},
         params::path::{
             CHANGE, CHANGES, COST_PER_RAD, COVERED, DRAWS_PER_POSE, TREE_POSES, TREE_SHIFT_M, TREE_TILT_RAD,
             TREE_TURN_RAD,
@@ -177,8 +177,9 @@ impl Graph {
         for point in 1..points {
             let best_before = |to: usize| {
                 let from = (0..count).filter(|&from| self.motions[from][to] != Some(false));
-                let cost =
-                    |from: usize| COST_PER_RAD * motion::largest_joint_distance_rad(&self.poses[from], &self.poses[to]);
+                let cost = |from: usize| {
+                    COST_PER_RAD * largest_joint_difference_rad(&self.poses[from].arms, &self.poses[to].arms)
+                };
                 // Staying at a pose is always possible.
                 from.map(|from| (from, sums[from] - cost(from)))
                     .max_by(|a, b| a.1.total_cmp(&b.1))
