@@ -9,15 +9,14 @@ use benchdog::{
     human::{Human, ShoulderBranch, default_tool, peripersonal_m, standing_pose_w},
     model::{
         operation::OperationKind,
-        scenario::{Hand, PeripersonalForm, Person, Sex, StrengthDirection},
+        scenario::{PeripersonalForm, Person, StrengthDirection},
         wrench::Wrench,
     },
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Point3, Vector3};
 
-const AVERAGE_MAN: Person =
-    Person { height_m: 1.75, mass_kg: 75.0, sex: Sex::Male, hand: Hand::Right, percentile: 50.0, lean_deg: 0.0 };
+const AVERAGE_MAN: Person = Person::PAPER;
 
 fn evaluation(criterion: &mut Criterion) {
     let human = Human::new(&AVERAGE_MAN, &default_tool(OperationKind::Drill)).unwrap();

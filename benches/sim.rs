@@ -5,11 +5,11 @@ use std::{hint::black_box, path::Path};
 
 use benchdog::{
     check::CheckedPlan,
-    human::default_tool,
+    human::paper_tool,
     judge::judge,
     model::{
         plan::Plan,
-        scenario::{Limits, SimulationSettings},
+        scenario::{Limits, Person, SimulationSettings},
     },
     robot::Robot,
     scenario::read_plan,
@@ -20,11 +20,21 @@ use criterion::{Criterion, criterion_group, criterion_main};
 /// docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
 /// docs/method.md#810-default-limits, for a cut.
-const LIMITS: Limits =
-    Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 15.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 };
+const LIMITS: Limits = Limits {
+    slip_mm: 1.0,
+    slip_deg: 2.0,
+    deflection_mm: 15.0,
+    creep_mm_s: 0.1,
+    torque_ratio: 1.0,
+    load_factor: 1.0,
+    rula: None,
+    rula_arm: None,
+    reba: None,
+};
 
 fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
-    CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).expect("the repository's plans are valid")
+    CheckedPlan::new(robot, plan, &Person::PAPER, &paper_tool(plan.operation.kind))
+        .expect("the repository's plans are valid")
 }
 
 fn sim(criterion: &mut Criterion) {

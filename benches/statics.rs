@@ -5,8 +5,8 @@ use std::{hint::black_box, path::Path};
 
 use benchdog::{
     check::CheckedPlan,
-    human::default_tool,
-    model::scenario::Limits,
+    human::paper_tool,
+    model::scenario::{Limits, Person},
     scenario::read_plan,
     statics::{ContactModel, EquilibriumOutcome, EquilibriumSolver, StabilityWorkspace},
 };
@@ -15,8 +15,17 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 /// Friction of pad and board, docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
 /// docs/method.md#810-default-limits.
-const LIMITS: Limits =
-    Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 15.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 };
+const LIMITS: Limits = Limits {
+    slip_mm: 1.0,
+    slip_deg: 2.0,
+    deflection_mm: 15.0,
+    creep_mm_s: 0.1,
+    torque_ratio: 1.0,
+    load_factor: 1.0,
+    rula: None,
+    rula_arm: None,
+    reba: None,
+};
 
 /// The load factor of the equilibria.
 const LOAD_FACTOR: f64 = 0.5;
@@ -27,7 +36,7 @@ fn models() -> Vec<(&'static str, ContactModel)> {
         .map(|name| {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/plans/{name}.json"));
             let (plan, robot) = read_plan(&path, None).expect("the repository's plans can be read");
-            let checked = CheckedPlan::new(&robot, &plan, &default_tool(plan.operation.kind));
+            let checked = CheckedPlan::new(&robot, &plan, &Person::PAPER, &paper_tool(plan.operation.kind));
             let checked = checked.expect("the repository's plans are valid");
             let model = ContactModel::of_plan(&checked, FRICTION);
             (name, model.expect("the repository's plans have a contact model"))

@@ -51,7 +51,7 @@ fn run(path: &Path) -> Result<(), Box<dyn Error>> {
 
 /// Simulates a plan and judges the trace.
 fn simulated(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Judgement, Box<dyn Error>> {
-    let checked = CheckedPlan::new(robot, plan, &scenario.tool)?;
+    let checked = CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool)?;
     if let Some(contact) = checked.first_contact() {
         return Err(format!("bodies touch before the load is applied: {contact}").into());
     }

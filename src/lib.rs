@@ -65,7 +65,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (plan, robot) = scenario::read_plan(Path::new("scenarios/plans/cut-rim-weak-grip.json"), None)?;
 //! let scenario = scenario::default_for_plan(&plan, &robot);
-//! let checked = check::CheckedPlan::new(&robot, &plan, &scenario.tool)?;
+//! let checked = check::CheckedPlan::new(&robot, &plan, &scenario.human, &scenario.tool)?;
 //! let trace = sim::simulate(&checked, &sim::Conditions::of(&scenario))?;
 //! let judgement = judge::judge(&trace, &scenario.limits);
 //! assert_eq!(judgement.verdict, VerdictKind::Slips);

@@ -8,11 +8,11 @@ use super::{
 };
 use crate::{
     collision::{CollisionModel, PersonPart, Scene},
-    human::Human,
+    human::{ArmRanges, Human, ranges},
     model::{
         frames::Pose,
         plan::{ArmHold, HumanPosture, Plan},
-        scenario::Tool,
+        scenario::{Person, Tool},
     },
     robot::{Chain, Robot},
 };
@@ -48,18 +48,19 @@ pub struct CheckedArm<'a> {
 }
 
 impl<'a> CheckedPlan<'a> {
-    /// Checks a plan. `tool` is in the person's hand; it does not matter if the plan has no person.
+    /// Checks a plan. `rules` has the shoulder's kind, the posture limits and the place of the person, whose body is the plan's;
+    /// `tool` is in the person's hand. Neither matters if the plan has no person.
     ///
     /// # Errors
     /// All flaws of the plan.
-    pub fn new(robot: &'a Robot, plan: &'a Plan, tool: &Tool) -> Result<Self, Flaws> {
+    pub fn new(robot: &'a Robot, plan: &'a Plan, rules: &Person, tool: &Tool) -> Result<Self, Flaws> {
         let mut flaws = Vec::new();
         check_task(plan, &mut flaws);
         let arms: Vec<_> = (0..plan.arms.len()).filter_map(|arm| check_arm(robot, plan, arm, &mut flaws)).collect();
         if plan.arms.is_empty() {
             flaws.push(Flaw::NoArm);
         }
-        let person = plan.human.as_ref().and_then(|posture| check_person(posture, tool, &mut flaws));
+        let person = plan.human.as_ref().and_then(|posture| check_person(posture, rules, tool, &mut flaws));
         match Flaws::of(flaws) {
             Some(flaws) => Err(flaws),
             None => Ok(Self {
@@ -258,20 +259,36 @@ fn check_limits(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, toleran
 }
 
 /// The person; `None` if the person or the tool is invalid.
-fn check_person<'a>(posture: &'a HumanPosture, tool: &Tool, flaws: &mut Vec<Flaw>) -> Option<CheckedPerson<'a>> {
+fn check_person<'a>(
+    posture: &'a HumanPosture,
+    rules: &Person,
+    tool: &Tool,
+    flaws: &mut Vec<Flaw>,
+) -> Option<CheckedPerson<'a>> {
     if !posture.x_wb.translation.vector.iter().all(|x| x.is_finite()) {
         flaws.push(Flaw::PersonPose);
     }
-    let human = Human::new(&posture.person(), tool).map_err(|error| flaws.push(Flaw::Person(error))).ok()?;
+    let human = Human::new(&posture.person(rules), tool).map_err(|error| flaws.push(Flaw::Person(error))).ok()?;
     check_person_limits(&human, posture, LIMIT_RAD, flaws);
     Some(CheckedPerson { posture, human })
 }
 
 /// The limits of the joints of the person's working arm.
 fn check_person_limits(human: &Human, posture: &HumanPosture, tolerance_rad: f64, flaws: &mut Vec<Flaw>) {
-    for (joint, (&found_rad, limits_rad)) in posture.q_rad.iter().zip(human.arm().limits_rad).enumerate() {
+    let ArmRanges { joints_rad, twist_rad, elevation_rad } = *human.anatomy();
+    for (joint, (&found_rad, limits_rad)) in posture.q_rad.iter().zip(joints_rad).enumerate() {
         if !within(found_rad, limits_rad, tolerance_rad) {
             flaws.push(Flaw::PersonAngle { joint, found_rad, limits_rad });
+        }
+    }
+    let r_vu = human.arm().frames(&posture.q_rad).r_bu;
+    let of_shoulder = [
+        ("twist", ranges::twist_rad(&r_vu), twist_rad),
+        ("elevation", ranges::elevation_rad(&r_vu), elevation_rad.map(|highest| [0.0, highest])),
+    ];
+    for (what, found_rad, limits_rad) in of_shoulder {
+        if let Some(limits_rad) = limits_rad.filter(|limits_rad| !within(found_rad, *limits_rad, tolerance_rad)) {
+            flaws.push(Flaw::PersonShoulder { what, found_rad, limits_rad });
         }
     }
 }

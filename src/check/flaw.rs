@@ -138,6 +138,15 @@ pub enum Flaw {
         /// The joint's limits, rad.
         limits_rad: [f64; 2],
     },
+    /// The upper arm's twist or elevation beyond the shoulder's limits.
+    PersonShoulder {
+        /// `twist` or `elevation`.
+        what: &'static str,
+        /// The angle, rad.
+        found_rad: f64,
+        /// Its limits, rad.
+        limits_rad: [f64; 2],
+    },
     /// The person's arm puts the tool elsewhere than X_WO X_OT.
     Tool {
         /// Distance, m.
@@ -214,7 +223,7 @@ impl Flaw {
             Self::Person(_) => "human".into(),
             Self::PersonPose | Self::Standing { .. } => "human.x_wb".into(),
             Self::PersonAngle { joint, .. } => format!("human.q_rad[{joint}]"),
-            Self::Tool { .. } => "human.q_rad".into(),
+            Self::Tool { .. } | Self::PersonShoulder { .. } => "human.q_rad".into(),
             Self::Contact(_) => "object.x_wo".into(),
             Self::Strength { .. } => "comfort.activations".into(),
             Self::NoResponse => "comfort.average".into(),
@@ -252,6 +261,9 @@ impl Flaw {
             }
             Self::Person(error) => error.to_string(),
             Self::PersonPose => "a pose that is not finite".into(),
+            Self::PersonShoulder { what, found_rad, .. } => {
+                format!("the upper arm at {found_rad} rad of {what}")
+            }
             Self::Tool { off_m, off_rad, tolerance } => {
                 format!("the tool {} off the operation", tolerance.deviation([*off_m, *off_rad]))
             }
@@ -307,6 +319,9 @@ impl Flaw {
             Self::PersonPose => "finite numbers (m)".into(),
             Self::PersonAngle { joint, limits_rad: [low, high], .. } => {
                 format!("{low} to {high} rad, the limits of the person's joint q{}", joint + 1)
+            }
+            Self::PersonShoulder { what, limits_rad: [low, high], .. } => {
+                format!("{low} to {high} rad, the shoulder's range of {what}")
             }
             Self::Tool { tolerance, .. } => {
                 format!("x_wo x_ot to equal the person's forward kinematics within {tolerance}")

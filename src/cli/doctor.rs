@@ -12,7 +12,7 @@ use crate::{
     model::{
         GRAVITY_W,
         plan::Plan,
-        scenario::SimulationSettings,
+        scenario::{Person, SimulationSettings},
         trace::{Phase, Sample, Trace},
         wrench::Wrench,
     },
@@ -94,7 +94,8 @@ fn loaded(plan: &Plan) -> Result<Robot, String> {
 }
 
 fn checked<'a>(plan: &'a Plan, robot: &'a Robot) -> Result<CheckedPlan<'a>, String> {
-    CheckedPlan::new(robot, plan, &default_tool(plan.operation.kind)).map_err(|flaws| flaws.to_string())
+    CheckedPlan::new(robot, plan, &Person::default(), &default_tool(plan.operation.kind))
+        .map_err(|flaws| flaws.to_string())
 }
 
 /// Compares the load factor with a closed form: two hands with four pads of grip force `F` and friction `mu` resist `4 mu F`

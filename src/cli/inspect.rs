@@ -64,7 +64,7 @@ fn with(limits: Limits, given: LimitArgs) -> Limits {
         deflection_mm: given.deflection_mm.unwrap_or(limits.deflection_mm),
         creep_mm_s: given.creep_mm_s.unwrap_or(limits.creep_mm_s),
         torque_ratio: given.torque_ratio.unwrap_or(limits.torque_ratio),
-        load_factor: limits.load_factor,
+        ..limits
     }
 }
 

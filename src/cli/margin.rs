@@ -52,7 +52,7 @@ struct Margin {
 /// Finds and reports the margin of a plan.
 pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
     let LoadedPlan { plan, robot, scenario, .. } = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
-    let checked = CheckedPlan::new(&robot, &plan, &scenario.tool)?;
+    let checked = CheckedPlan::new(&robot, &plan, &scenario.human, &scenario.tool)?;
     let margin = margin_of(&checked, &scenario)?;
     match args.format {
         Format::Human => output::print(&text(&margin))?,

@@ -55,7 +55,7 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
 /// # Errors
 /// If the simulation cannot be set up from the plan.
 pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
-    let checked = CheckedPlan::new(robot, &plan, &scenario.tool)?;
+    let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
     if let Some(contact) = checked.first_contact() {
         let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, contact);
         return Ok(Run { verdict, plan: Some(plan), simulated: None });

@@ -17,7 +17,7 @@ use crate::{
 /// If the recording cannot be made.
 pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, CliError> {
     let (Some(plan), Some((trace, judgement))) = (&run.plan, &run.simulated) else { return Ok(None) };
-    let checked = CheckedPlan::new(robot, plan, &scenario.tool)?;
+    let checked = CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool)?;
     let person = checked.person().map(|CheckedPerson { posture, human }| {
         let points_w = human.body_points_w(&posture.x_wb, &posture.q_rad).to_vec();
         person_shape(&human.capsules_w(&posture.x_wb, &posture.q_rad), points_w)

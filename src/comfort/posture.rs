@@ -34,8 +34,11 @@ pub fn posture_comfort(
         peripersonal_scaled: Some(BODY_POINTS as f64 * peripersonal_m),
         objective: objective(settings, regularised, peripersonal_m),
         activations,
+        muscular_intrinsic: None,
+        shoulder: None,
         average: None,
         rula: None,
+        reba: None,
     }
 }
 

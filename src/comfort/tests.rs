@@ -16,7 +16,7 @@ use crate::{
     model::{
         frames::Pose,
         operation::{Operation, OperationKind},
-        scenario::{ComfortSettings, Hand, Person, Sex},
+        scenario::{ComfortSettings, Hand, Person},
     },
     robot::Robot,
 };
@@ -25,7 +25,7 @@ const FLOOR_Z_M: f64 = -0.92;
 const BOARD_M: [f64; 3] = [0.5, 0.4, 0.03];
 
 fn worker(hand: Hand, kind: OperationKind) -> Human {
-    let person = Person { height_m: 1.75, mass_kg: 75.0, sex: Sex::Male, hand, percentile: 50.0, lean_deg: 0.0 };
+    let person = Person { hand, ..Person::PAPER };
     Human::new(&person, &default_tool(kind)).unwrap()
 }
 

@@ -10,7 +10,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use super::body::Body;
+use super::{body::Body, ranges::ArmRanges};
 use crate::model::frames::Pose;
 
 /// Joint angles of the working arm, rad, positive towards: shoulder flexion, abduction, internal rotation, elbow flexion,
@@ -28,8 +28,8 @@ pub struct Arm {
     pub forearm_m: f64,
     /// The tool tip's frame in the hand.
     pub x_ht: Pose,
-    /// Range of each joint, rad.
-    pub limits_rad: [[f64; 2]; 7],
+    /// Where its joints may be.
+    pub ranges: ArmRanges,
 }
 
 /// Positions and orientations of the parts of an arm in the body's frame B.
@@ -69,14 +69,9 @@ impl ArmFrames {
 
 impl Arm {
     /// The right arm of a body with a tool whose tip lies at `x_ht` in the hand.
-    pub fn new(body: &Body, x_ht: Pose) -> Self {
-        Self {
-            p_bs_m: body.p_bs_m,
-            upper_arm_m: body.upper_arm.length_m,
-            forearm_m: body.forearm.length_m,
-            x_ht,
-            limits_rad: body.arm_limits_rad,
-        }
+    pub fn new(body: &Body, x_ht: Pose, ranges: ArmRanges) -> Self {
+        let (upper_arm_m, forearm_m) = (body.upper_arm.length_m, body.forearm.length_m);
+        Self { p_bs_m: body.p_bs_m, upper_arm_m, forearm_m, x_ht, ranges }
     }
 
     /// Shoulder to wrist of the straight arm, m.
@@ -84,9 +79,16 @@ impl Arm {
         self.upper_arm_m + self.forearm_m
     }
 
-    /// True if every joint is within its range.
+    /// Elbow flexion at which the distance from shoulder to wrist is this share of the straight arm, rad; the law of cosines.
+    pub fn elbow_at_reach(&self, share: f64) -> f64 {
+        let (upper, fore, reached) = (self.upper_arm_m, self.forearm_m, share * self.reach_m());
+        libm::acos(((reached * reached - upper * upper - fore * fore) / (2.0 * upper * fore)).clamp(-1.0, 1.0))
+    }
+
+    /// True if the arm is within its ranges.
     pub fn within_limits(&self, q_rad: &ArmAngles) -> bool {
-        q_rad.iter().zip(&self.limits_rad).all(|(q, [low, high])| (low..=high).contains(&q))
+        q_rad.iter().zip(&self.ranges.joints_rad).all(|(q, [low, high])| (low..=high).contains(&q))
+            && self.ranges.permits_shoulder(&self.frames(q_rad).r_bu, 0.0)
     }
 
     /// Positions and orientations of the parts of the arm.

@@ -7,6 +7,7 @@ use std::sync::LazyLock;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use serde::Deserialize;
 
+use super::ranges::ShoulderLimits;
 use crate::model::{
     frames::Pose,
     scenario::{Person, Sex},
@@ -41,6 +42,8 @@ pub struct Body {
     pub p_bs_m: Vector3<f64>,
     /// Height of the chin over the floor, m.
     pub chin_m: f64,
+    /// The point between the eyes in B, m.
+    pub eye_b_m: Vector3<f64>,
     /// Height of the hip joints over the floor, m.
     pub hip_m: f64,
     /// Height of the knees over the floor, m.
@@ -55,8 +58,10 @@ pub struct Body {
     pub hand: Segment,
     /// Centre of the palm in H, m.
     pub palm_h: Vector3<f64>,
-    /// Range of each joint of the arm, rad.
+    /// Anatomical range of each joint of the arm, rad: of the shoulder those of `shoulder = "box"`.
     pub arm_limits_rad: [[f64; 2]; 7],
+    /// Anatomical limits of the shoulder with `shoulder = "swing-twist"`.
+    pub shoulder: ShoulderLimits,
     /// Radii of the parts.
     pub thickness: Thickness,
 }
@@ -88,6 +93,7 @@ pub struct Thickness {
 #[serde(deny_unknown_fields)]
 struct Anthropometry {
     lengths: Lengths,
+    eye: Eye,
     segments: SegmentsBySex,
     capsules: ReferenceThickness,
     arm: ArmRanges,
@@ -101,10 +107,17 @@ struct Lengths {
     hip_height: f64,
     knee_height: f64,
     chin_height: f64,
+    eye_height: f64,
     upper_arm: f64,
     forearm: f64,
     hand: f64,
     wrist_to_palm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Eye {
+    ahead_m: f64,
 }
 
 #[derive(Deserialize)]
@@ -140,6 +153,8 @@ struct ReferenceThickness {
 #[serde(deny_unknown_fields)]
 struct ArmRanges {
     limits_deg: [[f64; 2]; 7],
+    twist_deg: [f64; 2],
+    elevation_deg: f64,
 }
 
 static ANTHROPOMETRY: LazyLock<Anthropometry> = LazyLock::new(|| {
@@ -150,7 +165,7 @@ static ANTHROPOMETRY: LazyLock<Anthropometry> = LazyLock::new(|| {
 impl Body {
     /// The right-handed body of a person (docs/method.md#43-body-dimensions).
     pub fn new(person: &Person) -> Self {
-        let Anthropometry { lengths, segments, capsules, arm } = &*ANTHROPOMETRY;
+        let Anthropometry { lengths, eye, segments, capsules, arm } = &*ANTHROPOMETRY;
         let of_sex = match person.sex {
             Sex::Male => &segments.male,
             Sex::Female => &segments.female,
@@ -165,6 +180,7 @@ impl Body {
             height_m,
             p_bs_m: Vector3::new(0.0, -lengths.shoulder_half_breadth, lengths.shoulder_height) * height_m,
             chin_m: lengths.chin_height * height_m,
+            eye_b_m: Vector3::new(eye.ahead_m, 0.0, lengths.eye_height * height_m),
             hip_m: lengths.hip_height * height_m,
             knee_m: lengths.knee_height * height_m,
             lean_rad: person.lean_deg.to_radians(),
@@ -173,6 +189,10 @@ impl Body {
             hand: segment(lengths.hand, &of_sex.hand),
             palm_h: Vector3::new(0.0, 0.0, -lengths.wrist_to_palm * height_m),
             arm_limits_rad: arm.limits_deg.map(|range| range.map(f64::to_radians)),
+            shoulder: ShoulderLimits {
+                twist_rad: arm.twist_deg.map(f64::to_radians),
+                elevation_rad: arm.elevation_deg.to_radians(),
+            },
             thickness: capsules.thickness.scaled(height_m / capsules.reference_height_m),
         }
     }

@@ -14,6 +14,8 @@
 //! | [`muscular`] | joint torques, activations, muscular comfort |
 //! | [`gradient`] | derivatives by the joint angles |
 //! | [`peripersonal`] | peripersonal comfort |
+//! | [`ranges`] | ranges of the arm's joints, swing and twist of the shoulder |
+//! | [`posture`] | how the person stands and sees the work |
 //! | [`rula`] | the RULA score of a posture |
 //! | [`tools`] | the tools of the paper |
 
@@ -22,6 +24,8 @@ pub mod body;
 pub mod gradient;
 pub mod muscular;
 pub mod peripersonal;
+pub mod posture;
+pub mod ranges;
 pub mod rula;
 pub mod shape;
 pub mod strength;
@@ -39,10 +43,12 @@ pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use gradient::{ArmAxes, MuscularGradient};
 pub use muscular::{JointTorques, Muscular};
 pub use peripersonal::{Distances, Pull, peripersonal_m, peripersonal_pulls};
+pub use posture::Gaze;
+pub use ranges::ArmRanges;
 pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, STILL_POINTS, Side, body_point_joints};
 pub use strength::{Sense, Strength};
 pub use swivel::{ArmSolutions, ShoulderBranch, SwivelCircle, SwivelInterval, SwivelIntervals};
-pub use tools::default_tool;
+pub use tools::{default_tool, named_tool, paper_tool};
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
@@ -51,7 +57,7 @@ use crate::model::{
     GRAVITY_W,
     frames::{Pose, rotation_from_xyzw},
     plan::RulaScore,
-    scenario::{Hand, Person, StrengthDirection, Tool},
+    scenario::{Hand, Person, PostureLimits, StrengthDirection, Tool},
     wrench::Wrench,
 };
 
@@ -68,6 +74,12 @@ pub enum HumanError {
         /// The valid values.
         expected: &'static str,
     },
+    /// The limits of the posture leave a joint of the arm no range.
+    #[error(
+        "the person's elbow_deg, reach, upper_arm_deg, limit_margin_deg and deviation_margin_deg leave a joint of the arm \
+         no range, expected wider limits"
+    )]
+    NoRange,
     /// The tool's rotation is not a unit quaternion.
     #[error("failed to read the tool's rotation_xyzw: {0}")]
     ToolRotation(String),
@@ -81,6 +93,9 @@ pub struct Human {
     arm: Arm,
     strength: Strength,
     tool_kg: f64,
+    /// Anatomical ranges of the arm; those of `arm` may be narrower.
+    anatomy: ArmRanges,
+    posture: PostureLimits,
     /// Pose of the upper body's frame V in B; its own mirror image.
     x_bv: Pose,
 }
@@ -103,10 +118,26 @@ impl Human {
         }
         let rotation = rotation_from_xyzw(tool.rotation_xyzw).map_err(HumanError::ToolRotation)?;
         let body = Body::new(person);
-        let arm = Arm::new(&body, Isometry3::from_parts(tool.tip_h_m.into(), rotation));
+        let anatomy = ArmRanges::anatomical(body.arm_limits_rad, &body.shoulder, person.shoulder);
+        let mut arm = Arm::new(&body, Isometry3::from_parts(tool.tip_h_m.into(), rotation), anatomy);
+        if person.posture.is_natural() {
+            arm.ranges = anatomy.within_posture(&person.posture, |reach| arm.elbow_at_reach(reach));
+            if arm.ranges.is_empty() {
+                return Err(HumanError::NoRange);
+            }
+        }
         let strength = Strength::new(person.sex, person.percentile);
         let x_bv = body.x_bv();
-        Ok(Self { hand: person.hand, body, arm, strength, tool_kg: tool.mass_kg, x_bv })
+        Ok(Self {
+            hand: person.hand,
+            body,
+            arm,
+            strength,
+            tool_kg: tool.mass_kg,
+            anatomy,
+            posture: person.posture,
+            x_bv,
+        })
     }
 
     /// The body, as that of a right-handed person.
@@ -117,6 +148,16 @@ impl Human {
     /// The working arm, as a right arm of an upright body.
     pub fn arm(&self) -> &Arm {
         &self.arm
+    }
+
+    /// The anatomical ranges of the working arm. Those of [`Human::arm`] are narrower for a natural posture.
+    pub fn anatomy(&self) -> &ArmRanges {
+        &self.anatomy
+    }
+
+    /// The limits of the posture.
+    pub fn posture(&self) -> &PostureLimits {
+        &self.posture
     }
 
     /// The strengths of the working arm.

@@ -19,15 +19,19 @@
 //! # Intervals
 //! With the wrist fixed, every element of the shoulder's rotation R_BU and of the wrist's R_FH has the form
 //! `a + b cos(psi) + c sin(psi)`. So has, as a combination of elements, the condition that a joint is at a limit. Each
-//! condition has at most two roots, in closed form, and feasibility is constant between neighbouring roots.
+//! condition has at most two roots, in closed form, and feasibility is constant between neighbouring roots. That holds for the
+//! limits of the three shoulder angles and for those of twist and elevation ([`super::ranges`]).
 
 use std::f64::consts::{PI, TAU};
 
 use arrayvec::ArrayVec;
-use libm::{acos, asin, atan2, hypot, sincos};
+use libm::{acos, asin, atan2, cos, hypot, sincos};
 use nalgebra::{Matrix3, Vector3};
 
-use super::arm::{Arm, ArmAngles};
+use super::{
+    arm::{Arm, ArmAngles},
+    ranges::ArmRanges,
+};
 use crate::model::frames::Pose;
 
 /// Tolerance of joint limits, rad: the error of angles at the end of a swivel interval. Angles beyond a limit by less are set
@@ -40,8 +44,8 @@ const COSINE_TOLERANCE: f64 = 1e-12;
 /// Sine of the angle between arm and vertical below which the reference direction of the swivel changes.
 const VERTICAL: f64 = 1e-9;
 
-/// Two limits of each joint but the elbow, each with at most two roots, and both ends of the circle.
-const MAX_BREAKS: usize = 6 * 2 * 2 + 2;
+/// Two limits of each joint but the elbow and one of the elevation, each with at most two roots, and both ends of the circle.
+const MAX_BREAKS: usize = (6 * 2 + 1) * 2 + 2;
 
 /// Both branches, each with at most every second interval between breaks.
 const MAX_INTERVALS: usize = MAX_BREAKS;
@@ -86,7 +90,7 @@ pub struct SwivelCircle {
     shoulder: Harmonic,
     /// R_FH over the swivel.
     wrist: Harmonic,
-    limits_rad: [[f64; 2]; 7],
+    ranges: ArmRanges,
 }
 
 /// A rotation matrix over the swivel, `constant + cos C + sin S`.
@@ -141,7 +145,7 @@ impl Arm {
         let (sin, cos) = sincos(elbow_rad);
         let r_fu = Matrix3::new(cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos);
         let wrist = shoulder.map(|r_bu| r_fu * r_bu.transpose() * r_bh);
-        Some(SwivelCircle { elbow_rad, shoulder, wrist, limits_rad: self.limits_rad })
+        Some(SwivelCircle { elbow_rad, shoulder, wrist, ranges: self.ranges })
     }
 
     /// Elbow flexion at this distance from shoulder to wrist, from the law of cosines.
@@ -149,7 +153,7 @@ impl Arm {
         let (upper, fore) = (self.upper_arm_m, self.forearm_m);
         let cosine = (distance_m * distance_m - upper * upper - fore * fore) / (2.0 * upper * fore);
         let in_reach = cosine.abs() <= 1.0 + COSINE_TOLERANCE;
-        if in_reach { within(acos(cosine.clamp(-1.0, 1.0)), &self.limits_rad[3]) } else { None }
+        if in_reach { within(acos(cosine.clamp(-1.0, 1.0)), &self.ranges.joints_rad[3]) } else { None }
     }
 }
 
@@ -217,10 +221,18 @@ impl SwivelCircle {
     /// Angles at which a joint is at a limit, and -pi and pi, in ascending order.
     fn breaks(&self) -> ArrayVec<f64, MAX_BREAKS> {
         let mut breaks = ArrayVec::from_iter([-PI, PI]);
-        for (joint, limits) in self.limits_rad.iter().enumerate() {
+        let ArmRanges { joints_rad, twist_rad, elevation_rad } = &self.ranges;
+        let (r, w) = (&self.shoulder, &self.wrist);
+        // The twist's sine is to its cosine as m21 - m12 to m11 + m22; the cosine of the elevation is m33.
+        for (s, c) in twist_rad.iter().flatten().map(|&limit| sincos(limit)) {
+            breaks.extend(r.roots(0.0, |r| (r.m21 - r.m12) * c - (r.m11 + r.m22) * s));
+        }
+        if let Some(highest) = elevation_rad {
+            breaks.extend(r.roots(-cos(*highest), |r| r.m33));
+        }
+        for (joint, limits) in joints_rad.iter().enumerate().skip(if twist_rad.is_some() { 3 } else { 0 }) {
             for &limit in limits {
                 let (s, c) = sincos(limit);
-                let (r, w) = (&self.shoulder, &self.wrist);
                 // See `shoulder_angles` and `wrist_angles`. Roots at which the angle is off by pi only split an interval,
                 // which is joined again.
                 breaks.extend(match joint {
@@ -241,20 +253,26 @@ impl SwivelCircle {
     /// The angles of `R_BU = Ry(-q1) Rx(-q2) Rz(q3)`: its middle row is `(cos q2 sin q3, cos q2 cos q3, sin q2)`, its last
     /// column `(-sin q1 cos q2, sin q2, cos q1 cos q2)`.
     fn shoulder_angles(&self, r_bu: &Matrix3<f64>, branch: ShoulderBranch) -> Option<[f64; 3]> {
+        if branch == ShoulderBranch::High && self.ranges.twist_rad.is_some() {
+            return None; // The low branch has every orientation.
+        }
+        if !self.ranges.permits_shoulder(r_bu, LIMIT_TOLERANCE_RAD) {
+            return None;
+        }
         // The arcsine of m23 would lose half of the digits at 90 degrees.
         let horizontal = hypot(r_bu.m13, r_bu.m33);
         let (cos_q2, sign) = match branch {
             ShoulderBranch::Low => (horizontal, 1.0),
             ShoulderBranch::High => (-horizontal, -1.0),
         };
-        let q2 = within(atan2(r_bu.m23, cos_q2), &self.limits_rad[1])?;
+        let q2 = within(atan2(r_bu.m23, cos_q2), &self.ranges.joints_rad[1])?;
         let flexion = atan2(-r_bu.m13 * sign, r_bu.m33 * sign);
-        let q1 = within(flexion, &self.limits_rad[0])?;
+        let q1 = within(flexion, &self.ranges.joints_rad[0])?;
         // q3 from the rotation that remains after q1, not from the middle row: at 90 degrees of abduction, where q1 and q3
         // have the same axis, their sum stays exact.
         let (sin, cos) = sincos(q1);
         let (x, y) = (r_bu.m11 * cos + r_bu.m31 * sin, r_bu.m12 * cos + r_bu.m32 * sin);
-        let q3 = within(atan2(-y, x), &self.limits_rad[2])?;
+        let q3 = within(atan2(-y, x), &self.ranges.joints_rad[2])?;
         Some([q1, q2, q3])
     }
 
@@ -262,9 +280,9 @@ impl SwivelCircle {
     /// column `(-sin q5 cos q6, cos q5 cos q6, sin q6)`. With |q6| < 90 degrees the solution is unique.
     fn wrist_angles(&self, swivel_rad: f64) -> Option<[f64; 3]> {
         let r_fh = self.wrist.at(swivel_rad);
-        let q6 = within(asin(r_fh.m32.clamp(-1.0, 1.0)), &self.limits_rad[5])?;
-        let q5 = within(atan2(-r_fh.m12, r_fh.m22), &self.limits_rad[4])?;
-        let q7 = within(atan2(-r_fh.m31, r_fh.m33), &self.limits_rad[6])?;
+        let q6 = within(asin(r_fh.m32.clamp(-1.0, 1.0)), &self.ranges.joints_rad[5])?;
+        let q5 = within(atan2(-r_fh.m12, r_fh.m22), &self.ranges.joints_rad[4])?;
+        let q7 = within(atan2(-r_fh.m31, r_fh.m33), &self.ranges.joints_rad[6])?;
         Some([q5, q6, q7])
     }
 }
@@ -422,7 +440,8 @@ mod tests {
                 // abduction passes 90 degrees.
                 for end_rad in [from_rad, to_rad] {
                     let q_rad = circle.solution(end_rad, branch).unwrap();
-                    let margin = |i: usize| (q_rad[i] - arm.limits_rad[i][0]).min(arm.limits_rad[i][1] - q_rad[i]);
+                    let margin =
+                        |i: usize| (q_rad[i] - arm.ranges.joints_rad[i][0]).min(arm.ranges.joints_rad[i][1] - q_rad[i]);
                     let least = [0, 1, 2, 4, 5, 6].map(margin).into_iter().fold(f64::INFINITY, f64::min);
                     assert!(least.abs() < 1e-6, "{least} {q_rad:?}");
                     ends += 1;

@@ -6,12 +6,12 @@ use rand_pcg::Pcg64;
 use super::{Arm, ArmAngles, Human, default_tool};
 use crate::model::{
     operation::OperationKind,
-    scenario::{Hand, Person, Sex},
+    scenario::{Hand, Person},
 };
 
-/// The person of docs/method.md#43-body-dimensions.
+/// The person of docs/method.md#43-body-dimensions, with a box shoulder and without posture limits.
 pub(super) fn average_man() -> Person {
-    Person { height_m: 1.75, mass_kg: 75.0, sex: Sex::Male, hand: Hand::Right, percentile: 50.0, lean_deg: 0.0 }
+    Person::PAPER
 }
 
 /// The average man with the default tool for this kind of operation.
@@ -26,5 +26,5 @@ pub(super) fn generator(seed: u64) -> Pcg64 {
 
 /// Angles drawn uniformly between the joints' limits.
 pub(super) fn random_angles(arm: &Arm, generator: &mut Pcg64) -> ArmAngles {
-    arm.limits_rad.map(|[low, high]| generator.random_range(low..=high))
+    arm.ranges.joints_rad.map(|[low, high]| generator.random_range(low..=high))
 }

@@ -34,7 +34,7 @@ fn fractions() -> impl Strategy<Value = [f64; 7]> {
 
 fn posture(human: &Human, fractions: [f64; 7]) -> ArmAngles {
     std::array::from_fn(|i| {
-        let [low, high] = human.arm().limits_rad[i];
+        let [low, high] = human.arm().ranges.joints_rad[i];
         low + fractions[i] * (high - low)
     })
 }

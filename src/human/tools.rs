@@ -12,6 +12,8 @@ use crate::model::{operation::OperationKind, scenario::Tool};
 struct Tools {
     drill: Tool,
     knife: Tool,
+    #[serde(rename = "knife-thumb-side")]
+    knife_thumb_side: Tool,
 }
 
 static TOOLS: LazyLock<Tools> = LazyLock::new(|| {
@@ -24,6 +26,27 @@ pub fn default_tool(kind: OperationKind) -> Tool {
     match kind {
         OperationKind::Cut => TOOLS.knife,
         OperationKind::Drill | OperationKind::Wrench => TOOLS.drill,
+    }
+}
+
+/// The tool of the reproduction of the paper: for a cut the knife whose blade leaves the fist on the side of the thumb.
+pub fn paper_tool(kind: OperationKind) -> Tool {
+    match kind {
+        OperationKind::Cut => TOOLS.knife_thumb_side,
+        OperationKind::Drill | OperationKind::Wrench => TOOLS.drill,
+    }
+}
+
+/// The names of the tools that a scenario may name.
+pub const TOOL_NAMES: [&str; 3] = ["drill", "knife", "knife-thumb-side"];
+
+/// The tool with one of [`TOOL_NAMES`].
+pub fn named_tool(name: &str) -> Option<Tool> {
+    match name {
+        "drill" => Some(TOOLS.drill),
+        "knife" => Some(TOOLS.knife),
+        "knife-thumb-side" => Some(TOOLS.knife_thumb_side),
+        _ => None,
     }
 }
 

@@ -102,6 +102,20 @@ impl Operation {
         Wrench::new(x_wo.rotation * self.wrench_o.force_n, x_wo.rotation * self.wrench_o.moment_nm)
     }
 
+    /// The normal of the worked face in O, out of the board: that of the face with the tool tip or, if the tip is on no face,
+    /// against z_T.
+    #[must_use]
+    pub fn face_normal_o(&self, thickness_m: f64) -> Vector3<f64> {
+        /// Of the tip from a face, m: rounding of written numbers.
+        const ON_FACE_M: f64 = 1e-6;
+        let z_m = self.x_ot.translation.z;
+        if (z_m.abs() - thickness_m / 2.0).abs() <= ON_FACE_M {
+            Vector3::z() * z_m.signum()
+        } else {
+            self.x_ot.rotation * -Vector3::z()
+        }
+    }
+
     /// The wrench about the board's centre in O axes: `(f, m + p_OT x f)`.
     #[must_use]
     pub fn wrench_about_object(&self) -> Wrench {

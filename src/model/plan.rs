@@ -104,20 +104,172 @@ pub struct HumanPosture {
     pub x_wb: Pose,
     /// Joint angles of the working arm, rad. For a left-handed person those of the mirrored right arm.
     pub q_rad: [f64; 7],
+    /// How the person stands and sees the work.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub posture: Option<PostureFigures>,
 }
 
 impl HumanPosture {
     /// The posture of a person with this pose and these joint angles.
     pub fn new(person: &Person, x_wb: Pose, q_rad: [f64; 7]) -> Self {
-        let Person { height_m, mass_kg, sex, hand, percentile, lean_deg } = *person;
-        Self { height_m, mass_kg, sex, hand, percentile, lean_deg, x_wb, q_rad }
+        let Person { height_m, mass_kg, sex, hand, percentile, lean_deg, .. } = *person;
+        Self { height_m, mass_kg, sex, hand, percentile, lean_deg, x_wb, q_rad, posture: None }
     }
 
-    /// The person's body dimensions.
+    /// The person with these body dimensions, and the shoulder, posture limits and place of `rules`.
     #[must_use]
-    pub fn person(&self) -> Person {
+    pub fn person(&self, rules: &Person) -> Person {
         let Self { height_m, mass_kg, sex, hand, percentile, lean_deg, .. } = *self;
-        Person { height_m, mass_kg, sex, hand, percentile, lean_deg }
+        Person { height_m, mass_kg, sex, hand, percentile, lean_deg, ..*rules }
+    }
+}
+
+/// A figure of a posture with its limits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PostureFigure {
+    /// The value.
+    pub value: f64,
+    /// The smallest value that is permitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    /// The largest value that is permitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+}
+
+impl PostureFigure {
+    /// The distance from the nearer limit, negative beyond it; infinite without limits.
+    #[must_use]
+    pub fn margin(&self) -> f64 {
+        let above = self.min.map_or(f64::INFINITY, |min| self.value - min);
+        let below = self.max.map_or(f64::INFINITY, |max| max - self.value);
+        above.min(below)
+    }
+}
+
+/// How the person stands and sees the work (`docs/method.md#413-natural-postures`), with the limits of
+/// [`super::scenario::PostureLimits`]; without limits if the posture is unrestricted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PostureFigures {
+    /// Azimuth of the tool tip from straight ahead, degrees, positive towards the working side.
+    pub facing_deg: PostureFigure,
+    /// Angle between the worked face's normal and the direction from the tool tip to the eye, degrees.
+    pub view_deg: PostureFigure,
+    /// Turn of the gaze from straight ahead, degrees, positive towards the working side.
+    pub gaze_yaw_deg: PostureFigure,
+    /// Elevation of the gaze over the horizontal, degrees.
+    pub gaze_pitch_deg: PostureFigure,
+    /// Distance from the eye to the tool tip, m.
+    pub eye_distance_m: PostureFigure,
+    /// The free share of the line from the eye to the tool tip: 1 if nothing is in the way.
+    pub line_of_sight: PostureFigure,
+    /// Elevation of the worked face's normal over the horizontal, degrees.
+    pub face_elevation_deg: PostureFigure,
+    /// Elevation of the upper arm from hanging, degrees.
+    pub upper_arm_deg: PostureFigure,
+    /// Distance from shoulder to wrist as a share of the straight arm.
+    pub reach: PostureFigure,
+    /// Flexion of the elbow, degrees.
+    pub elbow_deg: PostureFigure,
+    /// Smallest distance of a joint of the arm but the last from its limits, degrees.
+    pub limit_margin_deg: PostureFigure,
+    /// Distance of the wrist's ulnar deviation from its limits, degrees.
+    pub deviation_margin_deg: PostureFigure,
+}
+
+/// A limit of a natural posture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PostureConstraint {
+    /// The tool tip is too far to the side.
+    Facing,
+    /// The worked face is seen too flat, or from behind.
+    View,
+    /// The gaze turns too far to the side.
+    GazeYaw,
+    /// The gaze is too steep.
+    GazePitch,
+    /// The tool tip is too near to the eye or too far from it.
+    EyeDistance,
+    /// A body is in the line of sight.
+    LineOfSight,
+    /// The worked face looks down.
+    FaceElevation,
+    /// The upper arm is raised too far.
+    UpperArm,
+    /// The arm is too straight.
+    Reach,
+    /// The elbow is too straight or too bent.
+    Elbow,
+    /// A joint of the arm is too near to a limit.
+    LimitMargin,
+    /// The wrist's ulnar deviation is too near to a limit.
+    DeviationMargin,
+}
+
+impl PostureConstraint {
+    /// All of them, in the order of [`PostureFigures`].
+    pub const ALL: [Self; 12] = [
+        Self::Facing,
+        Self::View,
+        Self::GazeYaw,
+        Self::GazePitch,
+        Self::EyeDistance,
+        Self::LineOfSight,
+        Self::FaceElevation,
+        Self::UpperArm,
+        Self::Reach,
+        Self::Elbow,
+        Self::LimitMargin,
+        Self::DeviationMargin,
+    ];
+
+    /// The key under `[human]` and in `human.posture`.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Facing => "facing_deg",
+            Self::View => "view_deg",
+            Self::GazeYaw => "gaze_yaw_deg",
+            Self::GazePitch => "gaze_pitch_deg",
+            Self::EyeDistance => "eye_distance_m",
+            Self::LineOfSight => "line_of_sight",
+            Self::FaceElevation => "face_elevation_deg",
+            Self::UpperArm => "upper_arm_deg",
+            Self::Reach => "reach",
+            Self::Elbow => "elbow_deg",
+            Self::LimitMargin => "limit_margin_deg",
+            Self::DeviationMargin => "deviation_margin_deg",
+        }
+    }
+
+    /// True if it decides whether the person sees the work.
+    #[must_use]
+    pub fn is_of_sight(self) -> bool {
+        use PostureConstraint::{EyeDistance, FaceElevation, GazePitch, GazeYaw, LineOfSight, View};
+        matches!(self, View | GazeYaw | GazePitch | EyeDistance | LineOfSight | FaceElevation)
+    }
+}
+
+impl PostureFigures {
+    /// Each constraint with its figure.
+    pub fn iter(&self) -> impl Iterator<Item = (PostureConstraint, PostureFigure)> {
+        let figures = [
+            self.facing_deg,
+            self.view_deg,
+            self.gaze_yaw_deg,
+            self.gaze_pitch_deg,
+            self.eye_distance_m,
+            self.line_of_sight,
+            self.face_elevation_deg,
+            self.upper_arm_deg,
+            self.reach,
+            self.elbow_deg,
+            self.limit_margin_deg,
+            self.deviation_margin_deg,
+        ];
+        PostureConstraint::ALL.into_iter().zip(figures)
     }
 }
 
@@ -125,10 +277,17 @@ impl HumanPosture {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Comfort {
-    /// Muscular comfort as printed in the paper, `1 / ||alpha||^2` with the activations `alpha`.
+    /// Muscular comfort as printed in the paper, `1 / ||alpha||^2` with the activations `alpha` of `muscular = "paper"`.
     pub muscular: f64,
-    /// Regularised muscular comfort `1 / (||alpha||^2 + 0.01)`, which the planners maximise.
+    /// The muscular comfort that the planners maximise: with `muscular = "intrinsic"` it is `muscular_intrinsic`, with
+    /// `muscular = "paper"` the printed one with regularisation, `1 / (||alpha||^2 + 0.01)`.
     pub muscular_regularised: f64,
+    /// Intrinsic muscular comfort `1 / (||alpha||^2 + 0.0175)` with the activations of `muscular = "intrinsic"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub muscular_intrinsic: Option<f64>,
+    /// The moment about the shoulder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shoulder: Option<ShoulderMoment>,
     /// Peripersonal comfort, m.
     pub peripersonal_m: f64,
     /// Peripersonal comfort times the number of body points: the sum instead of the mean, on the scale of the paper's
@@ -139,7 +298,8 @@ pub struct Comfort {
     /// objective if the scenario has `comfort.peripersonal_share`. It is that of this posture, or of `average` if the
     /// scenario has `comfort.person = "average"`.
     pub objective: f64,
-    /// Activation of each joint of the working arm: torque divided by strength.
+    /// Activations of the metric that the planners maximise: torque divided by strength. With `muscular = "intrinsic"` the first
+    /// three are those of raising the upper arm, moving it horizontally and turning it about itself; otherwise one per joint.
     pub activations: [f64; 7],
     /// The mean comfort over all of the person's responses; only with `comfort.person = "average"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -147,6 +307,36 @@ pub struct Comfort {
     /// The posture's RULA score. It is reported, not optimised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rula: Option<RulaScore>,
+    /// The posture's REBA score. It is reported, not optimised.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reba: Option<RebaScore>,
+}
+
+/// The moment that the working arm exerts about the shoulder (`docs/method.md#48-intrinsic-metric`). For a left-handed person
+/// that of the mirrored right arm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ShoulderMoment {
+    /// The moment in the axes of the upper body, N m.
+    pub moment_v_nm: [f64; 3],
+    /// Its part that raises the upper arm, N m; zero where the upper arm is vertical.
+    pub raising_nm: f64,
+    /// Its part that moves the raised upper arm horizontally, N m, positive towards the body's middle.
+    pub horizontal_nm: f64,
+    /// Its part that turns the upper arm about itself, N m, positive for internal rotation.
+    pub axial_nm: f64,
+}
+
+/// The score of a posture by Rapid Entire Body Assessment (REBA, Hignett and McAtamney 2000).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RebaScore {
+    /// The score: 1 negligible risk, 2 or 3 low, 4 to 7 medium, 8 to 10 high, 11 or more very high.
+    pub score: u8,
+    /// Score A: neck, trunk and legs with the load.
+    pub neck_trunk_legs: u8,
+    /// Score B: upper arm, lower arm and wrist with the grip.
+    pub arm_and_wrist: u8,
 }
 
 /// The mean comfort over the person's feasible responses on a uniform grid (`docs/method.md#33-the-persons-response`).

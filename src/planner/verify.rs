@@ -25,7 +25,7 @@ const SOLVER_TOLERANCE: f64 = 1e-4;
 /// All flaws of a plan under a scenario; empty if it satisfies every constraint and states its figures correctly.
 #[must_use]
 pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Vec<Flaw> {
-    let checked = match CheckedPlan::new(robot, plan, &scenario.tool) {
+    let checked = match CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool) {
         Ok(checked) => checked,
         Err(flaws) => return flaws.iter().cloned().collect(),
     };

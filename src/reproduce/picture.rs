@@ -10,7 +10,7 @@ use nalgebra::{Point3, Vector3};
 use super::hull::{Point2, convex_hull};
 use crate::{
     human::{BodyPart, Capsule, Human, HumanError, default_tool},
-    model::plan::Plan,
+    model::{plan::Plan, scenario::Person},
     robot::{Robot, Shape},
 };
 
@@ -111,7 +111,7 @@ fn scene(plan: &Plan, robot: &Robot) -> Result<Vec<Item>, HumanError> {
     items.push(Item::Hull(board_w, BOARD.to_owned()));
     if let Some(posture) = &plan.human {
         let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.operation.kind), |scenario| scenario.tool);
-        let human = Human::new(&posture.person(), &tool)?;
+        let human = Human::new(&posture.person(&Person::default()), &tool)?;
         for Capsule { name, p0_w, p1_w, radius_m } in human.capsules_w(&posture.x_wb, &posture.q_rad) {
             let stroke = if name == BodyPart::Tool { TOOL_STROKE } else { PERSON_STROKE };
             items.push(Item::Capsule([p0_w, p1_w], radius_m, stroke));

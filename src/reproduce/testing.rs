@@ -17,8 +17,11 @@ pub fn hold(operation: &str, planner: PlannerKind, seed: u64, muscular: f64, per
         peripersonal_scaled: Some(64.0 * peripersonal_m),
         objective: muscular + 64.0 * peripersonal_m,
         activations: [0.0; 7],
+        muscular_intrinsic: None,
+        shoulder: None,
         average: None,
         rula: None,
+        reba: None,
     });
     HoldRow {
         operation: operation.to_owned(),

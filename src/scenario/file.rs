@@ -13,7 +13,10 @@ use super::{
 use crate::model::{
     load::Uncertainty,
     operation::OperationKind,
-    scenario::{ComfortSettings, Expectation, Grip, Hand, PlannerSettings, Sex, SimulationSettings, Tool},
+    scenario::{
+        ComfortSettings, Expectation, Grip, Hand, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
+        ShoulderKind, SimulationSettings, Tool,
+    },
 };
 
 /// A scenario file.
@@ -78,7 +81,7 @@ impl Default for RobotSection {
     }
 }
 
-/// `[human]`.
+/// `[human]`. The keys from `facing_deg` on are limits of a natural posture; angles in degrees.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HumanSection {
@@ -94,11 +97,128 @@ pub struct HumanSection {
     pub percentile: f64,
     /// Forward lean of the trunk about the hips, degrees, 0 to 15; 0, upright, by default.
     pub lean_deg: f64,
+    /// Which arm configurations the shoulder permits: `swing-twist` limits elevation and twist of the upper arm, `box` each of
+    /// the three shoulder angles.
+    pub shoulder: ShoulderKind,
+    /// `natural`: the person stands as people stand and sees the work; `unrestricted`: only strength, joint limits and
+    /// clearances apply.
+    pub posture: PostureKind,
+    /// Largest azimuth of the tool tip from straight ahead, seen from the body's axis.
+    pub facing_deg: f64,
+    /// Largest angle between the worked face's normal and the direction from the tool tip to the eye.
+    pub view_deg: f64,
+    /// Largest turn of the gaze from straight ahead.
+    pub gaze_yaw_deg: f64,
+    /// Range of the gaze's elevation over the horizontal.
+    pub gaze_pitch_deg: [f64; 2],
+    /// Range of the distance from the eye to the tool tip, m.
+    pub eye_distance_m: [f64; 2],
+    /// True if board, robot, trunk, idle arm and working arm must not be in the line of sight.
+    pub line_of_sight: bool,
+    /// Smallest elevation of the worked face's normal over the horizontal.
+    pub face_elevation_deg: f64,
+    /// Largest elevation of the upper arm, from hanging.
+    pub upper_arm_deg: f64,
+    /// Largest distance from shoulder to wrist as a share of the straight arm.
+    pub reach: f64,
+    /// Range of the elbow's flexion.
+    pub elbow_deg: [f64; 2],
+    /// Smallest distance of every joint of the arm but the last from its limits.
+    pub limit_margin_deg: f64,
+    /// Smallest distance of the wrist's ulnar deviation from its limits.
+    pub deviation_margin_deg: f64,
+    /// `free`: the plan says where the person stands; `given`: they stand at `x_m`, `y_m` and face along `heading_deg`.
+    pub place: PlaceKind,
+    /// With `place = "given"`: position along x_W, m.
+    pub x_m: Option<f64>,
+    /// With `place = "given"`: position along y_W, m.
+    pub y_m: Option<f64>,
+    /// With `place = "given"`: direction in which the person faces, degrees from x_W towards y_W.
+    pub heading_deg: Option<f64>,
+    /// With `place = "given"`: largest deviation along each of x_W and y_W, m; 0.05 by default.
+    pub place_tolerance_m: Option<f64>,
+    /// With `place = "given"`: largest deviation of the heading, degrees; 5 by default.
+    pub heading_tolerance_deg: Option<f64>,
+}
+
+/// Whether a scenario says where the person stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PlaceKind {
+    /// The plan does.
+    #[default]
+    Free,
+    /// The scenario does.
+    Given,
 }
 
 impl Default for HumanSection {
     fn default() -> Self {
-        Self { height_m: None, mass_kg: None, sex: Sex::Male, hand: Hand::Right, percentile: 50.0, lean_deg: 0.0 }
+        let Person { sex, hand, percentile, lean_deg, shoulder, .. } = Person::default();
+        let PostureLimits {
+            kind: posture,
+            facing_deg,
+            view_deg,
+            gaze_yaw_deg,
+            gaze_pitch_deg,
+            eye_distance_m,
+            line_of_sight,
+            face_elevation_deg,
+            upper_arm_deg,
+            reach,
+            elbow_deg,
+            limit_margin_deg,
+            deviation_margin_deg,
+        } = PostureLimits::NATURAL;
+        Self {
+            height_m: None,
+            mass_kg: None,
+            sex,
+            hand,
+            percentile,
+            lean_deg,
+            shoulder,
+            posture,
+            facing_deg,
+            view_deg,
+            gaze_yaw_deg,
+            gaze_pitch_deg,
+            eye_distance_m,
+            line_of_sight,
+            face_elevation_deg,
+            upper_arm_deg,
+            reach,
+            elbow_deg,
+            limit_margin_deg,
+            deviation_margin_deg,
+            place: PlaceKind::Free,
+            x_m: None,
+            y_m: None,
+            heading_deg: None,
+            place_tolerance_m: None,
+            heading_tolerance_deg: None,
+        }
+    }
+}
+
+impl HumanSection {
+    /// The limits of the posture.
+    pub fn posture_limits(&self) -> PostureLimits {
+        PostureLimits {
+            kind: self.posture,
+            facing_deg: self.facing_deg,
+            view_deg: self.view_deg,
+            gaze_yaw_deg: self.gaze_yaw_deg,
+            gaze_pitch_deg: self.gaze_pitch_deg,
+            eye_distance_m: self.eye_distance_m,
+            line_of_sight: self.line_of_sight,
+            face_elevation_deg: self.face_elevation_deg,
+            upper_arm_deg: self.upper_arm_deg,
+            reach: self.reach,
+            elbow_deg: self.elbow_deg,
+            limit_margin_deg: self.limit_margin_deg,
+            deviation_margin_deg: self.deviation_margin_deg,
+        }
     }
 }
 
@@ -155,12 +275,28 @@ pub struct LimitsSection {
     pub torque_ratio: f64,
     /// Smallest predicted load factor of a plan; the planner requires 1.1 times this value of the compliant load factor.
     pub load_factor: f64,
+    /// Largest RULA score of the person's posture, 1 to 7; no limit by default.
+    pub rula: Option<u8>,
+    /// Largest RULA score of arm and wrist, 1 to 12; no limit by default.
+    pub rula_arm: Option<u8>,
+    /// Largest REBA score of the person's posture, 1 to 12; no limit by default.
+    pub reba: Option<u8>,
 }
 
 impl Default for LimitsSection {
     /// The default limits (`docs/method.md#810-default-limits`).
     fn default() -> Self {
-        Self { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: None, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 }
+        Self {
+            slip_mm: 1.0,
+            slip_deg: 2.0,
+            deflection_mm: None,
+            creep_mm_s: 0.1,
+            torque_ratio: 1.0,
+            load_factor: 1.0,
+            rula: None,
+            rula_arm: None,
+            reba: None,
+        }
     }
 }
 

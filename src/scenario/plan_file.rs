@@ -12,7 +12,10 @@ use super::{
 use crate::{
     check::{CheckedPlan, Flaw},
     human::default_tool,
-    model::plan::Plan,
+    model::{
+        plan::Plan,
+        scenario::{Person, ShoulderKind},
+    },
     robot::Robot,
 };
 
@@ -66,11 +69,20 @@ fn without_position(message: &str) -> String {
 
 /// Checks the plan against the robot and the person; the first flaw is the error.
 fn check_plan(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), InputError> {
+    let default = Person::default();
+    let (rules, tool) = match &plan.scenario {
+        Some(scenario) => (&scenario.human, scenario.tool),
+        None => (&default, default_tool(plan.operation.kind)),
+    };
     if let Some(posture) = &plan.human {
-        resolve::check_person(check, &posture.person())?;
+        resolve::check_person(check, &posture.person(rules))?;
     }
-    let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.operation.kind), |scenario| scenario.tool);
-    let Err(flaws) = CheckedPlan::new(robot, plan, &tool) else { return Ok(()) };
+    let Err(flaws) = CheckedPlan::new(robot, plan, rules, &tool) else { return Ok(()) };
+    // Without a scenario the shoulder may be of either kind; whoever uses the plan knows which.
+    let of_a_box = Person { shoulder: ShoulderKind::Box, ..default };
+    if plan.scenario.is_none() && CheckedPlan::new(robot, plan, &of_a_box, &tool).is_ok() {
+        return Ok(());
+    }
     let flaw = flaws.first();
     Err(match flaw {
         Flaw::Person(error) => check.syntax(&flaw.key(), error.to_string()),

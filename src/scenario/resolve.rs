@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::{
     InputError,
     check::Checker,
-    file::{HumanSection, LimitsSection, ObjectSection, OperationSection, ScenarioFile},
+    file::{HumanSection, LimitsSection, ObjectSection, OperationSection, PlaceKind, ScenarioFile},
     load_section::{self, check_load, check_uncertainty},
     material,
     robot_file::{load_robot, robot_parameters},
@@ -21,8 +21,8 @@ use crate::{
         operation::{Operation, OperationKind},
         plan::Plan,
         scenario::{
-            Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, Scenario, Sex,
-            SimulationSettings, Tool,
+            Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, PostureLimits, Scenario, Sex,
+            SimulationSettings, StandingPlace, Tool,
         },
         wrench::Wrench,
     },
@@ -44,7 +44,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         format: FORMAT,
         name: file.name.clone(),
         robot: robot_parameters(&robot),
-        human: person_with_defaults(&file.human),
+        human: person(&check, &file.human)?,
         tool: file.tool.unwrap_or_else(|| default_tool(operation.kind)),
         limits: limits_with_defaults(&file.limits, operation.kind),
         object,
@@ -73,6 +73,49 @@ pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> 
     check_limits(check, &scenario.limits)
 }
 
+/// The person of a file, with the place checked.
+fn person(check: &Checker<'_>, section: &HumanSection) -> Result<Person, InputError> {
+    let given = [
+        ("human.x_m", section.x_m),
+        ("human.y_m", section.y_m),
+        ("human.heading_deg", section.heading_deg),
+        ("human.place_tolerance_m", section.place_tolerance_m),
+        ("human.heading_tolerance_deg", section.heading_tolerance_deg),
+    ];
+    let place = match section.place {
+        PlaceKind::Free => {
+            for (key, value) in given {
+                check.absent(key, value.is_some(), "human.place = \"given\"")?;
+            }
+            StandingPlace::Free
+        }
+        PlaceKind::Given => StandingPlace::Given {
+            p_wb_m: [
+                check.present("human.x_m", section.x_m, "a position in m, since human.place = \"given\"")?,
+                check.present("human.y_m", section.y_m, "a position in m, since human.place = \"given\"")?,
+            ],
+            heading_deg: check.present(
+                "human.heading_deg",
+                section.heading_deg,
+                "a direction in degrees, since human.place = \"given\"",
+            )?,
+            tolerance_m: section.place_tolerance_m.unwrap_or(PLACE_TOLERANCE_M),
+            tolerance_deg: section.heading_tolerance_deg.unwrap_or(HEADING_TOLERANCE_DEG),
+        },
+    };
+    for (key, value) in given {
+        if let Some(value) = value {
+            check.finite(key, &[value])?;
+        }
+    }
+    Ok(Person { place, ..person_with_defaults(section) })
+}
+
+/// Default tolerance of a given place, m: half a foot's length either way.
+const PLACE_TOLERANCE_M: f64 = 0.05;
+/// Default tolerance of a given heading, degrees.
+const HEADING_TOLERANCE_DEG: f64 = 5.0;
+
 /// The person of a file. The default height and mass are those of typical adults (`docs/method.md#43-body-dimensions`).
 fn person_with_defaults(section: &HumanSection) -> Person {
     let (default_height_m, default_mass_kg) = match section.sex {
@@ -86,6 +129,9 @@ fn person_with_defaults(section: &HumanSection) -> Person {
         hand: section.hand,
         percentile: section.percentile,
         lean_deg: section.lean_deg,
+        shoulder: section.shoulder,
+        posture: section.posture_limits(),
+        place: StandingPlace::Free,
     }
 }
 
@@ -95,7 +141,31 @@ pub fn check_person(check: &Checker<'_>, person: &Person) -> Result<(), InputErr
     check.within("human.mass_kg", person.mass_kg, 30.0, 250.0, "kg")?;
     // Outside this range the normal distribution of strength could reach zero torque.
     check.within("human.percentile", person.percentile, 0.1, 99.9, "%")?;
-    check.within("human.lean_deg", person.lean_deg, 0.0, MAX_LEAN_DEG, "degrees")
+    check.within("human.lean_deg", person.lean_deg, 0.0, MAX_LEAN_DEG, "degrees")?;
+    check_posture_limits(check, &person.posture)?;
+    let StandingPlace::Given { p_wb_m, heading_deg, tolerance_m, tolerance_deg } = person.place else { return Ok(()) };
+    check.finite("human.x_m", &p_wb_m)?;
+    check.within("human.heading_deg", heading_deg, -360.0, 360.0, "degrees")?;
+    check.within("human.place_tolerance_m", tolerance_m, 0.001, 10.0, "m")?;
+    check.within("human.heading_tolerance_deg", tolerance_deg, 0.1, 180.0, "degrees")
+}
+
+fn check_posture_limits(check: &Checker<'_>, limits: &PostureLimits) -> Result<(), InputError> {
+    let range = |key: &str, [low, high]: [f64; 2], [least, most]: [f64; 2], unit: &str| {
+        check.within(&format!("{key}[0]"), low, least, most, unit)?;
+        check.within(&format!("{key}[1]"), high, low, most, unit)
+    };
+    check.within("human.facing_deg", limits.facing_deg, 0.0, 180.0, "degrees")?;
+    check.within("human.view_deg", limits.view_deg, 0.0, 180.0, "degrees")?;
+    check.within("human.gaze_yaw_deg", limits.gaze_yaw_deg, 0.0, 180.0, "degrees")?;
+    range("human.gaze_pitch_deg", limits.gaze_pitch_deg, [-90.0, 90.0], "degrees")?;
+    range("human.eye_distance_m", limits.eye_distance_m, [0.0, 5.0], "m")?;
+    check.within("human.face_elevation_deg", limits.face_elevation_deg, -90.0, 90.0, "degrees")?;
+    check.within("human.upper_arm_deg", limits.upper_arm_deg, 1.0, 180.0, "degrees")?;
+    check.within("human.reach", limits.reach, 0.2, 1.0, "a share of the straight arm")?;
+    range("human.elbow_deg", limits.elbow_deg, [0.0, 180.0], "degrees")?;
+    check.within("human.limit_margin_deg", limits.limit_margin_deg, 0.0, 60.0, "degrees")?;
+    check.within("human.deviation_margin_deg", limits.deviation_margin_deg, 0.0, 25.0, "degrees")
 }
 
 fn check_tool(check: &Checker<'_>, tool: &Tool) -> Result<(), InputError> {
@@ -214,6 +284,9 @@ fn limits_with_defaults(section: &LimitsSection, kind: OperationKind) -> Limits 
         creep_mm_s: section.creep_mm_s,
         torque_ratio: section.torque_ratio,
         load_factor: section.load_factor,
+        rula: section.rula,
+        rula_arm: section.rula_arm,
+        reba: section.reba,
     }
 }
 
@@ -224,7 +297,17 @@ fn check_limits(check: &Checker<'_>, limits: &Limits) -> Result<(), InputError> 
     check.positive("limits.creep_mm_s", limits.creep_mm_s, "mm/s")?;
     check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
     // The solvers stop at 100, and the planner applies a safety factor.
-    check.within("limits.load_factor", limits.load_factor, 0.0, 50.0, "a multiple of the load")
+    check.within("limits.load_factor", limits.load_factor, 0.0, 50.0, "a multiple of the load")?;
+    for (key, score, most) in [
+        ("limits.rula", limits.rula, 7.0),
+        ("limits.rula_arm", limits.rula_arm, 12.0),
+        ("limits.reba", limits.reba, 12.0),
+    ] {
+        if let Some(score) = score {
+            check.within(key, f64::from(score), 1.0, most, "a score")?;
+        }
+    }
+    Ok(())
 }
 
 /// Largest deviation of a plan's board, operation and grip force from the scenario's, m, kg, N and N m: rounding of
@@ -277,7 +360,10 @@ pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         format: FORMAT,
         name: plan.name.clone(),
         robot: robot_parameters(robot),
-        human: plan.human.map_or_else(|| person_with_defaults(&HumanSection::default()), |posture| posture.person()),
+        human: plan.human.map_or_else(
+            || person_with_defaults(&HumanSection::default()),
+            |posture| posture.person(&Person::default()),
+        ),
         tool: default_tool(kind),
         object: Board {
             size_m,

@@ -7,7 +7,7 @@ use benchdog::{
     model::{
         operation::{Operation, OperationKind},
         plan::{HumanPosture, Plan},
-        scenario::{Hand, Limits, Person, Sex, SimulationSettings},
+        scenario::{Limits, Person, SimulationSettings},
         trace::Trace,
         verdict::{CheckKind, VerdictKind},
         wrench::Wrench,
@@ -28,11 +28,19 @@ const FRICTION: f64 = 0.6;
 const SETTINGS: SimulationSettings =
     SimulationSettings { settle_s: 0.3, ramp_s: 0.5, hold_s: 0.3, release_s: 0.0, timestep_s: 0.002 };
 
-const LIMITS: Limits =
-    Limits { slip_mm: 1.0, slip_deg: 2.0, deflection_mm: 15.0, creep_mm_s: 0.1, torque_ratio: 1.0, load_factor: 1.0 };
+const LIMITS: Limits = Limits {
+    slip_mm: 1.0,
+    slip_deg: 2.0,
+    deflection_mm: 15.0,
+    creep_mm_s: 0.1,
+    torque_ratio: 1.0,
+    load_factor: 1.0,
+    rula: None,
+    rula_arm: None,
+    reba: None,
+};
 
-const PERSON: Person =
-    Person { height_m: 1.75, mass_kg: 75.0, sex: Sex::Male, hand: Hand::Right, percentile: 50.0, lean_deg: 0.0 };
+const PERSON: Person = Person::PAPER;
 
 /// A board in front of the robot that is pulled away from it with this force, without a person.
 fn pulled(robot: &Robot, force_n: f64) -> Plan {

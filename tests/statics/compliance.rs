@@ -27,7 +27,17 @@ fn elastic_hold(seed: u64) -> ContactModel {
 
 /// No limits except those of the pads.
 fn no_limits() -> Limits {
-    Limits { slip_mm: 1e9, slip_deg: 1e9, deflection_mm: 1e9, creep_mm_s: 1e9, torque_ratio: 1e9, load_factor: 1.0 }
+    Limits {
+        slip_mm: 1e9,
+        slip_deg: 1e9,
+        deflection_mm: 1e9,
+        creep_mm_s: 1e9,
+        torque_ratio: 1e9,
+        load_factor: 1.0,
+        rula: None,
+        rula_arm: None,
+        reba: None,
+    }
 }
 
 /// The pads' own compliance, two in parallel: 1e-10/(2 e^2) = 2.3e-7 rad/(N m) beside an arm's 1e-3 about an axis, and

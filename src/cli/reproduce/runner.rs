@@ -184,7 +184,7 @@ impl<'a> JobRunner<'a> {
         self.write_recording(job, &run)?;
         if job.stage == Stage::FailingLoad && run.simulated.is_some() {
             let guess = plan.stability.as_ref().map_or(1.0, |stability| stability.compliant_load_factor);
-            let checked = CheckedPlan::new(self.robot, plan, &job.scenario.tool)?;
+            let checked = CheckedPlan::new(self.robot, plan, &job.scenario.human, &job.scenario.tool)?;
             let found = margin::simulated(&checked, &job.scenario, guess)?;
             row.load_factor_simulated = Some(found.holds_at);
             row.ended_by = Some(found.judgement.verdict);

@@ -81,7 +81,7 @@ impl PostureMap {
         let mut found = vec![Vec::new(); map.cell_count()];
         let mut random = Pcg64::new(u128::from(seed), 0);
         for _ in 0..budget.postures {
-            let q_h_rad = human.arm().limits_rad.map(|[low, high]| uniform(&mut random, low, high));
+            let q_h_rad = human.arm().ranges.joints_rad.map(|[low, high]| uniform(&mut random, low, high));
             let x_bt = human.tool_pose_b(&q_h_rad);
             let muscular = posture_muscular(human, &q_h_rad, &x_bt, &load.wrench_t, objective.direction);
             if !within_strength(&muscular) {

@@ -144,13 +144,11 @@ impl<'a, 'p> Jacobian<'a, 'p> {
     /// Gradients of the margins of [`super::linearization::simple_margins`], in their order.
     pub fn simple_gradients(&self) -> Vec<DVector<f64>> {
         let mut gradients = Vec::with_capacity(96);
+        gradients.extend(self.range_gradients().map(|gradient| self.of_person(&gradient)));
         let mut between = |gradient: DVector<f64>| {
             let opposite = -&gradient;
             gradients.extend([gradient, opposite]);
         };
-        for joint in 0..JOINTS {
-            between(self.single(joint, PERSON_RAD));
-        }
         between(self.single(8, PLACE_M));
         between(self.single(9, PLACE_M));
         between(self.of_board(|board| board.linear.z));
@@ -167,6 +165,22 @@ impl<'a, 'p> Jacobian<'a, 'p> {
         gradients.extend((0..JOINTS).map(|joint| self.activation_gradient(joint)));
         gradients.extend((0..self.arms.len()).flat_map(|arm| self.pad_gradients(arm)));
         gradients
+    }
+
+    /// Gradients of the margins of the person's arm in its ranges, by its joints.
+    fn range_gradients(&self) -> impl Iterator<Item = [f64; JOINTS]> + use<> {
+        let arm = self.problem.human.arm();
+        let frames = arm.frames(&self.here.candidate.work.q_h_rad);
+        arm.ranges.margin_gradients(&frames.r_bu, &frames.axes_b).into_iter()
+    }
+
+    /// A gradient from derivatives by the person's joints.
+    fn of_person(&self, by_joint: &[f64; JOINTS]) -> DVector<f64> {
+        let mut gradient = self.zeros();
+        for (joint, slope) in by_joint.iter().enumerate() {
+            gradient[joint] = PERSON_RAD * slope;
+        }
+        gradient
     }
 
     /// A gradient with one entry.

@@ -187,10 +187,10 @@ pub fn simple_margins(
     activations: &[f64; 7],
 ) -> Vec<f64> {
     let mut margins = Vec::with_capacity(96);
+    let q_h_rad = &candidate.work.q_h_rad;
+    let arm = problem.human.arm();
+    margins.extend(arm.ranges.margins(q_h_rad, &arm.frames(q_h_rad).r_bu));
     let mut between = |value: f64, [low, high]: [f64; 2]| margins.extend([value - low, high - value]);
-    for (q, limits) in candidate.work.q_h_rad.iter().zip(problem.human.arm().limits_rad) {
-        between(*q, limits);
-    }
     let domain = &problem.robot.domain;
     let x_wo = &configuration.placement.x_wo;
     let p_wo = x_wo.translation.vector;

@@ -115,7 +115,7 @@ impl Variables {
     /// A candidate after a step, exactly; `None` if an arm cannot follow.
     pub fn apply(&self, problem: &Problem<'_>, from: &Candidate, d: &DVector<f64>) -> Option<Candidate> {
         let mut to = self.apply_linear(from, d);
-        for (q, [low, high]) in to.work.q_h_rad.iter_mut().zip(problem.human.arm().limits_rad) {
+        for (q, [low, high]) in to.work.q_h_rad.iter_mut().zip(problem.human.arm().ranges.joints_rad) {
             *q = q.clamp(low, high);
         }
         let x_wo = to.x_wo(problem);
