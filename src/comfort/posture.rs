@@ -3,11 +3,11 @@
 use nalgebra::Point3;
 
 use crate::{
-    human::{ArmAngles, BODY_POINTS, Human, Muscular, peripersonal_m},
+    human::{ArmAngles, BODY_POINTS, Human, Muscular, MuscularFigures, peripersonal_m},
     model::{
         frames::Pose,
         plan::{Comfort, MeanComfort},
-        scenario::ComfortSettings,
+        scenario::{ComfortSettings, MuscularMetric},
         wrench::Wrench,
     },
 };
@@ -24,18 +24,22 @@ pub fn posture_comfort(
     q_rad: &ArmAngles,
     wrench_w: &Wrench,
 ) -> Comfort {
-    let Muscular { activations, printed, regularised } = human.muscular(q_rad, x_wb, wrench_w, settings.direction);
+    let MuscularFigures { paper, intrinsic, shoulder } = human.muscular_figures(q_rad, x_wb, wrench_w, settings);
+    let Muscular { activations, regularised, .. } = match settings.muscular {
+        MuscularMetric::Paper => paper,
+        MuscularMetric::Intrinsic => intrinsic,
+    };
     let body = human.body_points_w(x_wb, q_rad);
     let peripersonal_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, robot_points_w);
     Comfort {
-        muscular: printed,
+        muscular: paper.printed,
         muscular_regularised: regularised,
         peripersonal_m,
         peripersonal_scaled: Some(BODY_POINTS as f64 * peripersonal_m),
         objective: objective(settings, regularised, peripersonal_m),
         activations,
-        muscular_intrinsic: None,
-        shoulder: None,
+        muscular_intrinsic: Some(intrinsic.regularised),
+        shoulder: Some(shoulder),
         average: None,
         rula: None,
         reba: None,

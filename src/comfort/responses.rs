@@ -167,7 +167,7 @@ impl<'a> StandingPose<'a> {
     fn response(&self, circle: &SwivelCircle, choice: Choice) -> Option<Response> {
         let ResponseQuery { human, settings, robot_points_w, .. } = *self.query;
         let q_rad = circle.solution(choice.swivel_rad, choice.branch)?;
-        let muscular = human.muscular(&q_rad, &self.x_wb, &self.wrench_w, settings.direction);
+        let muscular = human.muscular(&q_rad, &self.x_wb, &self.wrench_w, &settings);
         if muscular.activations.iter().any(|&activation| activation > 1.0) {
             return None;
         }

@@ -12,7 +12,8 @@
 //! alpha_i = |tau_i| / tau_max,i(q_i),   C = 1 / (sum alpha_i^2 + eps),   dC = -C^2 sum 2 alpha_i d alpha_i
 //! ```
 //!
-//! `k > i` are the weights beyond joint i. The derivatives are undefined where a joint's torque changes sign, where a
+//! `k > i` are the weights beyond joint i. Of the intrinsic metric the shoulder's part is that of [`super::intrinsic`] along each
+//! joint, by the derivatives of the whole moment about the shoulder. The derivatives are undefined where a joint's torque changes sign, where a
 //! joint changes between its two strengths, and at the ends of the strengths' ranges. There they are those of the
 //! strength that [`super::muscular`] uses.
 
@@ -21,10 +22,14 @@ use nalgebra::{Point3, Vector3};
 use super::{
     arm::{Arm, ArmAngles, ArmFrames},
     body::Body,
-    muscular::{self, Muscular},
-    strength::Strength,
+    intrinsic::Shoulder,
+    muscular::{self, JointTorques, Muscular},
+    strength::{Sense, Strength},
 };
-use crate::model::{scenario::StrengthDirection, wrench::Wrench};
+use crate::model::{
+    scenario::{ComfortSettings, MuscularMetric},
+    wrench::Wrench,
+};
 
 /// The muscular comfort of a posture and its derivatives by the arm's angles.
 #[derive(Clone, Copy, Debug)]
@@ -78,28 +83,101 @@ pub(super) fn muscular_gradient(
     strength: &Strength,
     q_rad: &ArmAngles,
     load: &Load<'_>,
-    direction: StrengthDirection,
+    settings: &ComfortSettings,
 ) -> MuscularGradient {
-    let torques = muscular::joint_torques(arm, body, load.tool_kg, q_rad, load.wrench_b, load.gravity_b);
-    let (total_nm, senses) = (torques.total_nm(), torques.senses(q_rad, strength, direction));
-    let muscular = Muscular::of(torques.activations(q_rad, strength, direction));
     let frames = arm.frames(q_rad);
-    let p_bt_m = frames.hand_point_b(&arm.x_ht.translation.vector);
-    let weights = holding_forces(body, &frames, load);
-    let activations: [[f64; 7]; 7] = std::array::from_fn(|i| {
-        let limit_nm = strength.torque_nm(i, q_rad[i], senses[i]);
-        let strength_slope = strength.slope_nm_rad(i, q_rad[i], senses[i]);
-        std::array::from_fn(|j| {
-            let slope = wrench_slope(&frames, &p_bt_m, load.wrench_b, i, j) + weight_slope(&frames, &weights, i, j);
-            let by_torque = total_nm[i].signum() * slope / limit_nm;
-            if i == j { by_torque - muscular.activations[i] * strength_slope / limit_nm } else { by_torque }
-        })
-    });
+    let torques = muscular::joint_torques(arm, body, load.tool_kg, &frames, load.wrench_b, load.gravity_b);
+    let muscular = torques.muscular(q_rad, &frames.r_bu, strength, settings);
+    let point = Point {
+        p_bt_m: frames.hand_point_b(&arm.x_ht.translation.vector),
+        weights: holding_forces(body, &frames, load),
+        frames,
+        wrench_b: load.wrench_b,
+    };
+    let of_joint = |joint: usize, sense: Sense| {
+        let (total_nm, activation) = (torques.total_nm()[joint], muscular.activations[joint]);
+        point.activation_slopes(joint, q_rad[joint], total_nm, activation, strength, sense)
+    };
+    let activations: [[f64; 7]; 7] = match settings.muscular {
+        MuscularMetric::Paper => {
+            let senses = torques.senses(q_rad, strength, settings.direction);
+            std::array::from_fn(|joint| of_joint(joint, senses[joint]))
+        }
+        MuscularMetric::Intrinsic => {
+            let shoulder = point.shoulder_slopes(&torques, strength);
+            std::array::from_fn(|row| match shoulder.get(row) {
+                Some(slopes) => *slopes,
+                None => of_joint(row, torques.own_sense(row)),
+            })
+        }
+    };
     let regularised = std::array::from_fn(|j| {
         let effort_slope: f64 = (0..7).map(|i| 2.0 * muscular.activations[i] * activations[i][j]).sum();
         -muscular.regularised.powi(2) * effort_slope
     });
     MuscularGradient { muscular, regularised, activations }
+}
+
+/// A posture under a load.
+struct Point<'a> {
+    frames: ArmFrames,
+    p_bt_m: Vector3<f64>,
+    weights: [Force; 4],
+    wrench_b: &'a Wrench,
+}
+
+impl Point<'_> {
+    /// Derivatives of a joint's activation `|tau| / tau_max(q)` by all joints, 1/rad.
+    fn activation_slopes(
+        &self,
+        i: usize,
+        q_rad: f64,
+        total_nm: f64,
+        activation: f64,
+        strength: &Strength,
+        sense: Sense,
+    ) -> [f64; 7] {
+        let limit_nm = strength.torque_nm(i, q_rad, sense);
+        let strength_slope = strength.slope_nm_rad(i, q_rad, sense);
+        let Self { frames, p_bt_m, weights, wrench_b } = self;
+        std::array::from_fn(|j| {
+            let slope = wrench_slope(frames, p_bt_m, wrench_b, i, j) + weight_slope(frames, weights, i, j);
+            let by_torque = total_nm.signum() * slope / limit_nm;
+            if i == j { by_torque - activation * strength_slope / limit_nm } else { by_torque }
+        })
+    }
+
+    /// Derivatives of the shoulder's three intrinsic activations by all joints, 1/rad.
+    fn shoulder_slopes(&self, torques: &JointTorques, strength: &Strength) -> [[f64; 7]; 3] {
+        let mut slopes = [[0.0; 7]; 3];
+        for joint in 0..7 {
+            let turn = if joint < 3 { self.frames.axes_b[joint] } else { Vector3::zeros() };
+            let shoulder = Shoulder {
+                r_vu: &self.frames.r_bu,
+                moment_nm: torques.shoulder_v_nm,
+                moment_slope: self.shoulder_moment_slope(joint),
+                turn,
+            };
+            for (row, square) in shoulder.squares(strength).into_iter().enumerate() {
+                // Of a square root; at zero there is none.
+                let activation = square.value.sqrt();
+                slopes[row][joint] = if activation > 0.0 { square.slope / (2.0 * activation) } else { 0.0 };
+            }
+        }
+        slopes
+    }
+
+    /// Derivative of the moment about the shoulder by a joint, N m/rad.
+    fn shoulder_moment_slope(&self, joint: usize) -> Vector3<f64> {
+        let Self { frames, p_bt_m, weights, wrench_b } = self;
+        let (axis, origin) = (&frames.axes_b[joint], frames.joint_origin_m(joint));
+        let Wrench { force_n, moment_nm } = wrench_b;
+        let of_wrench = axis.cross(moment_nm)
+            + axis.cross(&(p_bt_m - origin)).cross(force_n)
+            + (p_bt_m - frames.p_bs_m).cross(&axis.cross(force_n));
+        let of_weight = |force: &Force| axis.cross(&(force.p_b_m - origin)).cross(&force.force_n);
+        of_wrench + beyond(weights, joint).iter().map(of_weight).sum::<Vector3<f64>>()
+    }
 }
 
 /// The forces that hold upper arm, forearm, hand and tool against gravity.

@@ -22,6 +22,7 @@
 pub mod arm;
 pub mod body;
 pub mod gradient;
+mod intrinsic;
 pub mod muscular;
 pub mod peripersonal;
 pub mod posture;
@@ -41,7 +42,7 @@ mod tests;
 pub use arm::{Arm, ArmAngles, ArmFrames};
 pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use gradient::{ArmAxes, MuscularGradient};
-pub use muscular::{JointTorques, Muscular};
+pub use muscular::{JointTorques, Muscular, MuscularFigures};
 pub use peripersonal::{Distances, Pull, peripersonal_m, peripersonal_pulls};
 pub use posture::Gaze;
 pub use ranges::ArmRanges;
@@ -57,7 +58,7 @@ use crate::model::{
     GRAVITY_W,
     frames::{Pose, rotation_from_xyzw},
     plan::RulaScore,
-    scenario::{Hand, Person, PostureLimits, StrengthDirection, Tool},
+    scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StrengthDirection, Tool},
     wrench::Wrench,
 };
 
@@ -205,11 +206,15 @@ impl Human {
 
     /// The joint torques of the working arm for the wrench that the hand exerts at the tool tip: about the tip, W axes.
     pub fn joint_torques(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench) -> JointTorques {
-        let (wrench_v, gravity_v) = self.loads_v(x_wb, wrench_w);
-        muscular::joint_torques(&self.arm, &self.body, self.tool_kg, q_rad, &wrench_v, &gravity_v)
+        self.torques_at(&self.arm.frames(q_rad), x_wb, wrench_w)
     }
 
-    /// Torque over strength of each joint of the working arm; arguments as for [`Self::joint_torques`].
+    fn torques_at(&self, frames: &ArmFrames, x_wb: &Pose, wrench_w: &Wrench) -> JointTorques {
+        let (wrench_v, gravity_v) = self.loads_v(x_wb, wrench_w);
+        muscular::joint_torques(&self.arm, &self.body, self.tool_kg, frames, &wrench_v, &gravity_v)
+    }
+
+    /// Torque over strength of each joint of the working arm, as in the paper; arguments as for [`Self::joint_torques`].
     pub fn activations(
         &self,
         q_rad: &ArmAngles,
@@ -220,15 +225,30 @@ impl Human {
         self.joint_torques(q_rad, x_wb, wrench_w).activations(q_rad, &self.strength, direction)
     }
 
-    /// The muscular comfort of a posture; arguments as for [`Self::joint_torques`].
-    pub fn muscular(
+    /// The muscular comfort of a posture by the metric of the settings; arguments as for [`Self::joint_torques`].
+    pub fn muscular(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench, settings: &ComfortSettings) -> Muscular {
+        let frames = self.arm.frames(q_rad);
+        self.torques_at(&frames, x_wb, wrench_w).muscular(q_rad, &frames.r_bu, &self.strength, settings)
+    }
+
+    /// The muscular comfort of a posture by both metrics; arguments as for [`Self::muscular`].
+    pub fn muscular_figures(
         &self,
         q_rad: &ArmAngles,
         x_wb: &Pose,
         wrench_w: &Wrench,
-        direction: StrengthDirection,
-    ) -> Muscular {
-        Muscular::of(self.activations(q_rad, x_wb, wrench_w, direction))
+        settings: &ComfortSettings,
+    ) -> MuscularFigures {
+        let frames = self.arm.frames(q_rad);
+        let torques = self.torques_at(&frames, x_wb, wrench_w);
+        let by = |muscular| {
+            torques.muscular(q_rad, &frames.r_bu, &self.strength, &ComfortSettings { muscular, ..*settings })
+        };
+        MuscularFigures {
+            paper: by(MuscularMetric::Paper),
+            intrinsic: by(MuscularMetric::Intrinsic),
+            shoulder: torques.shoulder_moment(&frames.r_bu),
+        }
     }
 
     /// The muscular comfort of a posture and its derivatives by the arm's angles, for a wrench about the tool tip that is
@@ -238,13 +258,13 @@ impl Human {
         &self,
         q_rad: &ArmAngles,
         wrench_t: &Wrench,
-        direction: StrengthDirection,
+        settings: &ComfortSettings,
     ) -> MuscularGradient {
         let r_bt = self.tool_pose_b(q_rad).rotation;
         let wrench_b = Wrench::new(r_bt * wrench_t.force_n, r_bt * wrench_t.moment_nm);
         let (wrench_v, gravity_v) = self.loads_v(&Pose::identity(), &wrench_b);
         let load = gradient::Load { tool_kg: self.tool_kg, wrench_b: &wrench_v, gravity_b: &gravity_v };
-        gradient::muscular_gradient(&self.arm, &self.body, &self.strength, q_rad, &load, direction)
+        gradient::muscular_gradient(&self.arm, &self.body, &self.strength, q_rad, &load, settings)
     }
 
     /// The axes of the working arm's joints in W, positive towards larger angles.

@@ -2,18 +2,23 @@
 //!
 //! In the body's frame, for a right arm. A load is a wrench at the tool tip.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::{
     arm::{Arm, ArmAngles, ArmFrames},
     body::Body,
+    intrinsic::{self, CO_CONTRACTION, Shoulder},
     strength::{Sense, Strength},
 };
-use crate::model::{scenario::StrengthDirection, wrench::Wrench};
+use crate::model::{
+    plan::ShoulderMoment,
+    scenario::{ComfortSettings, MuscularMetric, StrengthDirection},
+    wrench::Wrench,
+};
 
 /// Regularisation of the muscular comfort: the sum of squares of a resting co-contraction of 3.8 % in each of seven joints.
 /// Bounds the comfort by 100 where gravity and load cancel.
-pub(super) const RESTING: f64 = 0.01;
+const RESTING: f64 = 0.01;
 
 /// Torques below this have no direction, since they are rounding errors, N m.
 const NO_SENSE_NM: f64 = 1e-9;
@@ -25,24 +30,42 @@ pub struct JointTorques {
     pub operation_nm: [f64; 7],
     /// `g(q)`: torques that hold upper arm, forearm, hand and tool against gravity.
     pub gravity_nm: [f64; 7],
+    /// The whole moment about the shoulder, of which the first three torques are parts: V axes, N m.
+    pub shoulder_v_nm: Vector3<f64>,
 }
 
-/// The muscular comfort of a posture under a load.
+/// The muscular comfort of a posture under a load, by one of the two metrics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muscular {
-    /// Torque over strength of each joint, `alpha_i = |tau_i| / tau_max,i`.
+    /// Torque over strength, `alpha_i = |tau_i| / tau_max,i`: of each joint, or with the intrinsic metric of raising the upper
+    /// arm, moving it horizontally, turning it about itself, and of the four joints beyond.
     pub activations: [f64; 7],
-    /// `1 / ||alpha||^2`, as printed in the paper; infinite if all activations are zero.
+    /// `1 / ||alpha||^2`; infinite if all activations are zero.
     pub printed: f64,
-    /// `1 / (||alpha||^2 + 0.01)`.
+    /// `1 / (||alpha||^2 + eps)`, eps = 0.01 (paper) or 0.0175 (intrinsic).
     pub regularised: f64,
 }
 
+/// The muscular comfort of a posture by both metrics.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MuscularFigures {
+    /// As printed in the paper.
+    pub paper: Muscular,
+    /// By the intrinsic metric.
+    pub intrinsic: Muscular,
+    /// The moment about the shoulder.
+    pub shoulder: ShoulderMoment,
+}
+
 impl Muscular {
-    /// The comfort of these activations.
-    pub fn of(activations: [f64; 7]) -> Self {
+    /// The comfort of these activations by a metric.
+    pub fn of(activations: [f64; 7], metric: MuscularMetric) -> Self {
         let effort: f64 = activations.iter().map(|alpha| alpha * alpha).sum();
-        Self { activations, printed: 1.0 / effort, regularised: 1.0 / (effort + RESTING) }
+        let resting = match metric {
+            MuscularMetric::Paper => RESTING,
+            MuscularMetric::Intrinsic => CO_CONTRACTION,
+        };
+        Self { activations, printed: 1.0 / effort, regularised: 1.0 / (effort + resting) }
     }
 }
 
@@ -57,6 +80,50 @@ impl JointTorques {
     pub fn activations(&self, q_rad: &ArmAngles, strength: &Strength, direction: StrengthDirection) -> [f64; 7] {
         let (total_nm, senses) = (self.total_nm(), self.senses(q_rad, strength, direction));
         std::array::from_fn(|joint| total_nm[joint].abs() / strength.torque_nm(joint, q_rad[joint], senses[joint]))
+    }
+
+    /// The muscular comfort by the metric of the settings.
+    pub fn muscular(
+        &self,
+        q_rad: &ArmAngles,
+        r_vu: &Matrix3<f64>,
+        strength: &Strength,
+        settings: &ComfortSettings,
+    ) -> Muscular {
+        let activations = match settings.muscular {
+            MuscularMetric::Paper => self.activations(q_rad, strength, settings.direction),
+            MuscularMetric::Intrinsic => self.intrinsic_activations(q_rad, r_vu, strength),
+        };
+        Muscular::of(activations, settings.muscular)
+    }
+
+    /// The moment about the shoulder and its parts.
+    pub fn shoulder_moment(&self, r_vu: &Matrix3<f64>) -> ShoulderMoment {
+        let moment_v_nm = self.shoulder_v_nm;
+        let [raising_nm, horizontal_nm, axial_nm] = intrinsic::parts_nm(r_vu, &moment_v_nm);
+        ShoulderMoment { moment_v_nm: moment_v_nm.into(), raising_nm, horizontal_nm, axial_nm }
+    }
+
+    /// The activations of the intrinsic metric: of the shoulder's three parts, then torque over strength of each joint beyond, the
+    /// strength in the sense of the joint's own torque.
+    pub fn intrinsic_activations(&self, q_rad: &ArmAngles, r_vu: &Matrix3<f64>, strength: &Strength) -> [f64; 7] {
+        let (zero, moment_nm) = (Vector3::zeros(), self.shoulder_v_nm);
+        let shoulder = Shoulder { r_vu, moment_nm, moment_slope: zero, turn: zero }.squares(strength);
+        std::array::from_fn(|joint| match shoulder.get(joint) {
+            Some(square) => square.value.sqrt(),
+            None => self.intrinsic_activation(joint, q_rad, strength),
+        })
+    }
+
+    /// The activation of a joint beyond the shoulder.
+    pub(super) fn intrinsic_activation(&self, joint: usize, q_rad: &ArmAngles, strength: &Strength) -> f64 {
+        let total_nm = self.operation_nm[joint] + self.gravity_nm[joint];
+        total_nm.abs() / strength.torque_nm(joint, q_rad[joint], self.own_sense(joint))
+    }
+
+    /// The sense of a joint's total torque.
+    pub(super) fn own_sense(&self, joint: usize) -> Sense {
+        if self.operation_nm[joint] + self.gravity_nm[joint] >= 0.0 { Sense::Positive } else { Sense::Negative }
     }
 
     /// The sense of each joint's strength.
@@ -89,13 +156,12 @@ pub fn joint_torques(
     arm: &Arm,
     body: &Body,
     tool_kg: f64,
-    q_rad: &ArmAngles,
+    frames: &ArmFrames,
     wrench_b: &Wrench,
     gravity_b: &Vector3<f64>,
 ) -> JointTorques {
-    let frames = arm.frames(q_rad);
     let p_bt_m = frames.hand_point_b(&arm.x_ht.translation.vector);
-    let weights = weights(body, tool_kg, &frames);
+    let weights = weights(body, tool_kg, frames);
     // The shoulder carries everything, the elbow all but the upper arm, the wrist hand and tool. The forearm's centre of mass
     // lies on the axis of pronation, so that axis is treated with the wrist.
     let (at_shoulder, at_elbow, at_wrist) = (&frames.p_bs_m, &frames.p_be_m, &frames.p_bw_m);
@@ -107,7 +173,11 @@ pub fn joint_torques(
         let by_joint = [shoulder, shoulder, shoulder, elbow, wrist, wrist, wrist];
         std::array::from_fn(|joint| frames.axes_b[joint].dot(by_joint[joint]))
     };
-    JointTorques { operation_nm: about_axes(&exerting), gravity_nm: about_axes(&holding) }
+    JointTorques {
+        operation_nm: about_axes(&exerting),
+        gravity_nm: about_axes(&holding),
+        shoulder_v_nm: exerting[0] + holding[0],
+    }
 }
 
 /// Upper arm, forearm, hand, tool.
@@ -159,7 +229,7 @@ mod tests {
         wrench: &Wrench,
         gravity: &Vector3<f64>,
     ) -> JointTorques {
-        joint_torques(human.arm(), human.body(), tool_kg, q_rad, wrench, gravity)
+        joint_torques(human.arm(), human.body(), tool_kg, &human.arm().frames(q_rad), wrench, gravity)
     }
 
     /// Height times weight of everything that the shoulder carries, J.
@@ -252,7 +322,8 @@ mod tests {
                 let q_rad = random_angles(human.arm(), &mut generator);
                 let printed = |factor: f64| {
                     let torques = torques(&human, 1.3, &q_rad, &wrench.scaled(factor), &NO_GRAVITY);
-                    Muscular::of(torques.activations(&q_rad, human.strength(), direction)).printed
+                    Muscular::of(torques.activations(&q_rad, human.strength(), direction), MuscularMetric::Paper)
+                        .printed
                 };
                 assert!((printed(1.0) / printed(3.0) - 9.0).abs() < 1e-12);
             }

@@ -25,11 +25,24 @@ pub enum Sense {
     Negative,
 }
 
+impl Sense {
+    /// The other one.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Positive => Self::Negative,
+            Self::Negative => Self::Positive,
+        }
+    }
+}
+
 /// The strengths of one person's arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strength {
     /// For each joint, positive then negative sense.
     curves: [[Curve; 2]; 7],
+    /// Of moving the raised upper arm horizontally, N m: towards the body's middle, then away from it.
+    horizontal_nm: [f64; 2],
 }
 
 /// Largest torque over the joint's angle, N m: a cubic in rad, constant outside its range.
@@ -44,6 +57,15 @@ struct Curve {
 #[serde(deny_unknown_fields)]
 struct Table {
     row: [Row; 14],
+    horizontal: Horizontal,
+}
+
+/// Strength of moving the raised upper arm horizontally, N m: towards the body's middle, then away from it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Horizontal {
+    male_nm: [f64; 2],
+    female_nm: [f64; 2],
 }
 
 /// A row. Its motion, residual and source are not read.
@@ -74,7 +96,23 @@ impl Strength {
                 range_rad: row.range_deg.map(f64::to_radians),
             }
         };
-        Self { curves: std::array::from_fn(|joint| [curve(&TABLE.row[2 * joint]), curve(&TABLE.row[2 * joint + 1])]) }
+        let horizontal_nm = match sex {
+            Sex::Male => TABLE.horizontal.male_nm,
+            Sex::Female => TABLE.horizontal.female_nm,
+        };
+        Self {
+            curves: std::array::from_fn(|joint| [curve(&TABLE.row[2 * joint]), curve(&TABLE.row[2 * joint + 1])]),
+            horizontal_nm: horizontal_nm.map(|strength_nm| strength_nm * factor),
+        }
+    }
+
+    /// The largest moment that moves the raised upper arm horizontally, N m: positive towards the body's middle (horizontal
+    /// flexion), negative away from it (horizontal extension).
+    pub fn horizontal_nm(&self, sense: Sense) -> f64 {
+        match sense {
+            Sense::Positive => self.horizontal_nm[0],
+            Sense::Negative => self.horizontal_nm[1],
+        }
     }
 
     /// The largest torque of a joint (counted from 0) at this angle in one sense, N m; always positive.

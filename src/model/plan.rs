@@ -312,7 +312,7 @@ pub struct Comfort {
     pub reba: Option<RebaScore>,
 }
 
-/// The moment that the working arm exerts about the shoulder (`docs/method.md#48-intrinsic-metric`). For a left-handed person
+/// The moment that the working arm exerts about the shoulder (`docs/method.md#414-intrinsic-metric`). For a left-handed person
 /// that of the mirrored right arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

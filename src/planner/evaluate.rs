@@ -159,8 +159,7 @@ pub fn test_placement(problem: &Problem<'_>, candidate: &Candidate) -> Result<()
     }
     let q_h_rad = &candidate.work.q_h_rad;
     let x_bt = problem.human.tool_pose_b(q_h_rad);
-    let direction = problem.scenario.comfort.direction;
-    let muscular = posture_muscular(&problem.human, q_h_rad, &x_bt, &problem.wrench_t, direction);
+    let muscular = posture_muscular(&problem.human, q_h_rad, &x_bt, &problem.wrench_t, &problem.objective);
     if within_strength(&muscular) { Ok(()) } else { Err(Rejection::Strength) }
 }
 

@@ -14,11 +14,7 @@ use rand_pcg::Pcg64;
 use super::direction::{direction_cell, direction_cells};
 use crate::{
     human::{ArmAngles, BODY_POINTS, Human, Muscular},
-    model::{
-        frames::Pose,
-        scenario::{ComfortSettings, StrengthDirection},
-        wrench::Wrench,
-    },
+    model::{frames::Pose, scenario::ComfortSettings, wrench::Wrench},
     planner::{
         domain::uniform,
         params::{
@@ -83,7 +79,7 @@ impl PostureMap {
         for _ in 0..budget.postures {
             let q_h_rad = human.arm().ranges.joints_rad.map(|[low, high]| uniform(&mut random, low, high));
             let x_bt = human.tool_pose_b(&q_h_rad);
-            let muscular = posture_muscular(human, &q_h_rad, &x_bt, &load.wrench_t, objective.direction);
+            let muscular = posture_muscular(human, &q_h_rad, &x_bt, &load.wrench_t, objective);
             if !within_strength(&muscular) {
                 continue;
             }
@@ -149,10 +145,10 @@ pub fn posture_muscular(
     q_h_rad: &ArmAngles,
     x_bt: &Pose,
     wrench_t: &Wrench,
-    direction: StrengthDirection,
+    settings: &ComfortSettings,
 ) -> Muscular {
     let wrench_b = Wrench::new(x_bt.rotation * wrench_t.force_n, x_bt.rotation * wrench_t.moment_nm);
-    human.muscular(q_h_rad, &Pose::identity(), &wrench_b, direction)
+    human.muscular(q_h_rad, &Pose::identity(), &wrench_b, settings)
 }
 
 /// True if every joint is strong enough.

@@ -62,7 +62,7 @@ impl<'a, 'p> Jacobian<'a, 'p> {
             arms: arms.collect(),
             body_w: human.body_points_w(x_wb, q_h_rad),
             person_axes: human.arm_axes_w(x_wb, q_h_rad),
-            muscular: human.muscular_gradient(q_h_rad, &problem.wrench_t, problem.scenario.comfort.direction),
+            muscular: human.muscular_gradient(q_h_rad, &problem.wrench_t, &problem.objective),
         }
     }
 
