@@ -7,6 +7,7 @@ mod clearances;
 mod near_pairs;
 mod person_clearance;
 mod shapes;
+mod sight;
 
 use nalgebra::Point3;
 use parry3d_f64::glamx::DVec3;

@@ -1,6 +1,6 @@
 //! Primitives as parry knows them. Its poses are glam's: they are converted here and nowhere else.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Unit, Vector3};
 use parry3d_f64::{
     glamx::{DQuat, DVec3},
     math::Pose as ParryPose,
@@ -187,6 +187,13 @@ impl Placed<'_> {
             normal_w: Vector3::new(found.normal1.x, found.normal1.y, found.normal1.z),
             distance_m: found.dist,
         })
+    }
+
+    /// Distance along a ray to the primitive if it is less than `within_m`, m; zero from inside.
+    pub fn ray_m(&self, origin_w: &Point3<f64>, direction_w: &Unit<Vector3<f64>>, within_m: f64) -> Option<f64> {
+        let vector = |v: [f64; 3]| DVec3::from_array(v);
+        let ray = query::Ray::new(vector(origin_w.coords.into()), vector(direction_w.into_inner().into()));
+        self.shape.cast_ray(&self.pose, &ray, within_m, true)
     }
 
     /// Distance between two primitives, m; zero if they overlap.

@@ -1,19 +1,21 @@
 //! The person's feasible responses, on a uniform grid.
 //!
 //! A response is feasible if the arm's inverse kinematics has a solution within the joint limits, every activation is at
-//! most 1, and all bodies keep their clearances (docs/method.md#34-constraints). Cheap tests run first: standing places from
+//! most 1, all bodies keep their clearances (docs/method.md#34-constraints), and the person stands where they may, naturally,
+//! and sees the work (docs/method.md#413-natural-postures). Cheap tests run first: standing places from
 //! which the wrist is out of reach are skipped; the exact intervals of the swivel leave out angles beyond joint limits; the
 //! parts that do not move with the arm are tested once per standing pose.
 
 use std::{cell::OnceCell, f64::consts::TAU};
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::{posture::objective, query::ResponseQuery};
 use crate::{
     collision::{PersonPart, Scene},
     human::{
-        ArmAngles, Distances, Muscular, STILL_POINTS, ShoulderBranch, SwivelCircle, SwivelInterval, standing_pose_w,
+        ArmAngles, Distances, Muscular, STILL_POINTS, ShoulderBranch, Standing, SwivelCircle, SwivelInterval,
+        standing_pose_w,
     },
     model::{frames::Pose, wrench::Wrench},
 };
@@ -73,13 +75,17 @@ struct RolledTool {
     x_wt: Pose,
     /// Required position of the wrist, m.
     p_ww: Point3<f64>,
+    /// The worked face's normal in T.
+    normal_t: Vector3<f64>,
 }
 
 impl RolledTool {
     fn new(query: &ResponseQuery<'_>, roll_rad: f64) -> Self {
-        let x_wt = query.scene.x_wo * query.operation.rolled(roll_rad).x_ot;
+        let operation = query.operation.rolled(roll_rad);
+        let x_wt = query.scene.x_wo * operation.x_ot;
         let wrist = x_wt * query.human.x_ht().inverse();
-        Self { roll_rad, x_wt, p_ww: wrist.translation.vector.into() }
+        let normal_t = operation.face_normal_t(query.scene.board_size_m[2]);
+        Self { roll_rad, x_wt, p_ww: wrist.translation.vector.into(), normal_t }
     }
 
     fn all(query: &ResponseQuery<'_>) -> Vec<Self> {
@@ -92,18 +98,23 @@ impl RolledTool {
 pub(super) fn visit(query: &ResponseQuery<'_>, mut visitor: impl FnMut(GridPlace, &Response)) {
     let tools = RolledTool::all(query);
     let reach_m = query.human.reach_m();
+    let origin = query.human.given_standing();
     for k in 0..HEADINGS {
-        let heading_rad = f64::from(k) * HEADING_STEP_RAD;
+        let heading_rad = origin.heading_rad + f64::from(k) * HEADING_STEP_RAD;
         let shoulder = standing_pose_w(0.0, 0.0, heading_rad, query.floor_z_m) * query.human.x_bs();
         let p_shoulder_m = shoulder.translation.vector;
         let [xs, ys] = [0, 1].map(|axis| {
             let wrists = || tools.iter().map(|tool| tool.p_ww[axis] - p_shoulder_m[axis]);
-            let low_m = wrists().fold(f64::INFINITY, f64::min) - reach_m;
-            let high_m = wrists().fold(f64::NEG_INFINITY, f64::max) + reach_m;
+            let low_m = wrists().fold(f64::INFINITY, f64::min) - reach_m - origin.p_wb_m[axis];
+            let high_m = wrists().fold(f64::NEG_INFINITY, f64::max) + reach_m - origin.p_wb_m[axis];
             (low_m / PLACE_STEP_M).ceil() as i32..=(high_m / PLACE_STEP_M).floor() as i32
         });
         for (i, j) in xs.flat_map(|i| ys.clone().map(move |j| (i, j))) {
-            let place_w_m = [i, j].map(|step| f64::from(step) * PLACE_STEP_M);
+            let step_m = [i, j].map(|step| f64::from(step) * PLACE_STEP_M);
+            let place_w_m = [0, 1].map(|axis| origin.p_wb_m[axis] + step_m[axis]);
+            if !query.human.may_stand(&Standing { p_wb_m: place_w_m, heading_rad }) {
+                continue;
+            }
             let p_ws = Point3::new(place_w_m[0], place_w_m[1], 0.0) + p_shoulder_m;
             let standing = StandingPose::new(query, place_w_m, heading_rad);
             for tool in tools.iter().filter(|tool| (tool.p_ww - p_ws).norm() <= reach_m) {
@@ -115,10 +126,14 @@ pub(super) fn visit(query: &ResponseQuery<'_>, mut visitor: impl FnMut(GridPlace
 
 /// The response of a choice, if it is feasible.
 pub(super) fn response_to(query: &ResponseQuery<'_>, choice: &Choice) -> Option<Response> {
-    let standing = StandingPose::new(query, choice.place_w_m, choice.heading_rad);
+    let Choice { place_w_m, heading_rad, .. } = *choice;
+    if !query.human.may_stand(&Standing { p_wb_m: place_w_m, heading_rad }) {
+        return None;
+    }
+    let standing = StandingPose::new(query, place_w_m, heading_rad);
     let tool = RolledTool::new(query, choice.roll_rad);
     let circle = standing.circle(&tool)?;
-    standing.response(&circle, *choice)
+    standing.response(&circle, &tool, *choice)
 }
 
 /// A standing place and heading.
@@ -141,8 +156,13 @@ impl<'a> StandingPose<'a> {
         Self { query, place_w_m, heading_rad, x_wb, wrench_w, still: OnceCell::new() }
     }
 
+    /// The solutions of the arm; `None` out of reach, or if the tool's pose is not that of a natural posture.
     fn circle(&self, tool: &RolledTool) -> Option<SwivelCircle> {
-        self.query.human.swivel_circle(&(self.x_wb.inverse() * tool.x_wt))
+        let x_bt = self.x_wb.inverse() * tool.x_wt;
+        match self.query.human.work_violation(&x_bt, &tool.normal_t) {
+            None => self.query.human.swivel_circle(&x_bt),
+            Some(_) => None,
+        }
     }
 
     /// Calls `visitor` with the feasible responses at this standing pose and one roll of the tool.
@@ -156,7 +176,7 @@ impl<'a> StandingPose<'a> {
             for swivel_rad in (first..=last).map(|k| f64::from(k) * SWIVEL_STEP_RAD) {
                 let Self { place_w_m, heading_rad, .. } = *self;
                 let choice = Choice { place_w_m, heading_rad, roll_rad: tool.roll_rad, swivel_rad, branch };
-                if let Some(response) = self.response(&circle, choice) {
+                if let Some(response) = self.response(&circle, tool, choice) {
                     visitor(&response);
                 }
             }
@@ -164,7 +184,7 @@ impl<'a> StandingPose<'a> {
     }
 
     /// The response of a choice, if it is feasible.
-    fn response(&self, circle: &SwivelCircle, choice: Choice) -> Option<Response> {
+    fn response(&self, circle: &SwivelCircle, tool: &RolledTool, choice: Choice) -> Option<Response> {
         let ResponseQuery { human, settings, robot_points_w, .. } = *self.query;
         let q_rad = circle.solution(choice.swivel_rad, choice.branch)?;
         let muscular = human.muscular(&q_rad, &self.x_wb, &self.wrench_w, &settings);
@@ -172,7 +192,7 @@ impl<'a> StandingPose<'a> {
             return None;
         }
         let mut distances = (*self.still.get_or_init(|| self.still(&q_rad)))?;
-        if self.breaks_clearance(&q_rad, true) {
+        if self.breaks_clearance(&q_rad, true) || !self.sees(&q_rad, tool) {
             return None;
         }
         distances.add(&human.body_points_w(&self.x_wb, &q_rad)[STILL_POINTS..], robot_points_w);
@@ -188,6 +208,18 @@ impl<'a> StandingPose<'a> {
         let mut distances = Distances::new(self.query.settings.saturation_m);
         distances.add(&self.query.human.body_points_w(&self.x_wb, q_rad)[..STILL_POINTS], self.query.robot_points_w);
         Some(distances)
+    }
+
+    /// True if nothing is in the line of sight, or nothing needs to be out of it.
+    fn sees(&self, q_rad: &ArmAngles, tool: &RolledTool) -> bool {
+        let ResponseQuery { human, collision, scene, .. } = *self.query;
+        if !human.needs_sight() {
+            return true;
+        }
+        let person = human.capsules_w(&self.x_wb, q_rad).map(PersonPart::from);
+        let scene = Scene { person: &person, ..scene };
+        let tip_w = tool.x_wt.translation.vector.into();
+        collision.free_share_of_sight(&scene, &(self.x_wb * human.eye_b()), &tip_w) >= 1.0
     }
 
     /// True if the working arm and the tool (`arm`), or all other parts, break a clearance.

@@ -17,6 +17,9 @@ use crate::model::frames::Pose;
 /// pronation, wrist flexion, ulnar deviation. For a left-handed person those of the mirrored right arm.
 pub type ArmAngles = [f64; 7];
 
+/// Rounding of twist and elevation, rad.
+const ORIENTATION_TOLERANCE_RAD: f64 = 1e-9;
+
 /// A right arm that holds a tool.
 #[derive(Clone, Debug)]
 pub struct Arm {
@@ -89,6 +92,11 @@ impl Arm {
     pub fn within_limits(&self, q_rad: &ArmAngles) -> bool {
         q_rad.iter().zip(&self.ranges.joints_rad).all(|(q, [low, high])| (low..=high).contains(&q))
             && self.ranges.permits_shoulder(&self.frames(q_rad).r_bu, 0.0)
+    }
+
+    /// True if twist and elevation of the upper arm are within their ranges, but for rounding.
+    pub fn permits_shoulder(&self, q_rad: &ArmAngles) -> bool {
+        !self.ranges.limits_orientation() || self.ranges.permits_shoulder(&self.frames(q_rad).r_bu, ORIENTATION_TOLERANCE_RAD)
     }
 
     /// Positions and orientations of the parts of the arm.

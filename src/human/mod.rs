@@ -15,6 +15,7 @@
 //! | [`gradient`] | derivatives by the joint angles |
 //! | [`peripersonal`] | peripersonal comfort |
 //! | [`ranges`] | ranges of the arm's joints, swing and twist of the shoulder |
+//! | [`place`] | where the person may stand |
 //! | [`posture`] | how the person stands and sees the work |
 //! | [`rula`] | the RULA score of a posture |
 //! | [`tools`] | the tools of the paper |
@@ -25,6 +26,7 @@ pub mod gradient;
 mod intrinsic;
 pub mod muscular;
 pub mod peripersonal;
+pub mod place;
 pub mod posture;
 pub mod ranges;
 pub mod rula;
@@ -44,6 +46,7 @@ pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use gradient::{ArmAxes, MuscularGradient};
 pub use muscular::{JointTorques, Muscular, MuscularFigures};
 pub use peripersonal::{Distances, Pull, peripersonal_m, peripersonal_pulls};
+pub use place::Standing;
 pub use posture::Gaze;
 pub use ranges::ArmRanges;
 pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, STILL_POINTS, Side, body_point_joints};
@@ -58,7 +61,7 @@ use crate::model::{
     GRAVITY_W,
     frames::{Pose, rotation_from_xyzw},
     plan::RulaScore,
-    scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StrengthDirection, Tool},
+    scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StandingPlace, StrengthDirection, Tool},
     wrench::Wrench,
 };
 
@@ -97,6 +100,7 @@ pub struct Human {
     /// Anatomical ranges of the arm; those of `arm` may be narrower.
     anatomy: ArmRanges,
     posture: PostureLimits,
+    place: StandingPlace,
     /// Pose of the upper body's frame V in B; its own mirror image.
     x_bv: Pose,
 }
@@ -137,6 +141,7 @@ impl Human {
             tool_kg: tool.mass_kg,
             anatomy,
             posture: person.posture,
+            place: person.place,
             x_bv,
         })
     }

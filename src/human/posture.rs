@@ -11,12 +11,26 @@
 //! elevation of the face  asin(n_z)                upper arm angle(u, -z_V),  u from shoulder to elbow
 //! ```
 
+use arrayvec::ArrayVec;
 use nalgebra::{Point3, Vector3};
 
 use super::{Human, arm::ArmAngles, ranges::elevation_rad};
 use crate::model::{
     frames::Pose,
-    plan::{PostureFigure, PostureFigures},
+    plan::{PostureConstraint, PostureFigure, PostureFigures},
+    scenario::PostureLimits,
+};
+
+/// Number of margins of the work: two of each range, one of each other limit.
+const WORK_MARGINS: usize = 10;
+
+/// How far the work is inside the limits of a natural posture, in the order of [`CONSTRAINTS`]; none if it is unrestricted.
+pub type WorkMargins<T> = ArrayVec<T, WORK_MARGINS>;
+
+/// The constraint of each margin.
+const CONSTRAINTS: [PostureConstraint; WORK_MARGINS] = {
+    use PostureConstraint::{EyeDistance, FaceElevation, Facing, GazePitch, GazeYaw, View};
+    [Facing, Facing, View, GazeYaw, GazeYaw, GazePitch, GazePitch, EyeDistance, EyeDistance, FaceElevation]
 };
 
 /// Where the person looks: from the point between the eyes to the tool tip.
@@ -53,6 +67,43 @@ impl Work {
         let to_eye = self.eye_b - self.tip_b;
         self.normal_b.dot(&to_eye) / to_eye.norm()
     }
+
+    /// Azimuth of the tool tip, rad, positive towards the working side.
+    fn facing_rad(&self) -> f64 {
+        libm::atan2(-self.tip_b.y, self.tip_b.x)
+    }
+
+    /// Margins: rad, of view and elevation of the face differences of cosine and sine, of the distance m.
+    fn margins(&self, limits: &PostureLimits) -> [f64; WORK_MARGINS] {
+        let Gaze { yaw_rad, pitch_rad, distance_m } = self.gaze();
+        let (facing, yaw) = (limits.facing_deg.to_radians(), limits.gaze_yaw_deg.to_radians());
+        let [lowest, highest] = limits.gaze_pitch_deg.map(f64::to_radians);
+        let [nearest_m, farthest_m] = limits.eye_distance_m;
+        [
+            self.facing_rad() + facing,
+            facing - self.facing_rad(),
+            self.view_cosine() - libm::cos(limits.view_deg.to_radians()),
+            yaw_rad + yaw,
+            yaw - yaw_rad,
+            pitch_rad - lowest,
+            highest - pitch_rad,
+            distance_m - nearest_m,
+            farthest_m - distance_m,
+            self.normal_b.z - libm::sin(limits.face_elevation_deg.to_radians()),
+        ]
+    }
+
+    /// Derivatives of the margins if the tip moves by `dp` and the normal by `dn`.
+    fn margin_slopes(&self, dp: &Vector3<f64>, dn: &Vector3<f64>) -> [f64; WORK_MARGINS] {
+        let (p, d) = (&self.tip_b, self.tip_b - self.eye_b);
+        let distance_m = d.norm();
+        let azimuth = |v: &Vector3<f64>| (v.y * dp.x - v.x * dp.y) / (v.x * v.x + v.y * v.y);
+        let (facing, yaw) = (azimuth(p), azimuth(&d));
+        let distance = d.dot(dp) / distance_m;
+        let view = (d.dot(dn) + self.normal_b.dot(dp) - self.normal_b.dot(&d) * distance / distance_m) / -distance_m;
+        let pitch = (dp.z - d.z * distance / distance_m) / libm::hypot(d.x, d.y);
+        [facing, -facing, view, yaw, -yaw, pitch, -pitch, distance, -distance, dn.z]
+    }
 }
 
 impl Human {
@@ -77,6 +128,50 @@ impl Human {
         }
     }
 
+    /// True if the line of sight must be free.
+    #[must_use]
+    pub fn needs_sight(&self) -> bool {
+        self.posture.is_natural() && self.posture.line_of_sight
+    }
+
+    /// The first limit of a natural posture that a tool pose violates, of those that do not depend on the arm's angles; `None` also
+    /// if the posture is unrestricted. `normal_t` is the worked face's normal in T.
+    #[must_use]
+    pub fn work_violation(&self, x_bt: &Pose, normal_t: &Vector3<f64>) -> Option<PostureConstraint> {
+        if !self.posture.is_natural() {
+            return None;
+        }
+        let margins = self.work(x_bt, normal_t).margins(&self.posture);
+        CONSTRAINTS.into_iter().zip(margins).find(|(_, margin)| *margin < 0.0).map(|(constraint, _)| constraint)
+    }
+
+    /// The margins of the limits that do not depend on the arm's angles but through the tool's pose.
+    #[must_use]
+    pub fn work_margins(&self, x_bt: &Pose, normal_t: &Vector3<f64>) -> WorkMargins<f64> {
+        if !self.posture.is_natural() {
+            return WorkMargins::new();
+        }
+        self.work(x_bt, normal_t).margins(&self.posture).into()
+    }
+
+    /// The gradients of [`Human::work_margins`] by the arm's angles.
+    #[must_use]
+    pub fn work_margin_gradients(&self, q_rad: &ArmAngles, normal_t: &Vector3<f64>) -> WorkMargins<[f64; 7]> {
+        if !self.posture.is_natural() {
+            return WorkMargins::new();
+        }
+        let work = self.work(&self.tool_pose_b(q_rad), normal_t);
+        let frames = self.arm.frames(q_rad);
+        let mut gradients = [[0.0; 7]; WORK_MARGINS];
+        for joint in 0..7 {
+            let axis_b = self.x_bv * frames.axes_b[joint];
+            let origin_b = (self.x_bv * Point3::from(*frames.joint_origin_m(joint))).coords;
+            let slopes = work.margin_slopes(&axis_b.cross(&(work.tip_b - origin_b)), &axis_b.cross(&work.normal_b));
+            gradients.iter_mut().zip(slopes).for_each(|(gradient, slope)| gradient[joint] = slope);
+        }
+        gradients.into()
+    }
+
     /// The figures of a posture; `normal_t` is the worked face's normal in T, and `free_share` the part of the line from the
     /// eye to the tool tip that is free.
     #[must_use]
@@ -97,7 +192,7 @@ impl Human {
         let frames = self.arm.frames(q_rad);
         let [other, deviation] = self.anatomy.margins_rad(q_rad, &frames.r_bu);
         PostureFigures {
-            facing_deg: either_way(libm::atan2(-work.tip_b.y, work.tip_b.x).to_degrees(), limits.facing_deg),
+            facing_deg: either_way(work.facing_rad().to_degrees(), limits.facing_deg),
             view_deg: at_most(libm::acos(work.view_cosine().clamp(-1.0, 1.0)).to_degrees(), limits.view_deg),
             gaze_yaw_deg: either_way(yaw_rad.to_degrees(), limits.gaze_yaw_deg),
             gaze_pitch_deg: between(pitch_rad.to_degrees(), limits.gaze_pitch_deg),

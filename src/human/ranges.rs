@@ -5,8 +5,10 @@
 //! shoulder to elbow, t the twist. A shoulder is limited either by a box on q1, q2 and q3, or by the twist and the elevation
 //! `angle(u, -z_V)`, which belong to the orientation and not to its three angles.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use arrayvec::ArrayVec;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::arm::ArmAngles;
 use crate::model::scenario::{PostureLimits, ShoulderKind};
@@ -26,10 +28,7 @@ pub struct ArmRanges {
 }
 
 /// Ranges of the three angles that together give every orientation once.
-const EVERY_ORIENTATION_RAD: [[f64; 2]; 3] = {
-    use std::f64::consts::{FRAC_PI_2, PI};
-    [[-PI, PI], [-FRAC_PI_2, FRAC_PI_2], [-PI, PI]]
-};
+const EVERY_ORIENTATION_RAD: [[f64; 2]; 3] = [[-PI, PI], [-FRAC_PI_2, FRAC_PI_2], [-PI, PI]];
 
 /// The anatomical limits of the shoulder, rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +57,23 @@ pub fn twist_slope(r_vu: &Matrix3<f64>, axis_v: &Vector3<f64>) -> f64 {
     let [x, y] = [0, 1].map(|column| axis_v.cross(&r_vu.column(column)));
     let (sin, cos) = (r_vu.m21 - r_vu.m12, r_vu.m11 + r_vu.m22);
     (cos * (x.y - y.x) - sin * (x.x + y.y)) / (sin * sin + cos * cos)
+}
+
+/// The shoulder's angles for an upper arm at this elevation, in this direction (from x_V towards y_V) and with this twist, rad.
+/// Abduction is within a right angle.
+#[must_use]
+pub fn shoulder_angles(elevation_rad: f64, azimuth_rad: f64, twist_rad: f64) -> [f64; 3] {
+    let half = |angle_rad: f64| libm::sincos(angle_rad / 2.0);
+    let ((swing_sin, swing_cos), (twist_sin, twist_cos)) = (half(elevation_rad), half(twist_rad));
+    let (sin, cos) = libm::sincos(azimuth_rad);
+    // From hanging, -z, towards u the arm turns about -z x u = (u_y, -u_x, 0).
+    let swing = Quaternion::new(swing_cos, swing_sin * sin, -swing_sin * cos, 0.0);
+    let twist = Quaternion::new(twist_cos, 0.0, 0.0, twist_sin);
+    let r = UnitQuaternion::new_normalize(swing * twist).to_rotation_matrix().into_inner();
+    let q1 = libm::atan2(-r.m13, r.m33);
+    let (sin, cos) = libm::sincos(q1);
+    let (x, y) = (r.m11 * cos + r.m31 * sin, r.m12 * cos + r.m32 * sin);
+    [q1, libm::atan2(r.m23, libm::hypot(r.m13, r.m33)), libm::atan2(-y, x)]
 }
 
 impl ArmRanges {
@@ -93,12 +109,32 @@ impl ArmRanges {
         }
     }
 
+    /// The arm at shares from 0 to 1 of its ranges. Uniform shares give uniform angles or, with a range of the twist, directions of
+    /// the upper arm that are uniform on the sphere up to the largest elevation.
+    #[must_use]
+    pub fn at_shares(&self, shares: [f64; 7]) -> ArmAngles {
+        let between = |[low, high]: [f64; 2], share: f64| low + (high - low) * share;
+        let mut q_rad = std::array::from_fn(|joint| between(self.joints_rad[joint], shares[joint]));
+        if let (Some(twist_rad), Some(highest_rad)) = (self.twist_rad, self.elevation_rad) {
+            let cosine = between([1.0, libm::cos(highest_rad)], shares[0]);
+            let azimuth_rad = between([-PI, PI], shares[1]);
+            let angles = shoulder_angles(libm::acos(cosine), azimuth_rad, between(twist_rad, shares[2]));
+            q_rad[..3].copy_from_slice(&angles);
+        }
+        q_rad
+    }
+
     /// True if a range is empty.
     pub(super) fn is_empty(&self) -> bool {
         let empty = |&[low, high]: &[f64; 2]| low.is_nan() || high.is_nan() || low >= high;
         self.joints_rad.iter().any(empty)
             || self.twist_rad.iter().any(empty)
             || self.elevation_rad.is_some_and(|e| e <= 0.0)
+    }
+
+    /// True if the orientation of the upper arm is limited, and not only its angles.
+    pub(super) fn limits_orientation(&self) -> bool {
+        self.twist_rad.is_some() || self.elevation_rad.is_some()
     }
 
     /// True if twist and elevation are within their ranges, and up to `tolerance_rad` beyond.

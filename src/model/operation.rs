@@ -116,6 +116,12 @@ impl Operation {
         }
     }
 
+    /// [`Operation::face_normal_o`] in T.
+    #[must_use]
+    pub fn face_normal_t(&self, thickness_m: f64) -> Vector3<f64> {
+        self.x_ot.rotation.inverse() * self.face_normal_o(thickness_m)
+    }
+
     /// The wrench about the board's centre in O axes: `(f, m + p_OT x f)`.
     #[must_use]
     pub fn wrench_about_object(&self) -> Wrench {

@@ -2,7 +2,7 @@
 
 use super::{
     candidate::{Candidate, Placement},
-    evaluate::{self, Evaluator, Feasible},
+    evaluate::{self, Configuration, Evaluator, Feasible},
     outcome::Rejection,
     verify::verify,
 };
@@ -35,6 +35,10 @@ pub fn assemble_placed(
     let operation = scenario.operation.rolled(candidate.work.roll_rad);
     let object = evaluate::placed_object(scenario, x_wo);
     let arms = evaluate::plan_arms(problem, candidate);
+    let free_share = Configuration { placement: Placement { x_wo, x_wb }, ..Configuration::new(problem, candidate) }
+        .free_share_of_sight(problem);
+    let figures = problem.human.posture_figures(&candidate.work.q_h_rad, &problem.normal_t, free_share);
+    let posture = HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad);
     let rula = problem.human.rula(&candidate.work.q_h_rad, &scenario.operation.wrench_w(&x_wo));
     let comfort = Comfort { rula: Some(rula), ..comfort::weighted(*comfort, &scenario.comfort) };
     let stability = evaluator.predict(&arms, &object, &operation)?;
@@ -45,7 +49,7 @@ pub fn assemble_placed(
         operation,
         object,
         arms,
-        human: Some(HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad)),
+        human: Some(HumanPosture { posture: Some(figures), ..posture }),
         comfort: Some(comfort),
         stability: Some(stability),
         planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations }),

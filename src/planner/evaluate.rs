@@ -12,11 +12,11 @@ use super::{
 use crate::{
     collision::{PersonPart, Scene},
     comfort,
-    human::CAPSULES,
+    human::{CAPSULES, Standing},
     model::{
         frames::Pose,
         operation::Operation,
-        plan::{ArmHold, Comfort, MeanComfort, PlacedObject, Stability},
+        plan::{ArmHold, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
         scenario::{Scenario, StabilityKind},
     },
     statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, StabilityWorkspace},
@@ -69,6 +69,15 @@ impl Configuration {
             link_poses: problem.robot.link_poses(&candidate.arms),
             person: problem.human.capsules_w(&placement.x_wb, &candidate.work.q_h_rad).map(PersonPart::from),
         }
+    }
+
+    /// The free share of the line of sight.
+    pub fn free_share_of_sight(&self, problem: &Problem<'_>) -> f64 {
+        let Placement { x_wo, x_wb } = self.placement;
+        let eye_w = x_wb * problem.human.eye_b();
+        // A roll does not move the tip.
+        let tip_w = x_wo * Point3::from(problem.scenario.operation.x_ot.translation.vector);
+        problem.robot.collision.free_share_of_sight(&self.scene(problem), &eye_w, &tip_w)
     }
 
     /// The collision scene.
@@ -154,11 +163,21 @@ impl<'a> Evaluator<'a> {
 
 /// Tests what depends on the person and the board's pose alone.
 pub fn test_placement(problem: &Problem<'_>, candidate: &Candidate) -> Result<(), Rejection> {
-    if !problem.robot.domain.contains(&candidate.x_wo(problem)) {
+    let Placement { x_wo, x_wb } = candidate.placement(problem);
+    if !problem.robot.domain.contains(&x_wo) {
         return Err(Rejection::BoardPlace);
     }
+    if problem.human.place_is_given() && !problem.human.may_stand(&Standing::of(&x_wb)) {
+        return Err(Rejection::PersonPlace);
+    }
     let q_h_rad = &candidate.work.q_h_rad;
+    if !problem.human.arm().permits_shoulder(q_h_rad) {
+        return Err(Rejection::PersonReach);
+    }
     let x_bt = problem.human.tool_pose_b(q_h_rad);
+    if let Some(constraint) = problem.human.work_violation(&x_bt, &problem.normal_t) {
+        return Err(Rejection::Posture(constraint));
+    }
     let muscular = posture_muscular(&problem.human, q_h_rad, &x_bt, &problem.wrench_t, &problem.objective);
     if within_strength(&muscular) { Ok(()) } else { Err(Rejection::Strength) }
 }
@@ -166,9 +185,17 @@ pub fn test_placement(problem: &Problem<'_>, candidate: &Candidate) -> Result<()
 /// Tests that all bodies keep their clearances.
 pub fn test_collisions(problem: &Problem<'_>, configuration: &Configuration) -> Result<(), Rejection> {
     match problem.robot.collision.first_violation(&configuration.scene(problem)) {
-        None => Ok(()),
+        None => test_sight(problem, configuration),
         Some(_) => Err(Rejection::Collision),
     }
+}
+
+/// Tests that nothing is in the line of sight.
+pub fn test_sight(problem: &Problem<'_>, configuration: &Configuration) -> Result<(), Rejection> {
+    if !problem.human.needs_sight() || configuration.free_share_of_sight(problem) >= 1.0 {
+        return Ok(());
+    }
+    Err(Rejection::Posture(PostureConstraint::LineOfSight))
 }
 
 /// Both comforts of a candidate, and the objective of the search.

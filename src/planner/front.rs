@@ -160,7 +160,7 @@ impl Sweep<'_> {
         let mut budget = SearchBudget::of(scenario.planner.budget);
         let mut starts = Vec::new();
         if from_scratch {
-            starts = screened(&mut evaluator, self.library, None, &budget);
+            starts = screened(&mut evaluator, self.library, None, &self.warm.entries, &budget);
         }
         let screened = starts.len();
         if from_scratch {

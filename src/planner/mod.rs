@@ -15,6 +15,7 @@ mod domain;
 mod evaluate;
 mod front;
 mod library;
+mod natural_boards;
 mod normalise;
 mod outcome;
 mod params;

@@ -1,6 +1,6 @@
 //! What a search returns: what it found, or why it found nothing.
 
-use crate::human::HumanError;
+use crate::{human::HumanError, model::plan::PostureConstraint};
 
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +67,10 @@ pub enum PlanError {
 pub enum Rejection {
     /// The board is outside the search domain, or its worked face points away from the person's side.
     BoardPlace,
+    /// The person would stand elsewhere than the scenario says.
+    PersonPlace,
+    /// The person would not stand naturally or not see the work.
+    Posture(PostureConstraint),
     /// A joint of the person needs more than its strength.
     Strength,
     /// The person cannot bring the tool to its pose.
@@ -88,6 +92,8 @@ impl Rejection {
     pub fn name(self) -> &'static str {
         match self {
             Self::BoardPlace => "board outside the search domain",
+            Self::PersonPlace => "person's place",
+            Self::Posture(constraint) => constraint.key(),
             Self::Strength => "person's strength",
             Self::PersonReach => "human reach",
             Self::RobotReach => "robot reach",

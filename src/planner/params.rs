@@ -35,6 +35,9 @@ pub mod library {
     /// Grasps of one pattern that are kept of a resampled board.
     pub const RESAMPLED_PER_PATTERN: usize = 2;
 
+    /// Stream of the random numbers for boards of natural postures: far from those of the passes of warm starts.
+    pub const NATURAL_PASS: u64 = 1 << 32;
+
     /// Random configurations of a reach map: about ten per occupied cell of Baxter's arms.
     pub const REACH_SAMPLES: usize = 24_000;
     /// Configurations that a cell of a reach map keeps as seeds.
@@ -209,6 +212,10 @@ pub mod path {
 pub struct SearchBudget {
     /// Postures of the person's arm that are drawn for the posture map.
     pub postures: usize,
+    /// The same if they must be natural: about one in eight within the ranges of such postures is one.
+    pub natural_postures: usize,
+    /// Boards that are put where natural postures have them.
+    pub natural_boards: usize,
     /// The best of them that each cell of the map keeps.
     pub postures_per_cell: usize,
     /// Pairs of a grasp and a posture that are aligned and evaluated, at most.
@@ -259,6 +266,8 @@ impl SearchBudget {
         match budget {
             Budget::Fast => Self {
                 postures: 100_000,
+                natural_postures: 300_000,
+                natural_boards: 500,
                 postures_per_cell: 4,
                 evaluated_pairs: 400,
                 starts: 8,
@@ -270,6 +279,8 @@ impl SearchBudget {
             },
             Budget::Default => Self {
                 postures: 100_000,
+                natural_postures: 300_000,
+                natural_boards: 1_500,
                 postures_per_cell: 4,
                 evaluated_pairs: 1_500,
                 starts: 24,
@@ -281,6 +292,8 @@ impl SearchBudget {
             },
             Budget::Exhaustive => Self {
                 postures: 400_000,
+                natural_postures: 2_000_000,
+                natural_boards: 10_000,
                 postures_per_cell: 40,
                 evaluated_pairs: 50_000,
                 starts: 400,

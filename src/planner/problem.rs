@@ -1,5 +1,7 @@
 //! The problem that a search solves: task, person, robot and objective.
 
+use nalgebra::Vector3;
+
 use crate::{
     human::Human,
     model::{
@@ -24,6 +26,8 @@ pub struct Problem<'a> {
     pub objective: ComfortSettings,
     /// The operation's wrench about the tool tip, T axes: it does not change with the candidate.
     pub wrench_t: Wrench,
+    /// The worked face's normal, T axes: it does not change either.
+    pub normal_t: Vector3<f64>,
 }
 
 impl<'a> Problem<'a> {
@@ -38,6 +42,7 @@ impl<'a> Problem<'a> {
             human: Human::new(&scenario.human, &scenario.tool)?,
             objective: scenario.planner.kind.objective(scenario.comfort),
             wrench_t: wrench_t(&scenario.operation),
+            normal_t: scenario.operation.face_normal_t(scenario.object.size_m[2]),
         })
     }
 
@@ -60,7 +65,11 @@ pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
     let operation = &scenario.operation;
     PostureMap::new(
         human,
-        &PostureLoad { wrench_t: wrench_t(operation), roll_is_free: operation.kind.roll_is_free() },
+        &PostureLoad {
+            wrench_t: wrench_t(operation),
+            normal_t: operation.face_normal_t(scenario.object.size_m[2]),
+            roll_is_free: operation.kind.roll_is_free(),
+        },
         &scenario.planner.kind.objective(scenario.comfort),
         &SearchBudget::of(scenario.planner.budget),
         scenario.planner.seed,

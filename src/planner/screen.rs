@@ -33,18 +33,19 @@ struct Pair<'a> {
 
 /// The best pairs of the entries and the postures that satisfy every constraint, the best first. `draws` is the number of
 /// draws that the entries took: the evidence if there are none.
-pub fn screen(
+pub fn screen<'e>(
     evaluator: &mut Evaluator<'_>,
-    entries: &[LibraryEntry],
+    entries: impl Iterator<Item = &'e LibraryEntry>,
     draws: u64,
     postures: &PostureMap,
     budget: &SearchBudget,
 ) -> Vec<Feasible> {
     let Evaluator { problem, stats, .. } = evaluator;
-    if entries.is_empty() {
+    let mut entries = entries.peekable();
+    if entries.peek().is_none() {
         stats.count_rejected(draws, Rejection::RobotReach);
     }
-    let mut pairs = Vec::with_capacity(entries.len() * budget.postures_per_cell);
+    let mut pairs = Vec::new();
     for entry in entries {
         if stats.is_exhausted() {
             break;

@@ -4,7 +4,7 @@ use rand_pcg::Pcg64;
 
 use super::{
     evaluate::{self, Evaluator, Feasible},
-    library::{GraspLibrary, PostureMap},
+    library::{GraspLibrary, LibraryEntry, PostureMap},
     params::{SearchBudget, screening::MEAN_RESPONSES},
     problem, random, refine, screen,
     task_family::TaskFamily,
@@ -31,7 +31,7 @@ pub fn search(
         match &budget.warm_rounds {
             Some(rounds) if !starts.is_empty() => refine::refine(evaluator, starts, rounds),
             _ => {
-                starts.extend(screened(evaluator, library, warm.postures.as_ref(), budget));
+                starts.extend(screened(evaluator, library, warm.postures.as_ref(), &warm.entries, budget));
                 refine::refine(evaluator, starts, &budget.rounds)
             }
         }
@@ -39,18 +39,20 @@ pub fn search(
     rank(evaluator, found)
 }
 
-/// Starts from screening the library; without a posture map it makes one.
+/// Starts from screening the library and the entries for natural postures; without a posture map it makes one.
 pub fn screened(
     evaluator: &mut Evaluator<'_>,
     library: &GraspLibrary,
     postures: Option<&PostureMap>,
+    natural: &[LibraryEntry],
     budget: &SearchBudget,
 ) -> Vec<Feasible> {
+    let entries = library.entries.iter().chain(natural);
     match postures {
-        Some(postures) => screen::screen(evaluator, &library.entries, library.draws, postures, budget),
+        Some(postures) => screen::screen(evaluator, entries, library.draws, postures, budget),
         None => {
             let postures = own_postures(&evaluator.problem.human, evaluator.problem.scenario);
-            screen::screen(evaluator, &library.entries, library.draws, &postures, budget)
+            screen::screen(evaluator, entries, library.draws, &postures, budget)
         }
     }
 }

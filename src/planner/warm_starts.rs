@@ -15,6 +15,7 @@ use super::{
     candidate::{Candidate, WorkPose},
     evaluate::{self, Configuration, Evaluator, Feasible},
     library::{ArmGrasp, BoardGrasp, GraspLibrary, GraspPattern, GraspingRobot, LibraryEntry, PostureMap, resample},
+    natural_boards::natural_entries,
     outcome::{PlanError, Rejection},
     params::{
         SearchBudget, WarmStartBudget,
@@ -44,6 +45,8 @@ pub struct WarmStarts {
     pub family: TaskFamily,
     /// The posture map of the family; `None` for the random planner, which does not use it.
     pub postures: Option<PostureMap>,
+    /// Grasps of the boards that natural postures ask for.
+    pub entries: Vec<LibraryEntry>,
     solutions: Vec<Solution>,
 }
 
@@ -66,11 +69,13 @@ impl WarmStarts {
         let human = Human::new(&shared.human, &shared.tool)?;
         let planner = &shared.planner;
         if planner.kind == PlannerKind::Random {
-            return Ok(Self { family, postures: None, solutions: Vec::new() });
+            return Ok(Self { family, postures: None, entries: Vec::new(), solutions: Vec::new() });
         }
         let postures = problem::posture_map(shared, &human);
         let (seed, budget) = (planner.seed, WarmStartBudget::of(planner.budget));
-        let mut warm = Self { family, postures: Some(postures), solutions: Vec::new() };
+        let count = SearchBudget::of(planner.budget).natural_boards;
+        let entries = natural_entries(shared, &human, &library.robot, &postures, count);
+        let mut warm = Self { family, postures: Some(postures), entries, solutions: Vec::new() };
         if let Some(budget) = budget {
             warm.solve(&solved_tasks(shared), library, &budget, seed)?;
         }
@@ -87,15 +92,16 @@ impl WarmStarts {
     ) -> Result<(), PlanError> {
         for pass in 0..budget.passes {
             let resampled;
-            let (entries, task_budget) = if pass == 0 {
-                (&library.entries, &budget.first)
+            let (entries, natural, task_budget) = if pass == 0 {
+                (&library.entries, &self.entries[..], &budget.first)
             } else {
                 let boards: Vec<_> = self.solutions.iter().map(|solution| solution.x_wo).collect();
                 resampled = resample(&library.robot, &boards, budget.resampled_boards, [seed, pass]);
-                (&resampled, &budget.later)
+                (&resampled, &[][..], &budget.later)
             };
+            let entries: Vec<_> = entries.iter().chain(natural).collect();
             // Each task uses the solutions of the pass before, so their order does not matter.
-            let solve = |task: &Scenario| self.solve_task(task, &library.robot, entries, task_budget);
+            let solve = |task: &Scenario| self.solve_task(task, &library.robot, &entries, task_budget);
             let found: Result<Vec<_>, PlanError> = tasks.par_iter().map(solve).collect();
             self.solutions = found?.concat();
         }
@@ -107,13 +113,13 @@ impl WarmStarts {
         &self,
         task: &Scenario,
         robot: &GraspingRobot,
-        entries: &[LibraryEntry],
+        entries: &[&LibraryEntry],
         budget: &SearchBudget,
     ) -> Result<Vec<Solution>, PlanError> {
         let mut evaluator = Evaluator::new(Problem::new(task, robot)?, SearchStats::unlimited());
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
         if let Some(postures) = &self.postures {
-            starts.extend(screen::screen(&mut evaluator, entries, 0, postures, budget));
+            starts.extend(screen::screen(&mut evaluator, entries.iter().copied(), 0, postures, budget));
         }
         let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds));
         let p_ot_m = task.operation.x_ot.translation.vector.into();

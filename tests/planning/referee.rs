@@ -71,8 +71,7 @@ fn spearman(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn the_moments_about_the_shoulder_are_the_referees() {
     for row in rows() {
-        let torques =
-            human(row.task).joint_torques(&row.q_rad, &Pose::identity(), &Wrench::from_force(row.force_b_n));
+        let torques = human(row.task).joint_torques(&row.q_rad, &Pose::identity(), &Wrench::from_force(row.force_b_n));
         // The file has six decimals.
         assert!((torques.shoulder_v_nm - row.shoulder_nm).norm() < 5e-6, "{torques:?} {:?}", row.shoulder_nm);
     }

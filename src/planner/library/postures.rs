@@ -54,6 +54,8 @@ impl Posture {
 pub struct PostureLoad {
     /// Wrench about the tool tip, T axes.
     pub wrench_t: Wrench,
+    /// The worked face's normal, T axes.
+    pub normal_t: Vector3<f64>,
     /// True if the tool's roll is free.
     pub roll_is_free: bool,
 }
@@ -62,6 +64,8 @@ pub struct PostureLoad {
 pub struct PostureMap {
     roll_is_free: bool,
     cells: Vec<Vec<Posture>>,
+    /// Places of the most promising postures in `cells`, the best first.
+    ranked: Vec<[usize; 2]>,
 }
 
 impl PostureMap {
@@ -73,12 +77,16 @@ impl PostureMap {
         budget: &SearchBudget,
         seed: u64,
     ) -> Self {
-        let mut map = Self { roll_is_free: load.roll_is_free, cells: Vec::new() };
+        let mut map = Self { roll_is_free: load.roll_is_free, cells: Vec::new(), ranked: Vec::new() };
         let mut found = vec![Vec::new(); map.cell_count()];
         let mut random = Pcg64::new(u128::from(seed), 0);
-        for _ in 0..budget.postures {
-            let q_h_rad = human.arm().ranges.joints_rad.map(|[low, high]| uniform(&mut random, low, high));
+        let draws = if human.posture().is_natural() { budget.natural_postures } else { budget.postures };
+        for _ in 0..draws {
+            let q_h_rad = human.arm().ranges.at_shares([(); 7].map(|()| uniform(&mut random, 0.0, 1.0)));
             let x_bt = human.tool_pose_b(&q_h_rad);
+            if human.work_violation(&x_bt, &load.normal_t).is_some() {
+                continue;
+            }
             let muscular = posture_muscular(human, &q_h_rad, &x_bt, &load.wrench_t, objective);
             if !within_strength(&muscular) {
                 continue;
@@ -96,14 +104,24 @@ impl PostureMap {
             let medium_points_b = std::array::from_fn(|place| points[spread(place) * BODY_POINTS / MEDIUM_POINTS + 1]);
             Posture { q_h_rad: *q_h_rad, x_bt: *x_bt, muscular: *muscular, medium_points_b }
         };
-        map.cells = found
-            .into_iter()
-            .map(|mut cell| {
-                cell.sort_by(|a, b| b.0.total_cmp(&a.0));
-                cell.iter().take(budget.postures_per_cell).map(posture).collect()
-            })
+        for cell in &mut found {
+            cell.sort_by(|a, b| b.0.total_cmp(&a.0));
+            cell.truncate(budget.postures_per_cell);
+        }
+        let mut ranked: Vec<_> = found
+            .iter()
+            .enumerate()
+            .flat_map(|(cell, kept)| kept.iter().enumerate().map(move |(place, posture)| (posture.0, [cell, place])))
             .collect();
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        map.ranked = ranked.into_iter().map(|(_, place)| place).collect();
+        map.cells = found.iter().map(|cell| cell.iter().map(posture).collect()).collect();
         map
+    }
+
+    /// The postures of all cells, the most promising first.
+    pub fn ranked(&self) -> impl Iterator<Item = &Posture> {
+        self.ranked.iter().map(|&[cell, place]| &self.cells[cell][place])
     }
 
     fn cell_count(&self) -> usize {

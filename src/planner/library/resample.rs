@@ -27,14 +27,28 @@ use crate::{
 
 /// Grasps of `count` boards with the height and tilt of the given ones; boards outside the search domain have none. The same
 /// arguments give the same grasps, whatever the number of threads.
-pub fn resample(robot: &GraspingRobot, boards: &[Pose], count: usize, [seed, pass]: [u64; 2]) -> Vec<LibraryEntry> {
-    if boards.is_empty() {
-        return Vec::new();
-    }
+pub fn resample(robot: &GraspingRobot, boards: &[Pose], count: usize, stream: [u64; 2]) -> Vec<LibraryEntry> {
+    let board = |number: usize, random: &mut Pcg64| moved(&boards[number % boards.len()], &robot.domain, random);
+    if boards.is_empty() { Vec::new() } else { grasps_of(robot, count, stream, board) }
+}
+
+/// Grasps of boards at these poses; boards outside the search domain have none. The same arguments give the same grasps,
+/// whatever the number of threads.
+pub fn grasps_at(robot: &GraspingRobot, boards: &[Pose], stream: [u64; 2]) -> Vec<LibraryEntry> {
+    grasps_of(robot, boards.len(), stream, |number, _| boards[number])
+}
+
+/// Grasps of `count` boards, each with a random generator of its own.
+fn grasps_of(
+    robot: &GraspingRobot,
+    count: usize,
+    [seed, pass]: [u64; 2],
+    board: impl Fn(usize, &mut Pcg64) -> Pose + Sync,
+) -> Vec<LibraryEntry> {
     let of_board = |number: usize| {
         let stream = (u128::from(pass) << 64) + number as u128;
         let mut random = Pcg64::new(u128::from(seed), stream);
-        let x_wo = moved(&boards[number % boards.len()], &robot.domain, &mut random);
+        let x_wo = board(number, &mut random);
         if robot.domain.contains(&x_wo) { grasps_of_board(robot, &x_wo, &mut random) } else { Vec::new() }
     };
     (0..count).into_par_iter().flat_map_iter(of_board).collect()

@@ -144,7 +144,8 @@ impl<'a, 'p> Jacobian<'a, 'p> {
     /// Gradients of the margins of [`super::linearization::simple_margins`], in their order.
     pub fn simple_gradients(&self) -> Vec<DVector<f64>> {
         let mut gradients = Vec::with_capacity(96);
-        gradients.extend(self.range_gradients().map(|gradient| self.of_person(&gradient)));
+        gradients.extend(self.posture_gradients().map(|gradient| self.of_person(&gradient)));
+        gradients.extend(self.place_gradients());
         let mut between = |gradient: DVector<f64>| {
             let opposite = -&gradient;
             gradients.extend([gradient, opposite]);
@@ -167,11 +168,24 @@ impl<'a, 'p> Jacobian<'a, 'p> {
         gradients
     }
 
-    /// Gradients of the margins of the person's arm in its ranges, by its joints.
-    fn range_gradients(&self) -> impl Iterator<Item = [f64; JOINTS]> + use<> {
-        let arm = self.problem.human.arm();
-        let frames = arm.frames(&self.here.candidate.work.q_h_rad);
-        arm.ranges.margin_gradients(&frames.r_bu, &frames.axes_b).into_iter()
+    /// Gradients of the margins of the person's arm in its ranges, then of those of the work in a natural posture, by the
+    /// person's joints.
+    fn posture_gradients(&self) -> impl Iterator<Item = [f64; JOINTS]> + use<> {
+        let Problem { human, normal_t, .. } = self.problem;
+        let q_h_rad = &self.here.candidate.work.q_h_rad;
+        let frames = human.arm().frames(q_h_rad);
+        let of_ranges = human.arm().ranges.margin_gradients(&frames.r_bu, &frames.axes_b);
+        of_ranges.into_iter().chain(human.work_margin_gradients(q_h_rad, normal_t))
+    }
+
+    /// Gradients of the margins of a given place; none if it is free.
+    fn place_gradients(&self) -> Vec<DVector<f64>> {
+        if !self.problem.human.place_is_given() {
+            return Vec::new();
+        }
+        let along = |axis: Vector3<f64>| self.of_body(|body| body.linear.dot(&axis));
+        let both = |gradient: DVector<f64>| [gradient.clone(), -gradient];
+        [along(Vector3::x()), along(Vector3::y()), self.single(7, PERSON_RAD)].into_iter().flat_map(both).collect()
     }
 
     /// A gradient from derivatives by the person's joints.
@@ -187,6 +201,15 @@ impl<'a, 'p> Jacobian<'a, 'p> {
     fn single(&self, number: usize, entry: f64) -> DVector<f64> {
         let mut gradient = self.zeros();
         gradient[number] = entry;
+        gradient
+    }
+
+    /// A gradient from the body's derivatives.
+    fn of_body(&self, derivative: impl Fn(&RigidTwist) -> f64) -> DVector<f64> {
+        let mut gradient = self.zeros();
+        for (number, work) in self.variables.work.iter().enumerate() {
+            gradient[number] = derivative(&work.body);
+        }
         gradient
     }
 
@@ -250,7 +273,7 @@ mod tests {
             let library = GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m);
             let problem = Problem::new(&loaded.scenario, &library.robot).unwrap();
             let mut evaluator = Evaluator::new(problem, SearchStats::unlimited());
-            let starts = screened(&mut evaluator, &library, None, &SearchBudget::of(Budget::Fast));
+            let starts = screened(&mut evaluator, &library, None, &[], &SearchBudget::of(Budget::Fast));
             assert!(starts.len() > 2);
             starts.iter().for_each(|start| compare(&evaluator.problem, start));
         }

@@ -18,6 +18,7 @@ use super::{
 };
 use crate::{
     collision::{BodyRef, NearPair},
+    human::Standing,
     model::plan::Comfort,
 };
 
@@ -190,6 +191,8 @@ pub fn simple_margins(
     let q_h_rad = &candidate.work.q_h_rad;
     let arm = problem.human.arm();
     margins.extend(arm.ranges.margins(q_h_rad, &arm.frames(q_h_rad).r_bu));
+    margins.extend(problem.human.work_margins(&problem.human.tool_pose_b(q_h_rad), &problem.normal_t));
+    margins.extend(problem.human.place_margins(&Standing::of(&configuration.placement.x_wb)));
     let mut between = |value: f64, [low, high]: [f64; 2]| margins.extend([value - low, high - value]);
     let domain = &problem.robot.domain;
     let x_wo = &configuration.placement.x_wo;

@@ -123,7 +123,10 @@ impl Iterate {
         if self.linearization.correct(problem, &candidate, &configuration, &comfort, d, &mut corrected) {
             return Trial::Violated(corrected);
         }
-        if !evaluator.stats.may_evaluate() || evaluate::test_placement(&evaluator.problem, &candidate).is_err() {
+        if !evaluator.stats.may_evaluate()
+            || evaluate::test_placement(&evaluator.problem, &candidate).is_err()
+            || evaluate::test_sight(&evaluator.problem, &configuration).is_err()
+        {
             return Trial::Failed;
         }
         let utilisation = evaluator.utilisation(&candidate, &configuration.placement.x_wo);

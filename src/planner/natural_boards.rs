@@ -1,0 +1,57 @@
+//! Grasps of the boards that natural postures ask for.
+//!
+//! Natural postures are rare: few boards of the grasp library are where one can work on them naturally. So boards are put where
+//! the most promising postures of the map have them, anywhere in the search domain if the person may stand anywhere, and
+//! grasps are drawn for these.
+
+use nalgebra::Isometry3;
+use rand_pcg::Pcg64;
+
+use super::{
+    domain::uniform,
+    library::{GraspingRobot, LibraryEntry, PostureMap, grasps_at, resample},
+    params::library::NATURAL_PASS,
+};
+use crate::{
+    human::{Human, standing_pose_w},
+    model::{
+        frames::Pose,
+        scenario::{Scenario, StandingPlace},
+    },
+};
+
+/// Collision-free grasps of `count` boards; none if the posture is unrestricted and the place is free.
+pub fn natural_entries(
+    scenario: &Scenario,
+    human: &Human,
+    robot: &GraspingRobot,
+    postures: &PostureMap,
+    count: usize,
+) -> Vec<LibraryEntry> {
+    if !human.posture().is_natural() && !human.place_is_given() {
+        return Vec::new();
+    }
+    let stream = [scenario.planner.seed, NATURAL_PASS];
+    let boards = boards(scenario, robot.robot.floor_z_m, postures, count);
+    if human.place_is_given() { grasps_at(robot, &boards, stream) } else { resample(robot, &boards, count, stream) }
+}
+
+/// Poses of the board in the most promising postures, at random rolls of the tool where it is free and, if the place is given, for
+/// a person who stands there within the tolerances.
+fn boards(scenario: &Scenario, floor_z_m: f64, postures: &PostureMap, count: usize) -> Vec<Pose> {
+    let mut random = Pcg64::new(u128::from(scenario.planner.seed), u128::from(NATURAL_PASS));
+    let operation = &scenario.operation;
+    let mut board = |x_bt: &Pose| {
+        let mut around = |middle: f64, by: f64| uniform(&mut random, middle - by, middle + by);
+        let x_wb = match scenario.human.place {
+            StandingPlace::Free => Isometry3::translation(0.0, 0.0, floor_z_m),
+            StandingPlace::Given { p_wb_m: [x_m, y_m], heading_deg, tolerance_m, tolerance_deg } => {
+                let [x_m, y_m] = [x_m, y_m].map(|place_m| around(place_m, tolerance_m));
+                standing_pose_w(x_m, y_m, around(heading_deg, tolerance_deg).to_radians(), floor_z_m)
+            }
+        };
+        let roll_rad = if operation.kind.roll_is_free() { around(0.0, std::f64::consts::PI) } else { 0.0 };
+        x_wb * x_bt * operation.rolled(roll_rad).x_ot.inverse()
+    };
+    postures.ranked().take(count).map(|posture| board(&posture.x_bt)).collect()
+}
