@@ -96,7 +96,8 @@ impl Arm {
 
     /// True if twist and elevation of the upper arm are within their ranges, but for rounding.
     pub fn permits_shoulder(&self, q_rad: &ArmAngles) -> bool {
-        !self.ranges.limits_orientation() || self.ranges.permits_shoulder(&self.frames(q_rad).r_bu, ORIENTATION_TOLERANCE_RAD)
+        !self.ranges.limits_orientation()
+            || self.ranges.permits_shoulder(&self.frames(q_rad).r_bu, ORIENTATION_TOLERANCE_RAD)
     }
 
     /// Positions and orientations of the parts of the arm.

@@ -157,7 +157,7 @@ impl Sweep<'_> {
     ) -> Result<(), PlanError> {
         let stats = SearchStats::new(scenario.planner.evaluations, observer);
         let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot)?, stats);
-        let mut budget = SearchBudget::of(scenario.planner.budget);
+        let mut budget = SearchBudget::of(scenario);
         let mut starts = Vec::new();
         if from_scratch {
             starts = screened(&mut evaluator, self.library, None, &self.warm.entries, &budget);

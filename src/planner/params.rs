@@ -4,7 +4,7 @@
 //! limits are not here: they are in the scenario, in [`super::domain`] (where boards and grasps are sampled), or in the data
 //! files of robot and person.
 
-use crate::model::scenario::Budget;
+use crate::model::scenario::{Budget, Scenario};
 
 /// Safety factor on the compliant load factor: a planned grasp must resist this multiple of what the limits ask for
 /// (docs/method.md#610-safety-factor). The prediction assumes small displacements and evenly pressed pads; over the 100
@@ -77,6 +77,13 @@ pub mod screening {
 pub mod warm_starts {
     /// Tool directions within half a turn for which a family is solved, where the tool's roll is not free.
     pub const DIRECTIONS: usize = 8;
+    /// Places of a hole, as shares of the board's sides from its centre, for which a family is solved: half turns transfer them to
+    /// its other half.
+    pub const HOLES: [[f64; 2]; 3] = [[0.25, 0.25], [0.25, -0.25], [0.125, 0.0]];
+    /// Further ones if the posture is natural.
+    pub const NATURAL_HOLES: [[f64; 2]; 2] = [[0.0, 0.25], [0.2, 0.0]];
+    /// Further passes if the posture is natural.
+    pub const NATURAL_PASSES: u64 = 4;
     /// Solutions that are kept of each solved task.
     pub const KEPT: usize = 6;
     /// Of these, at most this many have the same pattern but for a turn of the board.
@@ -261,8 +268,20 @@ fn rounds(rounds: &[[usize; 2]]) -> Vec<RefinementRound> {
 }
 
 impl SearchBudget {
-    /// The numbers of a scenario's budget.
-    pub fn of(budget: Budget) -> Self {
+    /// The numbers of a scenario's budget. Natural postures leave the objective flatter, so more grasps are nearly as good and
+    /// more warm starts are refined.
+    pub fn of(scenario: &Scenario) -> Self {
+        let budget = scenario.planner.budget;
+        let usual = Self::unrestricted(budget);
+        if budget == Budget::Default && scenario.human.posture.is_natural() {
+            Self { warm_starts: 16, warm_rounds: Some(rounds(&[[16, 4], [6, 8], [2, 25]])), ..usual }
+        } else {
+            usual
+        }
+    }
+
+    /// The numbers of a budget for an unrestricted posture.
+    fn unrestricted(budget: Budget) -> Self {
         match budget {
             Budget::Fast => Self {
                 postures: 100_000,
@@ -321,9 +340,18 @@ pub struct WarmStartBudget {
 }
 
 impl WarmStartBudget {
-    /// The numbers of a scenario's budget; `None` if it uses no warm starts.
-    pub fn of(budget: Budget) -> Option<Self> {
-        let plan = SearchBudget::of(budget);
+    /// The numbers of a scenario's budget; `None` if it uses no warm starts. With natural postures every pass finds better
+    /// grasps for longer.
+    pub fn of(scenario: &Scenario) -> Option<Self> {
+        let usual = Self::unrestricted(scenario.planner.budget)?;
+        let natural = scenario.human.posture.is_natural();
+        let further = if natural { warm_starts::NATURAL_PASSES } else { 0 };
+        Some(Self { passes: usual.passes + further, ..usual })
+    }
+
+    /// The numbers of a budget for an unrestricted posture.
+    fn unrestricted(budget: Budget) -> Option<Self> {
+        let plan = SearchBudget::unrestricted(budget);
         match budget {
             Budget::Fast => None,
             Budget::Default => {

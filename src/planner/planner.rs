@@ -148,7 +148,7 @@ fn best_plan<'a>(
     observer: Option<&'a mut Observer<'a>>,
 ) -> Result<Outcome<Plan>, PlanError> {
     let mut evaluator = evaluator(scenario, maps, observer)?;
-    let budget = SearchBudget::of(scenario.planner.budget);
+    let budget = SearchBudget::of(scenario);
     for found in search(&mut evaluator, &maps.library, warm, &budget) {
         if let Some(plan) = verified(&mut evaluator, &found) {
             return Ok(Outcome::Found(plan));

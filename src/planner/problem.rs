@@ -71,7 +71,7 @@ pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
             roll_is_free: operation.kind.roll_is_free(),
         },
         &scenario.planner.kind.objective(scenario.comfort),
-        &SearchBudget::of(scenario.planner.budget),
+        &SearchBudget::of(scenario),
         scenario.planner.seed,
     )
 }

@@ -48,7 +48,7 @@ pub fn top(
     warm: &WarmStarts,
     wanted: usize,
 ) -> Outcome<Vec<Plan>> {
-    let budget = SearchBudget::of(evaluator.problem.scenario.planner.budget);
+    let budget = SearchBudget::of(evaluator.problem.scenario);
     let starts = budget.starts.max(STARTS_PER_PLAN.saturating_mul(wanted));
     let mut budget = SearchBudget { starts, warm_rounds: None, ..budget };
     for round in &mut budget.rounds {

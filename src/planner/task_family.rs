@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::{
-    params::warm_starts::{DIRECTIONS, LEVEL, PLACE_UNIT_M, ROUNDING_UNIT},
+    params::warm_starts::{DIRECTIONS, HOLES, LEVEL, NATURAL_HOLES, PLACE_UNIT_M, ROUNDING_UNIT},
     problem::wrench_t,
 };
 use crate::model::{
@@ -80,8 +80,9 @@ pub fn solved_tasks(shared: &Scenario) -> Vec<Scenario> {
     if operation.kind.roll_is_free() {
         // The tool's roll takes care of directions.
         let [width_m, height_m, _] = shared.object.size_m;
-        let place = |x: f64, y: f64| translation.vector + Vector3::new(x * width_m, y * height_m, 0.0);
-        return [place(0.25, 0.25), place(0.25, -0.25), place(0.125, 0.0)].map(|p_ot_m| at(p_ot_m, 0.0)).to_vec();
+        let place = |[x, y]: [f64; 2]| translation.vector + Vector3::new(x * width_m, y * height_m, 0.0);
+        let further: &[_] = if shared.human.posture.is_natural() { &NATURAL_HOLES } else { &[] };
+        return HOLES.iter().chain(further).map(|&hole| at(place(hole), 0.0)).collect();
     }
     // Between the board's axes and diagonals, so that the common directions all have neighbours at some distance.
     let direction = |number: usize| {

@@ -72,8 +72,8 @@ impl WarmStarts {
             return Ok(Self { family, postures: None, entries: Vec::new(), solutions: Vec::new() });
         }
         let postures = problem::posture_map(shared, &human);
-        let (seed, budget) = (planner.seed, WarmStartBudget::of(planner.budget));
-        let count = SearchBudget::of(planner.budget).natural_boards;
+        let (seed, budget) = (planner.seed, WarmStartBudget::of(shared));
+        let count = SearchBudget::of(shared).natural_boards;
         let entries = natural_entries(shared, &human, &library.robot, &postures, count);
         let mut warm = Self { family, postures: Some(postures), entries, solutions: Vec::new() };
         if let Some(budget) = budget {

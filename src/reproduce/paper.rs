@@ -1,7 +1,9 @@
 //! The 25 operations of the paper's evaluation: 16 cuts of a circle (`docs/method.md#23-cutting`) and a grid of nine holes
 //! (`docs/method.md#22-drilling`). The paper states no sizes; board, pitch and radius are assumptions.
 //!
-//! The operations are texts of scenario files, so they pass the same checks. All other keys have the format's defaults.
+//! The operations are texts of scenario files, so they pass the same checks. [`operations`] have the paper's person: its muscular
+//! metric, a shoulder limited by its angles, no limits of the posture, and the first knife. [`natural_operations`] have the
+//! format's defaults.
 
 use std::{f64::consts::TAU, path::Path};
 
@@ -49,10 +51,31 @@ impl PaperOperation {
     }
 }
 
+/// Keys of the paper's person.
+const PAPER_PERSON: &str =
+    "\n[human]\nshoulder = \"box\"\nposture = \"unrestricted\"\n\n[comfort]\nmuscular = \"paper\"\n";
+
+/// Keys of the knife that the reproduction uses.
+const PAPER_KNIFE: &str = "\n[tool]\nname = \"knife-thumb-side\"\n";
+
 /// All operations in the order of tables: the cuts counter-clockwise about +z_O, starting at +x_O; the holes row by row from
 /// (-x_O, -y_O).
 #[must_use]
 pub fn operations() -> Vec<PaperOperation> {
+    let mut operations = natural_operations();
+    for operation in &mut operations {
+        operation.text.push_str(PAPER_PERSON);
+        if operation.kind == OperationKind::Cut {
+            operation.text.push_str(PAPER_KNIFE);
+        }
+    }
+    operations
+}
+
+/// The same operations for a person who stands as people stand, with the intrinsic metric and the knife that is drawn: the
+/// defaults of a scenario.
+#[must_use]
+pub fn natural_operations() -> Vec<PaperOperation> {
     (1..=CUTS).map(cut).chain((1..=DRILLS).map(drill)).collect()
 }
 

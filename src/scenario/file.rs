@@ -15,7 +15,7 @@ use crate::model::{
     operation::OperationKind,
     scenario::{
         ComfortSettings, Expectation, Grip, Hand, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
-        ShoulderKind, SimulationSettings, Tool,
+        ShoulderKind, SimulationSettings,
     },
 };
 
@@ -35,7 +35,7 @@ pub struct ScenarioFile {
     pub human: HumanSection,
     /// The tool; by default a drill or a knife, by the kind of the operation.
     #[serde(default)]
-    pub tool: Option<Tool>,
+    pub tool: Option<ToolSection>,
     /// The board; by default that of the reproduction of the paper.
     #[serde(default)]
     pub object: ObjectSection,
@@ -220,6 +220,20 @@ impl HumanSection {
             deviation_margin_deg: self.deviation_margin_deg,
         }
     }
+}
+
+/// `[tool]`: the name of a shipped tool, or all of its figures.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ToolSection {
+    /// `drill`, `knife` or `knife-thumb-side`.
+    pub name: Option<String>,
+    /// Mass, kg. Its centre is at the palm.
+    pub mass_kg: Option<f64>,
+    /// Position of the tip in the hand's frame H, m.
+    pub tip_h_m: Option<[f64; 3]>,
+    /// Rotation `R_HT`, unit quaternion, scalar last.
+    pub rotation_xyzw: Option<[f64; 4]>,
 }
 
 /// `[object]`.

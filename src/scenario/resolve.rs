@@ -7,13 +7,16 @@ use nalgebra::Vector3;
 use super::{
     InputError,
     check::Checker,
-    file::{HumanSection, LimitsSection, ObjectSection, OperationSection, PlaceKind, ScenarioFile},
+    file::{HumanSection, LimitsSection, ObjectSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
     load_section::{self, check_load, check_uncertainty},
     material,
     robot_file::{load_robot, robot_parameters},
 };
 use crate::{
-    human::{body::MAX_LEAN_DEG, tools::default_tool},
+    human::{
+        body::MAX_LEAN_DEG,
+        tools::{TOOL_NAMES, default_tool, named_tool},
+    },
     model::{
         FORMAT,
         frames::{Pose, rotation_from_xyzw},
@@ -45,7 +48,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         name: file.name.clone(),
         robot: robot_parameters(&robot),
         human: person(&check, &file.human)?,
-        tool: file.tool.unwrap_or_else(|| default_tool(operation.kind)),
+        tool: tool(&check, file.tool.as_ref(), operation.kind)?,
         limits: limits_with_defaults(&file.limits, operation.kind),
         object,
         operation,
@@ -166,6 +169,24 @@ fn check_posture_limits(check: &Checker<'_>, limits: &PostureLimits) -> Result<(
     range("human.elbow_deg", limits.elbow_deg, [0.0, 180.0], "degrees")?;
     check.within("human.limit_margin_deg", limits.limit_margin_deg, 0.0, 60.0, "degrees")?;
     check.within("human.deviation_margin_deg", limits.deviation_margin_deg, 0.0, 25.0, "degrees")
+}
+
+/// The tool of a file: a shipped one by its name, one with figures, or that of the operation.
+fn tool(check: &Checker<'_>, section: Option<&ToolSection>, kind: OperationKind) -> Result<Tool, InputError> {
+    let Some(section) = section else { return Ok(default_tool(kind)) };
+    let ToolSection { name, mass_kg, tip_h_m, rotation_xyzw } = section;
+    let Some(name) = name else {
+        return Ok(Tool {
+            mass_kg: check.present("tool.mass_kg", *mass_kg, "a mass in kg, or tool.name")?,
+            tip_h_m: check.present("tool.tip_h_m", *tip_h_m, "a position [x, y, z] in m, or tool.name")?,
+            rotation_xyzw: check.present("tool.rotation_xyzw", *rotation_xyzw, "a unit quaternion, or tool.name")?,
+        });
+    };
+    check.absent("tool.mass_kg", mass_kg.is_some(), "a tool without a name")?;
+    check.absent("tool.tip_h_m", tip_h_m.is_some(), "a tool without a name")?;
+    check.absent("tool.rotation_xyzw", rotation_xyzw.is_some(), "a tool without a name")?;
+    let expected = || TOOL_NAMES.map(|name| format!("\"{name}\"")).join(", ");
+    named_tool(name).ok_or_else(|| check.value("tool.name", format!("\"{name}\""), expected()))
 }
 
 fn check_tool(check: &Checker<'_>, tool: &Tool) -> Result<(), InputError> {

@@ -57,7 +57,7 @@ impl<'a> PathProblem<'a> {
             |scenario| Ok(Evaluator::new(Problem::new(scenario, &library.robot)?, SearchStats::unlimited()));
         let evaluators = points.iter().map(evaluator).collect::<Result<Vec<_>, PlanError>>()?;
         let Some(Evaluator { problem, .. }) = evaluators.first() else { return Ok(None) };
-        let budget = SearchBudget::of(problem.scenario.planner.budget);
+        let budget = SearchBudget::of(problem.scenario);
         // The posture map draws from stream 0.
         let random = Pcg64::new(u128::from(problem.scenario.planner.seed), 1);
         // Force and person are the same at all points, seen from the tool.

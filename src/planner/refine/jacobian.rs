@@ -273,7 +273,7 @@ mod tests {
             let library = GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m);
             let problem = Problem::new(&loaded.scenario, &library.robot).unwrap();
             let mut evaluator = Evaluator::new(problem, SearchStats::unlimited());
-            let starts = screened(&mut evaluator, &library, None, &[], &SearchBudget::of(Budget::Fast));
+            let starts = screened(&mut evaluator, &library, None, &[], &SearchBudget::of(&loaded.scenario));
             assert!(starts.len() > 2);
             starts.iter().for_each(|start| compare(&evaluator.problem, start));
         }
