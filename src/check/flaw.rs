@@ -3,7 +3,10 @@
 use std::fmt;
 
 use super::tolerances::{GIVEN, ON_BOARD_M, PoseTolerance};
-use crate::human::HumanError;
+use crate::{
+    human::{HumanError, Standing},
+    model::plan::{PostureConstraint, PostureFigure},
+};
 
 /// One fault of a plan: its key, what was found and what was expected.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,6 +175,20 @@ pub enum Flaw {
         /// The largest activation.
         found: f64,
     },
+    /// The person does not stand naturally, or does not see the work.
+    Posture {
+        /// The limit.
+        constraint: PostureConstraint,
+        /// The figure and its limits.
+        figure: PostureFigure,
+    },
+    /// The person stands elsewhere than the scenario says.
+    Place {
+        /// Where the plan puts them.
+        found: Standing,
+        /// Where the scenario does.
+        expected: Standing,
+    },
     /// The person has no response on the grid of the mean.
     NoResponse,
     /// There is no equilibrium under the load.
@@ -226,9 +243,23 @@ impl Flaw {
             Self::Tool { .. } | Self::PersonShoulder { .. } => "human.q_rad".into(),
             Self::Contact(_) => "object.x_wo".into(),
             Self::Strength { .. } => "comfort.activations".into(),
+            Self::Posture { constraint, .. } => format!("human.posture.{}", constraint.key()),
+            Self::Place { .. } => "human.x_wb".into(),
             Self::NoResponse => "comfort.average".into(),
             Self::NoEquilibrium | Self::ContactModel(_) => "stability".into(),
             Self::Missing { key } | Self::Limit { key, .. } | Self::Figure { key, .. } => (*key).into(),
+        }
+    }
+
+    /// The name of a flaw for which there is no simulation: `not_visible` if the person does not see the work, `not_natural` if
+    /// they would not stand so, `not_there` if they stand elsewhere; `None` for all others.
+    #[must_use]
+    pub fn verdict_name(&self) -> Option<&'static str> {
+        match self {
+            Self::Posture { constraint, .. } if constraint.is_of_sight() => Some("not_visible"),
+            Self::Posture { .. } => Some("not_natural"),
+            Self::Place { .. } => Some("not_there"),
+            _ => None,
         }
     }
 
@@ -272,6 +303,8 @@ impl Flaw {
             }
             Self::Contact(contact) => contact.clone(),
             Self::Strength { found } => format!("an activation of {found}"),
+            Self::Posture { constraint, figure } => format!("{:.3}, {}", figure.value, constraint.broken()),
+            Self::Place { found, .. } => describe(found),
             Self::NoResponse => "no response on the grid".into(),
             Self::NoEquilibrium => "a grasp that does not resist the load".into(),
             Self::ContactModel(error) => error.clone(),
@@ -329,6 +362,13 @@ impl Flaw {
             Self::Standing { tolerance, .. } => format!("a person who stands upright on the floor within {tolerance}"),
             Self::Contact(_) => "bodies that keep their clearances".into(),
             Self::Strength { .. } => "at most 1".into(),
+            Self::Posture { figure: PostureFigure { min, max, .. }, .. } => match (min, max) {
+                (Some(min), Some(max)) => format!("{min} to {max}"),
+                (Some(min), None) => format!("at least {min}"),
+                (None, Some(max)) => format!("at most {max}"),
+                (None, None) => "any value".into(),
+            },
+            Self::Place { expected, .. } => format!("the scenario's {}", describe(expected)),
             Self::NoResponse => "at least one response".into(),
             Self::NoEquilibrium | Self::ContactModel(_) => "a stable grasp".into(),
             Self::Missing { .. } => "a value to verify".into(),
@@ -336,6 +376,11 @@ impl Flaw {
             Self::Figure { computed, .. } => format!("{computed}, as recomputed"),
         }
     }
+}
+
+/// A standing pose in words.
+fn describe(Standing { p_wb_m: [x_m, y_m], heading_rad }: &Standing) -> String {
+    format!("place ({x_m:.3}, {y_m:.3}) m with a heading of {:.1} degrees", heading_rad.to_degrees())
 }
 
 /// True if a coordinate of the tool point is off the board; true if it is not a number.

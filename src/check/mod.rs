@@ -6,8 +6,9 @@
 
 mod checked_plan;
 mod flaw;
+mod posture;
 mod tolerances;
 
 pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan};
 pub use flaw::{Flaw, Flaws};
-pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, PoseTolerance};
+pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, POSTURE_TOLERANCE, PoseTolerance};

@@ -173,6 +173,7 @@ pub fn write_run(
             measures: run.simulated.map(|(_, judgement)| Box::new(judgement.measures)),
             predicted_load_factor: run.plan.and_then(|plan| plan.stability).map(|s| s.compliant_load_factor),
             verdict: Box::new(run.verdict),
+            posture: run.posture.map(Box::new),
             recording,
         },
     })
@@ -190,9 +191,9 @@ fn write_or_remove(path: &Path, bytes: Option<Vec<u8>>) -> Result<(), CliError> 
 /// The table of outcomes; for a single run also its checks.
 fn text(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     let mut text = report::console::table(outcomes, wall_s);
-    if let [Outcome::Judged { verdict, recording, .. }] = outcomes {
+    if let [Outcome::Judged { verdict, posture, recording, .. }] = outcomes {
         text.push('\n');
-        text.push_str(&report::console::details(verdict, recording.as_deref()));
+        text.push_str(&report::console::details(verdict, posture.as_deref(), recording.as_deref()));
     }
     text
 }

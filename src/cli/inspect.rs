@@ -69,7 +69,7 @@ fn with(limits: Limits, given: LimitArgs) -> Limits {
 }
 
 fn text(summary: &RecordedSummary, rejudged: Option<&Verdict>) -> String {
-    let mut text = console::details(&summary.verdict, None);
+    let mut text = console::details(&summary.verdict, None, None);
     let peaks = &summary.peaks;
     let by_hand = |figures: &BTreeMap<String, f64>, unit: &str| {
         let told: Vec<_> = figures.iter().map(|(hand, figure)| format!("{hand} {figure:.3} {unit}")).collect();
@@ -93,7 +93,7 @@ fn text(summary: &RecordedSummary, rejudged: Option<&Verdict>) -> String {
     }
     if let Some(verdict) = rejudged {
         text.push_str("\njudged again\n");
-        text.push_str(&console::details(verdict, None));
+        text.push_str(&console::details(verdict, None, None));
     }
     text
 }

@@ -8,7 +8,7 @@ use crate::{
     judge::{Judgement, judge},
     model::{
         FORMAT,
-        plan::Plan,
+        plan::{Plan, PostureFigures},
         scenario::Scenario,
         trace::Trace,
         verdict::{Verdict, VerdictKind},
@@ -26,6 +26,8 @@ pub struct Run {
     pub verdict: Verdict,
     /// The plan; `None` if none was found.
     pub plan: Option<Plan>,
+    /// How the person stands and sees the work; `None` without a person.
+    pub posture: Option<PostureFigures>,
     /// Trace and judgement; `None` if nothing was simulated.
     pub simulated: Option<(Trace, Judgement)>,
 }
@@ -42,7 +44,7 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
             Outcome::Found(plan) => plan,
             Outcome::Infeasible(why) => {
                 let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
-                return Ok(Run { verdict, plan: None, simulated: None });
+                return Ok(Run { verdict, posture: None, plan: None, simulated: None });
             }
         },
     };
@@ -50,21 +52,29 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
 }
 
 /// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. A plan with a collision in the
-/// planned pose is not simulated; its verdict is `touches`.
+/// planned pose is not simulated; its verdict is `touches`. Nor is one whose person would not stand or see so; its verdict is
+/// `infeasible`.
 ///
 /// # Errors
 /// If the simulation cannot be set up from the plan.
 pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
     let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
+    let posture = checked.posture();
     if let Some(contact) = checked.first_contact() {
         let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, contact);
-        return Ok(Run { verdict, plan: Some(plan), simulated: None });
+        return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
+    }
+    let flaws = checked.posture_flaws();
+    if let Some(flaw) = flaws.first() {
+        let reason = format!("{}: {flaw}", flaw.verdict_name().unwrap_or_default());
+        let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, reason);
+        return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
     }
     let trace = sim::simulate(&checked, &Conditions::of(scenario)).map_err(CliError::Simulation)?;
     let judgement = judge(&trace, &scenario.limits);
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
-    Ok(Run { verdict, plan: Some(plan), simulated: Some((trace, judgement)) })
+    Ok(Run { verdict, posture, plan: Some(plan), simulated: Some((trace, judgement)) })
 }
 
 /// The verdict on a scenario for which nothing was simulated.

@@ -58,9 +58,18 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
     match outcome {
         Outcome::Found(plan) => {
             let text = report::json::plan(&plan);
+            let posture = plan.human.and_then(|human| human.posture);
+            let table = posture.map(|figures| report::posture::table(&figures)).unwrap_or_default();
             match output {
-                Some(path) => report::file::write_whole(path, text.as_bytes())?,
-                None => output::print(&text)?,
+                Some(path) => {
+                    report::file::write_whole(path, text.as_bytes())?;
+                    output::print(&table)?;
+                }
+                // The plan alone is on the standard output.
+                None => {
+                    output::print(&text)?;
+                    output::message(table.trim_end());
+                }
             }
             Ok(found(loaded))
         }

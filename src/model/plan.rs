@@ -244,6 +244,35 @@ impl PostureConstraint {
         }
     }
 
+    /// What is wrong if the limit is broken.
+    #[must_use]
+    pub fn broken(self) -> &'static str {
+        match self {
+            Self::Facing => "the tool tip is too far to the person's side",
+            Self::View => "the person sees the worked face too flat or from behind",
+            Self::GazeYaw => "the gaze turns too far to the side",
+            Self::GazePitch => "the gaze is too steep",
+            Self::EyeDistance => "the tool tip is too near to the eye or too far from it",
+            Self::LineOfSight => "something is in the line of sight",
+            Self::FaceElevation => "the worked face looks down",
+            Self::UpperArm => "the upper arm is raised too far",
+            Self::Reach => "the arm is too straight",
+            Self::Elbow => "the elbow is too straight or too bent",
+            Self::LimitMargin => "a joint of the arm is too near to a limit",
+            Self::DeviationMargin => "the wrist's deviation is too near to a limit",
+        }
+    }
+
+    /// The unit of its figure, empty for a ratio.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::EyeDistance => "m",
+            Self::LineOfSight | Self::Reach => "",
+            _ => "deg",
+        }
+    }
+
     /// True if it decides whether the person sees the work.
     #[must_use]
     pub fn is_of_sight(self) -> bool {

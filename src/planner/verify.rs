@@ -35,6 +35,8 @@ pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Vec<Flaw> {
         (Some(person), Some(stated)) => {
             verify_comfort(&checked, person, stated, scenario, &mut flaws);
             flaws.extend(checked.first_contact().map(Flaw::Contact));
+            flaws.extend(checked.posture_flaws());
+            flaws.extend(other_posture(&checked, person));
         }
         (None, _) => flaws.push(Flaw::Missing { key: "human" }),
         (_, None) => flaws.push(Flaw::Missing { key: "comfort" }),
@@ -81,6 +83,16 @@ fn verify_comfort(
             flaws.push(Flaw::Figure { key, stated, computed });
         }
     }
+}
+
+/// Figures of the posture that the plan states otherwise.
+fn other_posture(checked: &CheckedPlan<'_>, person: &CheckedPerson<'_>) -> Option<Flaw> {
+    let (stated, found) = (person.posture.posture?, checked.posture()?);
+    stated.iter().zip(found.iter()).find_map(|((constraint, stated), (_, found))| {
+        let scale = stated.value.abs().max(found.value.abs()).max(1.0);
+        let agree = agrees(stated.value, found.value, FIGURE_TOLERANCE * scale);
+        (!agree).then(|| Flaw::Figure { key: constraint.key(), stated: stated.value, computed: found.value })
+    })
 }
 
 /// The mean comfort over the person's responses to the plan's grasp.

@@ -5,8 +5,11 @@ use std::path::Path;
 
 use comfy_table::{CellAlignment, Table, presets};
 
-use super::{Outcome, Status, explanation, number_of};
-use crate::model::verdict::{Check, CheckKind, Verdict};
+use super::{Outcome, Status, explanation, number_of, posture};
+use crate::model::{
+    plan::PostureFigures,
+    verdict::{Check, CheckKind, Verdict},
+};
 
 /// The cell of a figure that does not exist.
 const NO_FIGURE: &str = "-";
@@ -50,15 +53,18 @@ pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     text
 }
 
-/// The details of one verdict: every check with value, limit and margin, the joints with the highest torque ratios, and the
-/// path of the recording.
+/// The details of one verdict: every check with value, limit and margin, the person's posture, the joints with the highest
+/// torque ratios, and the path of the recording.
 #[must_use]
-pub fn details(verdict: &Verdict, recording: Option<&Path>) -> String {
+pub fn details(verdict: &Verdict, posture: Option<&PostureFigures>, recording: Option<&Path>) -> String {
     let mut text = format!("{}: {}, expected {}: {}\n", verdict.name, verdict.verdict, verdict.expected, met(verdict));
     if !verdict.checks.is_empty() {
         let mut rows = vec![["check", "unit", "value", "limit", "margin", ""].map(str::to_owned).to_vec()];
         rows.extend(verdict.checks.iter().map(check_row));
         text.push_str(&aligned(&rows, 2));
+    }
+    if let Some(figures) = posture {
+        text.push_str(&posture::table(figures));
     }
     let mut notes = vec![vec!["because".to_owned(), explanation(verdict)]];
     if let Some(joints) = highest_torques(verdict) {

@@ -5,10 +5,12 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::{
     Outcome, Status, console,
     plot::{Line, Plot},
+    posture,
     summary::recording_link,
 };
 use crate::model::{
     measures::{HandMeasures, JointMeasures, Measures},
+    plan::PostureFigures,
     verdict::{Check, CheckKind, Verdict},
 };
 
@@ -104,10 +106,31 @@ fn section(outcome: &Outcome) -> Markup {
             summary {
                 h2 { (name) } " " span class=(status.name()) { (status.mark()) } " " (outcome.sentence())
             }
-            @if let Outcome::Judged { verdict, measures, .. } = outcome {
+            @if let Outcome::Judged { verdict, posture, measures, .. } = outcome {
                 (checks(verdict))
+                @if let Some(figures) = posture { (person(figures)) }
                 @if let Some(measures) = measures { (plots(verdict, measures)) }
                 p.quiet { (origin(verdict)) }
+            }
+        }
+    }
+}
+
+/// How the person stands and sees the work.
+fn person(figures: &PostureFigures) -> Markup {
+    html! {
+        div.wide {
+            table {
+                tr {
+                    @for (column, head) in posture::HEAD.iter().enumerate() { th.n[column > 1] { (head) } }
+                }
+                @for (constraint, figure) in figures.iter() {
+                    tr {
+                        @for (column, cell) in posture::row(constraint, &figure).iter().enumerate() {
+                            td.n[column > 1] { (cell) }
+                        }
+                    }
+                }
             }
         }
     }

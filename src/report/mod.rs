@@ -16,6 +16,7 @@ pub mod junit;
 mod picture;
 pub mod plans;
 mod plot;
+pub mod posture;
 pub mod summary;
 #[cfg(test)]
 mod tests;
@@ -24,6 +25,7 @@ use std::path::PathBuf;
 
 use crate::model::{
     measures::Measures,
+    plan::PostureFigures,
     verdict::{CheckKind, Verdict, VerdictKind},
 };
 
@@ -36,6 +38,8 @@ pub enum Outcome {
         verdict: Box<Verdict>,
         /// The compliant load factor that the plan predicts; `None` for a plan without a prediction.
         predicted_load_factor: Option<f64>,
+        /// How the person stands and sees the work; `None` without a person.
+        posture: Option<Box<PostureFigures>>,
         /// The judge's time series; `None` if nothing was simulated.
         measures: Option<Box<Measures>>,
         /// The recording's file, if one was written.

@@ -61,6 +61,7 @@ fn outcomes() -> Vec<Outcome> {
     let judged = |verdict, predicted_load_factor| Outcome::Judged {
         verdict: Box::new(verdict),
         predicted_load_factor,
+        posture: None,
         measures: None,
         recording: None,
     };
@@ -104,7 +105,7 @@ because       deflection 16.25 mm, limit 15 mm, first crossed at 1.320 s under 0
 torque peaks  left_w1 0.75, left_s0 0.25
 recording     out/cut-03.rrd
 ";
-    assert_eq!(console::details(&deflecting(), Some(Path::new("out/cut-03.rrd"))), expected);
+    assert_eq!(console::details(&deflecting(), None, Some(Path::new("out/cut-03.rrd"))), expected);
 }
 
 #[cfg(feature = "cli")]

@@ -1,0 +1,44 @@
+//! How the person of a plan stands and sees the work, against the limits of the scenario
+//! (docs/method.md#413-natural-postures, docs/method.md#415-the-persons-place).
+
+use nalgebra::Point3;
+
+use super::{
+    checked_plan::{CheckedPerson, CheckedPlan},
+    flaw::Flaw,
+    tolerances::POSTURE_TOLERANCE,
+};
+use crate::{
+    collision::{CollisionModel, Scene},
+    human::Standing,
+    model::plan::PostureFigures,
+};
+
+impl CheckedPlan<'_> {
+    /// The figures of the person's posture; `None` without a person.
+    #[must_use]
+    pub fn posture(&self) -> Option<PostureFigures> {
+        let CheckedPerson { posture, human } = self.person()?;
+        let (plan, parts) = (self.plan(), self.person_parts());
+        let scene = Scene { person: &parts, ..self.scene() };
+        let tip_w = plan.object.x_wo * Point3::from(plan.operation.x_ot.translation.vector);
+        let eye_w = posture.x_wb * human.eye_b();
+        let free_share = CollisionModel::new(self.robot()).free_share_of_sight(&scene, &eye_w, &tip_w);
+        let normal_t = plan.operation.face_normal_t(plan.object.size_m[2]);
+        Some(human.posture_figures(&posture.q_rad, &normal_t, free_share))
+    }
+
+    /// The limits of posture and place that the person does not keep, but for rounding of written numbers.
+    #[must_use]
+    pub fn posture_flaws(&self) -> Vec<Flaw> {
+        let (Some(figures), Some(CheckedPerson { posture, human })) = (self.posture(), self.person()) else {
+            return Vec::new();
+        };
+        let standing = Standing::of(&posture.x_wb);
+        let margin = human.place_margins(&standing).into_iter().fold(f64::INFINITY, f64::min);
+        let place =
+            (margin < -POSTURE_TOLERANCE).then(|| Flaw::Place { found: standing, expected: human.given_standing() });
+        let broken = figures.iter().filter(|(_, figure)| figure.margin() < -POSTURE_TOLERANCE);
+        place.into_iter().chain(broken.map(|(constraint, figure)| Flaw::Posture { constraint, figure })).collect()
+    }
+}
