@@ -67,7 +67,7 @@ impl Hold {
     /// Sections along an axis, with u along a direction without its part along the axis.
     fn sections(&self, axis_t: Vector3<f64>, direction_t: &Vector3<f64>) -> Sections<'_> {
         let across = direction_t - axis_t * axis_t.dot(direction_t);
-        // Any direction if there is none: the tool is symmetric then.
+        // Along the axis itself any direction will do: the tool is symmetric then.
         let u_t = across.try_normalize(1e-9).unwrap_or_else(|| axis_t.cross(&Vector3::y()).normalize());
         Sections { x_wt: &self.x_wt, u_t, v_t: axis_t.cross(&u_t), axis_t }
     }

@@ -72,7 +72,7 @@ enum Item {
 #[derive(Default)]
 struct Scene {
     items: Vec<Item>,
-    /// Outline of the sector in front of the person, in W; empty if there is none.
+    /// Outline of the sector in front of the person, in W; empty for a posture without limits.
     sector_w: Vec<Point3<f64>>,
     /// The point between the eyes and the tool tip, in W; empty without a person.
     sight_w: Vec<Point3<f64>>,
@@ -140,7 +140,7 @@ fn scene(plan: &Plan, robot: &Robot) -> Result<Scene, HumanError> {
 /// Adds the person of a plan and the tool in the hand.
 fn add_person(scene: &mut Scene, plan: &Plan, posture: &HumanPosture) -> Result<(), HumanError> {
     let kind = plan.operation.kind;
-    let rules = plan.scenario.as_ref().map_or_else(Person::default, |scenario| scenario.human.clone());
+    let rules = plan.scenario.as_ref().map_or_else(Person::default, |scenario| scenario.human);
     let tool = plan.scenario.as_ref().map_or_else(|| default_tool(kind), |scenario| scenario.tool);
     let human = Human::new(&posture.person(&rules), &tool)?;
     let (x_wb, q_rad) = (&posture.x_wb, &posture.q_rad);
