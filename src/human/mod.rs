@@ -18,6 +18,7 @@
 //! | [`place`] | where the person may stand |
 //! | [`posture`] | how the person stands and sees the work |
 //! | [`rula`] | the RULA score of a posture |
+//! | [`tool_shape`] | the shape of the tool in the hand, as it is drawn |
 //! | [`tools`] | the tools of the paper |
 
 pub mod arm;
@@ -33,6 +34,7 @@ pub mod rula;
 pub mod shape;
 pub mod strength;
 pub mod swivel;
+pub mod tool_shape;
 pub mod tools;
 
 mod mirror;

@@ -33,6 +33,15 @@ const CONSTRAINTS: [PostureConstraint; WORK_MARGINS] = {
     [Facing, Facing, View, GazeYaw, GazeYaw, GazePitch, GazePitch, EyeDistance, EyeDistance, FaceElevation]
 };
 
+/// Half the distance of the pupils, m; assumed: the mean of adults.
+const HALF_EYE_SPACING_M: f64 = 0.032;
+
+/// Radius of the drawn sector in front of the person, m: about the reach of an arm with a tool.
+const SECTOR_RADIUS_M: f64 = 0.9;
+
+/// Edges of the polygon that represents the arc of the sector.
+const SECTOR_STEPS: u32 = 24;
+
 /// Where the person looks: from the point between the eyes to the tool tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gaze {
@@ -111,6 +120,38 @@ impl Human {
     #[must_use]
     pub fn eye_b(&self) -> Point3<f64> {
         self.x_bv * Point3::from(self.body.eye_b_m)
+    }
+
+    /// Where the eyes are on the head in W, m: on its surface, at the height of [`Human::eye_b`].
+    #[must_use]
+    pub fn eyes_w(&self, x_wb: &Pose) -> [Point3<f64>; 2] {
+        let radius_m = self.body.thickness.head_radius_m;
+        let ahead_m = (radius_m * radius_m - HALF_EYE_SPACING_M * HALF_EYE_SPACING_M).max(0.0).sqrt();
+        let eye_w = |y_m| x_wb * self.x_bv * Point3::new(ahead_m, y_m, self.body.eye_b_m.z);
+        [-HALF_EYE_SPACING_M, HALF_EYE_SPACING_M].map(eye_w)
+    }
+
+    /// The point between the eyes and the tool tip in W, m.
+    #[must_use]
+    pub fn line_of_sight_w(&self, x_wb: &Pose, q_rad: &ArmAngles) -> [Point3<f64>; 2] {
+        let tip_b = Point3::from(self.tool_pose_b(q_rad).translation.vector);
+        [self.eye_b(), tip_b].map(|point_b| x_wb * point_b)
+    }
+
+    /// Outline on the floor of the sector in front of the person that the tool tip must be over, W, m: from the person along
+    /// the arc and back. Empty if the posture has no limits.
+    #[must_use]
+    pub fn sector_w(&self, x_wb: &Pose) -> Vec<Point3<f64>> {
+        if !self.posture.is_natural() {
+            return Vec::new();
+        }
+        let arc_w = (0..=SECTOR_STEPS).map(|step| {
+            let share = f64::from(step) / f64::from(SECTOR_STEPS);
+            let (sin, cos) = libm::sincos((2.0 * share - 1.0) * self.posture.facing_deg.to_radians());
+            x_wb * Point3::new(SECTOR_RADIUS_M * cos, SECTOR_RADIUS_M * sin, 0.0)
+        });
+        let person_w = Point3::from(x_wb.translation.vector);
+        std::iter::once(person_w).chain(arc_w).chain(std::iter::once(person_w)).collect()
     }
 
     /// The line of sight to a tool tip at `x_bt`.
@@ -209,5 +250,56 @@ impl Human {
             limit_margin_deg: within(other.to_degrees(), Some(limits.limit_margin_deg), None),
             deviation_margin_deg: within(deviation.to_degrees(), Some(limits.deviation_margin_deg), None),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        human::{default_tool, standing_pose_w},
+        model::{
+            operation::OperationKind,
+            scenario::{Person, PostureLimits},
+        },
+    };
+
+    fn human(posture: PostureLimits) -> Human {
+        Human::new(&Person { posture, ..Person::PAPER }, &default_tool(OperationKind::Drill)).unwrap()
+    }
+
+    #[test]
+    fn the_sector_is_on_the_floor_within_the_limit_about_the_heading() {
+        let x_wb = standing_pose_w(1.0, 0.2, 2.0, -0.9);
+        let outline_b: Vec<_> =
+            human(PostureLimits::NATURAL).sector_w(&x_wb).iter().map(|point_w| x_wb.inverse() * point_w).collect();
+        let [person_b, arc_b @ .., back_b] = &outline_b[..] else { panic!("the sector is empty") };
+        assert!(person_b.coords.norm() < 1e-15 && back_b.coords.norm() < 1e-15);
+        let azimuth_deg = |point_b: &Point3<f64>| libm::atan2(point_b.y, point_b.x).to_degrees();
+        let limit_deg = PostureLimits::NATURAL.facing_deg;
+        // Rounding of the pose and of the angles.
+        for point_b in arc_b {
+            assert!((point_b.coords.norm() - SECTOR_RADIUS_M).abs() < 1e-14 && point_b.z.abs() < 1e-15);
+            assert!(azimuth_deg(point_b).abs() < limit_deg + 1e-12);
+        }
+        let ends_deg = [&arc_b[0], &arc_b[arc_b.len() - 1]].map(azimuth_deg);
+        assert!((ends_deg[0] + limit_deg).abs() < 1e-12 && (ends_deg[1] - limit_deg).abs() < 1e-12);
+        assert!(human(PostureLimits::UNRESTRICTED).sector_w(&x_wb).is_empty());
+    }
+
+    #[test]
+    fn the_eyes_are_on_the_head_and_look_from_between_them_at_the_tip() {
+        let (human, x_wb) = (human(PostureLimits::NATURAL), standing_pose_w(1.0, 0.2, 2.0, -0.9));
+        let q_rad = [0.6, 0.3, 0.2, 1.2, 0.4, 0.2, 0.1];
+        let eyes_w = human.eyes_w(&x_wb);
+        assert!(((eyes_w[1] - eyes_w[0]).norm() - 2.0 * HALF_EYE_SPACING_M).abs() < 1e-14);
+        let head = human.capsules_w(&x_wb, &q_rad)[0];
+        for eye_w in eyes_w {
+            let from_axis = (eye_w - head.p0_w).cross(&(head.p1_w - head.p0_w).normalize());
+            assert!((from_axis.norm() - head.radius_m).abs() < 1e-14);
+        }
+        let [eye_w, tip_w] = human.line_of_sight_w(&x_wb, &q_rad);
+        assert!((eye_w.z - eyes_w[0].z).abs() < 1e-15);
+        assert!((tip_w.coords - (x_wb * human.tool_pose_b(&q_rad)).translation.vector).norm() < 1e-14);
     }
 }

@@ -10,6 +10,7 @@ pub mod measures;
 pub mod operation;
 pub mod plan;
 pub mod scenario;
+pub mod tool_part;
 pub mod trace;
 pub mod verdict;
 pub mod wrench;

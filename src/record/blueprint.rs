@@ -31,6 +31,9 @@ use super::{
 };
 use crate::model::verdict::CheckKind;
 
+/// The scene is at least this wide, m: the camera then sees the person from head to feet.
+const LEAST_SPAN_M: f64 = 1.35;
+
 /// A view or a container, with its share of the parent's size.
 struct Panel {
     id: Uuid,
@@ -215,7 +218,7 @@ fn eye_and_target(input: &RecordingInput) -> (Vector3<f64>, Vector3<f64>) {
     let face_w = board.rotation * Vector3::z();
     let side = if side.dot(&face_w) < 0.0 { -side } else { side };
     let target = (2.0 * board.translation.vector + person + robot) / 4.0;
-    let span_m = apart.norm().max(0.8);
+    let span_m = apart.norm().max(LEAST_SPAN_M);
     (target + side * (1.45 * span_m) + apart * 0.25 + Vector3::z() * (0.45 * span_m), target)
 }
 

@@ -7,6 +7,7 @@ use crate::{
         measures::{Event, Measures},
         plan::Plan,
         scenario::Scenario,
+        tool_part::ToolPart,
         trace::Trace,
         verdict::Verdict,
     },
@@ -39,8 +40,15 @@ pub struct RecordingInput<'a> {
 pub struct PersonShape {
     /// The body's parts.
     pub capsules: Vec<Capsule>,
-    /// Centre of the palm that holds the tool, in W, m.
-    pub palm_w: Point3<f64>,
+    /// Where the eyes are on the head, in W, m.
+    pub eyes_w: [Point3<f64>; 2],
+    /// The point between the eyes and the tool tip that it looks at, in W, m.
+    pub line_of_sight_w: [Point3<f64>; 2],
+    /// Outline on the floor of the sector in front of the person that the tool tip must be over, in W, m; empty if the
+    /// posture has no limits.
+    pub sector_w: Vec<Point3<f64>>,
+    /// The parts of the tool in the hand.
+    pub tool: Vec<ToolPart>,
     /// The body points of the peripersonal metric, in W, m.
     pub points_w: Vec<Point3<f64>>,
 }

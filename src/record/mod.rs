@@ -6,7 +6,8 @@
 //!
 //! | entity | content |
 //! |---|---|
-//! | `scene/...` | robot, board, operation, person, tool, pads and forces, in W |
+//! | `scene/...` | robot, board, operation, tool, pads and forces, in W |
+//! | `scene/person/...` | body, eyes, line of sight, the sector in front of the person, in W |
 //! | `plots/...` | slip, rotation, deflection, torque ratios, each with its limit; load factor |
 //! | `phases`, `events` | phases of the simulation; limits crossed and other events |
 //! | `summary` | verdict and plan as Markdown |
@@ -26,6 +27,7 @@ mod frames;
 mod input;
 mod messages;
 mod palette;
+mod person;
 mod plots;
 mod read;
 mod rrd;

@@ -2,6 +2,8 @@
 
 use rerun::Color;
 
+use crate::model::tool_part::ToolMaterial;
+
 /// Background of the scene.
 pub(super) fn background() -> Color {
     Color::from_rgb(28, 30, 34)
@@ -25,6 +27,25 @@ pub(super) fn load() -> Color {
 /// The person: translucent, so that the board stays visible.
 pub(super) fn person() -> Color {
     Color::from_unmultiplied_rgba(0, 158, 115, 110)
+}
+
+/// The person's eyes.
+pub(super) fn eyes() -> Color {
+    Color::from_rgb(12, 12, 14)
+}
+
+/// Where the person looks and works: the line of sight and the sector in front of them.
+pub(super) fn sight() -> Color {
+    Color::from_rgb(150, 240, 210)
+}
+
+/// Shades of [`load`] that tell the parts of the tool apart.
+pub(super) fn tool(material: ToolMaterial) -> Color {
+    match material {
+        ToolMaterial::Steel => Color::from_rgb(240, 222, 234),
+        ToolMaterial::Housing => load(),
+        ToolMaterial::Grip => Color::from_rgb(122, 68, 100),
+    }
 }
 
 /// The robot except its hands.

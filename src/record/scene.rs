@@ -1,9 +1,9 @@
 //! The 3-D scene: robot, board, operation, person, tool, pads and forces.
 
-use nalgebra::{Point3, UnitQuaternion, Vector3};
+use nalgebra::{Point3, Vector3};
 use rerun::{
-    Arrows3D, Boxes3D, Capsules3D, Cylinders3D, Ellipsoids3D, EntityPath, FillMode, LineStrips3D, Points3D,
-    Transform3D, ViewCoordinates,
+    Arrows3D, Boxes3D, Cylinders3D, Ellipsoids3D, EntityPath, FillMode, LineStrips3D, Points3D, Transform3D,
+    ViewCoordinates,
 };
 
 use super::{
@@ -11,9 +11,9 @@ use super::{
     entity::entity,
     error::RecordError,
     frames::{Frames, arm_indices, frames, quaternion, vec3},
-    input::{Capsule, RecordingInput},
+    input::RecordingInput,
     messages::Messages,
-    palette,
+    palette, person,
 };
 use crate::{
     model::{
@@ -30,9 +30,6 @@ pub(super) const ARROW_M_PER_N: f64 = 0.004;
 /// Thickness of the plates that show pads, m; chosen for visibility.
 const PAD_PLATE_M: f64 = 0.004;
 
-/// Radius of the tool's parts, m; chosen for visibility.
-const TOOL_RADIUS_M: f64 = 0.008;
-
 /// The folder of the points of the peripersonal metric, which the layout hides.
 pub(super) const POINTS: &str = "points";
 
@@ -47,7 +44,9 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     let frames = frames(input, &arms);
     log_robot(messages, input.robot, &frames)?;
     log_board(messages, input, &frames)?;
-    log_person(messages, input)?;
+    if let Some(person) = input.person {
+        person::log(messages, person)?;
+    }
     log_points(messages, input, &frames)?;
     crossings::log_mark(messages, input, &arms)?;
     for (arm, &robot_arm) in arms.iter().enumerate() {
@@ -171,36 +170,6 @@ fn log_points(messages: &mut Messages, input: &RecordingInput, frames: &Frames) 
 pub(super) fn operation_label(operation: &Operation) -> String {
     let kind = format!("{:?}", operation.kind).to_lowercase();
     format!("{kind}, {:.0} N", operation.wrench_o.force_n.norm())
-}
-
-/// Logs the person, and the tool as two rods: from the tip along z_T to the height of the palm, and from there to the palm.
-fn log_person(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
-    let Some(person) = input.person else { return Ok(()) };
-    let body = capsules(&person.capsules).with_colors([palette::person()]);
-    messages.log_static(&entity(&["scene", "person"]), &body)?;
-    let x_wt = input.plan.object.x_wo * input.plan.operation.x_ot;
-    let tip = Point3::from(x_wt.translation.vector);
-    let axis = x_wt.rotation * Vector3::z();
-    let corner = tip + axis * axis.dot(&(person.palm_w - tip));
-    let rod = |ends_w| Capsule { ends_w, radius_m: TOOL_RADIUS_M };
-    let tool = capsules(&[rod([tip, corner]), rod([corner, person.palm_w])]).with_colors([palette::load()]);
-    messages.log_static(&entity(&["scene", "tool"]), &tool)
-}
-
-fn capsules(capsules: &[Capsule]) -> Capsules3D {
-    let along = |capsule: &Capsule| capsule.ends_w[1] - capsule.ends_w[0];
-    // For -z the axis of rotation is any that is orthogonal to z.
-    let from_z = |direction: Vector3<f64>| {
-        UnitQuaternion::rotation_between(&Vector3::z(), &direction)
-            .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
-    };
-    Capsules3D::from_lengths_and_radii(
-        capsules.iter().map(|capsule| along(capsule).norm() as f32),
-        capsules.iter().map(|capsule| capsule.radius_m as f32),
-    )
-    .with_translations(capsules.iter().map(|capsule| vec3(&capsule.ends_w[0].coords)))
-    .with_quaternions(capsules.iter().map(|capsule| quaternion(&from_z(along(capsule)))))
-    .with_fill_mode(FillMode::Solid)
 }
 
 /// Logs the pads of a hand as plates, and their forces on the board.

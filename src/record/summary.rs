@@ -69,6 +69,10 @@ fn colours(text: &mut String, plan: &Plan) {
     push(text, format_args!("- yellow: board"));
     push(text, format_args!("- violet: tool and load"));
     push(text, format_args!("- green: person"));
+    push(
+        text,
+        format_args!("- light green: line of sight from the eyes to the tool tip; the sector in front of the person"),
+    );
     push(text, format_args!("- red: limits, and bodies that crossed one"));
     push(text, format_args!("- white: points of person and robot of the peripersonal metric; hidden at first"));
     push(

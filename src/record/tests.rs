@@ -19,6 +19,7 @@ use crate::{
         operation::Operation,
         plan::{ArmHold, PlacedObject, Plan},
         scenario::Scenario,
+        tool_part::{ToolMaterial, ToolPart},
         trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
         verdict::{Check, CheckKind, Failure, Verdict, VerdictKind},
         wrench::Wrench,
@@ -71,6 +72,7 @@ fn example() -> Example {
         event(0.276, turned, "left hand", "left hand turns past 2 deg at load factor 0.88"),
     ];
     let capsule = |a: [f64; 3], b: [f64; 3], radius_m| Capsule { ends_w: [a.into(), b.into()], radius_m };
+    let tip_w = plan.object.x_wo * Point3::from(plan.operation.x_ot.translation.vector);
     let person = PersonShape {
         capsules: vec![
             capsule([1.25, 0.0, 0.0], [1.25, 0.0, 0.4], 0.14),
@@ -81,11 +83,32 @@ fn example() -> Example {
             capsule([1.25, 0.1, 0.0], [1.25, 0.1, -0.85], 0.07),
             capsule([1.25, -0.1, 0.0], [1.25, -0.1, -0.85], 0.07),
         ],
-        palm_w: Point3::new(0.78, 0.15, 0.27),
+        eyes_w: [[1.15, 0.032, 0.7].into(), [1.15, -0.032, 0.7].into()],
+        line_of_sight_w: [[1.16, 0.0, 0.7].into(), tip_w],
+        sector_w: sector_w(),
+        tool: vec![bit(tip_w)],
         points_w: vec![Point3::new(1.2, 0.0, 0.3)],
     };
     let scenario = crate::scenario::default_for_plan(&plan, &robot);
     Example { robot, scenario, plan, trace, measures, events, verdict, person }
+}
+
+/// The outline of a sector from -30 to 30 degrees about -x_W.
+fn sector_w() -> Vec<Point3<f64>> {
+    let person_w = Point3::new(1.25, 0.0, -0.9);
+    let at_w = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        person_w - 0.9 * Vector3::new(cos, sin, 0.0)
+    };
+    vec![person_w, at_w(-30.0), at_w(0.0), at_w(30.0), person_w]
+}
+
+/// A bit along x_W, square and 0.1 m long, that ends with an edge of its last section at the tip.
+fn bit(tip_w: Point3<f64>) -> ToolPart {
+    let section = |x_m: f64| {
+        [[0.0, 0.0], [0.008, 0.0], [0.008, 0.008], [0.0, 0.008]].map(|[y, z]| tip_w + Vector3::new(x_m, y, z)).to_vec()
+    };
+    ToolPart { material: ToolMaterial::Steel, ends_w: [section(0.1), section(0.0)] }
 }
 
 fn plan(robot: &Robot) -> Plan {
@@ -374,6 +397,81 @@ fn times_ns(bytes: &[u8], path: &[&str], component: &str) -> Vec<i64> {
         .filter_map(|chunk| chunk.timelines().get(&TIMELINE.into()))
         .flat_map(|column| column.times_raw().to_vec())
         .collect()
+}
+
+/// The vectors of a component of an entity, in the order of logging.
+fn vectors(bytes: &[u8], path: &[&str], component: &'static str) -> Vec<[f32; 3]> {
+    let chunks = decode::chunks(bytes).unwrap();
+    let of_entity = chunks.iter().filter(|chunk| *chunk.entity_path() == entity(path));
+    of_entity
+        .flat_map(|chunk| chunk.iter_slices::<[f32; 3]>(component.into()).flatten().copied().collect::<Vec<_>>())
+        .collect()
+}
+
+/// The points of the line strips of an entity.
+fn line_points(bytes: &[u8], path: &[&str]) -> Vec<[f32; 3]> {
+    let chunks = decode::chunks(bytes).unwrap();
+    let of_entity = chunks.iter().filter(|chunk| *chunk.entity_path() == entity(path));
+    let strips = of_entity.flat_map(|chunk| {
+        chunk
+            .iter_component::<rerun::components::LineStrip3D>("LineStrips3D:strips".into())
+            .flat_map(|row| row.as_slice().to_vec())
+            .collect::<Vec<_>>()
+    });
+    strips.flat_map(|strip| strip.0).map(|point| point.0).collect()
+}
+
+fn single(point: &Point3<f64>) -> [f32; 3] {
+    point.coords.map(|v| v as f32).into()
+}
+
+#[test]
+fn the_scene_shows_where_the_person_looks_and_works() {
+    let example = example();
+    let bytes = encode(&example.input()).unwrap();
+    let person = &example.person;
+    assert_eq!(
+        vectors(&bytes, &["scene", "person", "eyes"], "Ellipsoids3D:centers"),
+        person.eyes_w.each_ref().map(single)
+    );
+    let tip_w = example.plan.object.x_wo * Point3::from(example.plan.operation.x_ot.translation.vector);
+    let sight = line_points(&bytes, &["scene", "person", "line_of_sight"]);
+    assert_eq!(sight, [single(&person.line_of_sight_w[0]), single(&tip_w)]);
+    let sector = line_points(&bytes, &["scene", "person", "sector"]);
+    assert_eq!(sector, person.sector_w.iter().map(single).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_person_without_limits_has_no_sector() {
+    let mut example = example();
+    example.person.sector_w.clear();
+    let bytes = encode(&example.input()).unwrap();
+    assert!(line_points(&bytes, &["scene", "person", "sector"]).is_empty());
+    assert_eq!(line_points(&bytes, &["scene", "person", "line_of_sight"]).len(), 2);
+}
+
+#[test]
+fn the_tool_is_a_closed_surface_that_ends_at_its_tip() {
+    let example = example();
+    let bytes = encode(&example.input()).unwrap();
+    let corners = vectors(&bytes, &["scene", "tool"], "Mesh3D:vertex_positions");
+    let normals = vectors(&bytes, &["scene", "tool"], "Mesh3D:vertex_normals");
+    // Two triangles for each of the six faces.
+    assert_eq!((corners.len(), normals.len()), (36, 36));
+    let tip_w = example.person.line_of_sight_w[1];
+    assert!(corners.contains(&single(&tip_w)));
+    assert!(corners.iter().all(|corner| f64::from(corner[0]) > tip_w.x - 1e-6));
+    // By the divergence theorem the volume is a third of the sum of `p . n dA` over triangles with outward normals.
+    let vector = |v: &[f32; 3]| Vector3::from(v.map(f64::from));
+    let part_m3 = |(corners, normals): (&[[f32; 3]], &[[f32; 3]])| {
+        let [a, b, c] = [0, 1, 2].map(|corner| vector(&corners[corner]) - tip_w.coords);
+        let area = (b - a).cross(&(c - a)) / 2.0;
+        // The normal is unit and along the area: single precision.
+        assert!((area.normalize() - vector(&normals[0])).norm() < 1e-3);
+        a.dot(&area) / 3.0
+    };
+    let volume_m3: f64 = corners.chunks(3).zip(normals.chunks(3)).map(part_m3).sum();
+    assert!((volume_m3 - 0.1 * 0.008 * 0.008).abs() < 1e-9, "{volume_m3}");
 }
 
 #[test]

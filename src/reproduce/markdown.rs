@@ -277,7 +277,9 @@ pub fn picture_title(hold: &HoldRow) -> String {
 
 fn pictures(text: &mut String, reproduction: &Reproduction) {
     text.push_str(
-        "\n## Configurations\n\nThe plan of each planner for one operation of each kind. The red arrow is the tool's force on the board.\n",
+        "\n## Configurations\n\nThe plan of each planner for one operation of each kind. The red arrow is the tool's force on the board, the\n\
+         dashed line the line of sight. For a natural posture the view from above shows the sector in front of the person that the\n\
+         tool tip must be over.\n",
     );
     for operation in KINDS.into_iter().filter_map(|kind| reproduction.drawn(kind)) {
         for planner in PlannerKind::ALL {

@@ -1,4 +1,5 @@
-//! A plan as SVG: robot, board and person as convex primitives, seen from the right and from above.
+//! A plan as SVG: robot, board, person and tool as convex primitives, seen from the right and from above. The line of sight
+//! is dashed; the view from above also shows the sector in front of the person that the tool tip must be over.
 //!
 //! Both views are parallel projections. Primitives are drawn in the order of their centres, farthest first (painter's
 //! algorithm); overlapping primitives of a link may be drawn in the wrong order.
@@ -10,7 +11,11 @@ use nalgebra::{Point3, Vector3};
 use super::hull::{Point2, convex_hull};
 use crate::{
     human::{BodyPart, Capsule, Human, HumanError, default_tool},
-    model::{plan::Plan, scenario::Person},
+    model::{
+        plan::{HumanPosture, Plan},
+        scenario::Person,
+        tool_part::ToolMaterial,
+    },
     robot::{Robot, Shape},
 };
 
@@ -32,9 +37,16 @@ const BOARD: &str = "fill=\"#e3c58f\" fill-opacity=\"0.85\" stroke=\"#8a6a2f\"";
 /// Colour of the force.
 const FORCE: &str = "#c8102e";
 
-/// Colours of outline and fill, of the person and of the tool.
+/// Radius of the marks of the eyes, m; chosen for visibility.
+const EYE_RADIUS_M: f64 = 0.014;
+
+/// Colours of outline and fill, of the person and of their eyes.
 const PERSON_STROKE: [&str; 2] = ["#2f5f8a", "#7fb2dc"];
-const TOOL_STROKE: [&str; 2] = ["#333333", "#777777"];
+const EYE_STROKE: [&str; 2] = ["#ffffff", "#111111"];
+
+/// SVG attributes of the line of sight and of the sector in front of the person.
+const SIGHT: &str = "fill=\"none\" stroke=\"#17456e\" stroke-width=\"1.3\" stroke-dasharray=\"5 3\"";
+const SECTOR: &str = "fill=\"#7fb2dc\" fill-opacity=\"0.18\" stroke=\"#2f5f8a\" stroke-width=\"0.8\"";
 
 /// A direction of view.
 struct View {
@@ -56,6 +68,16 @@ enum Item {
     Capsule([Point3<f64>; 2], f64, [&'static str; 2]),
 }
 
+/// What a picture shows.
+#[derive(Default)]
+struct Scene {
+    items: Vec<Item>,
+    /// Outline of the sector in front of the person, in W; empty for a posture without limits.
+    sector_w: Vec<Point3<f64>>,
+    /// The point between the eyes and the tool tip, in W; empty without a person.
+    sight_w: Vec<Point3<f64>>,
+}
+
 impl Item {
     fn centre(&self) -> Vector3<f64> {
         let points: &[Point3<f64>] = match self {
@@ -71,9 +93,9 @@ impl Item {
 /// # Errors
 /// If the plan's person or tool is invalid.
 pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError> {
-    let items = scene(plan, robot)?;
+    let scene = scene(plan, robot)?;
     let views = views();
-    let bounds = views.each_ref().map(|view| bounds(view, &items));
+    let bounds = views.each_ref().map(|view| bounds(view, &scene));
     let width_px = |b: &[Point2; 2]| (b[1][0] - b[0][0]) * PX_PER_M + 2.0 * MARGIN_PX;
     let height_px = |b: &[Point2; 2]| (b[1][1] - b[0][1]) * PX_PER_M + 2.0 * MARGIN_PX;
     let (width, height) = (bounds.iter().map(width_px).sum::<f64>(), bounds.iter().map(height_px).fold(0.0, f64::max));
@@ -83,7 +105,7 @@ pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError
         // The views are aligned at the lower edge of the picture.
         let origin =
             [left_px + MARGIN_PX - bounds[0][0] * PX_PER_M, TITLE_PX + height - MARGIN_PX + bounds[0][1] * PX_PER_M];
-        draw(&mut body, view, origin, &items, plan);
+        draw(&mut body, view, origin, &scene, plan);
         let _ = writeln!(body, "<text x=\"{:.0}\" y=\"46\" fill=\"#666666\">{}</text>", left_px + MARGIN_PX, view.name);
         left_px += width_px(bounds);
     }
@@ -96,28 +118,52 @@ pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError
     ))
 }
 
-/// All primitives.
-fn scene(plan: &Plan, robot: &Robot) -> Result<Vec<Item>, HumanError> {
-    let mut items = Vec::new();
+/// All that is drawn but the force.
+fn scene(plan: &Plan, robot: &Robot) -> Result<Scene, HumanError> {
+    let mut scene = Scene::default();
     let x_wl = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     for (link, x_wl) in robot.links.iter().zip(&x_wl) {
         for placed in &link.shapes {
             let points_w = corners(placed.shape).into_iter().map(|p| x_wl * placed.x_ls * p).collect();
-            items.push(Item::Hull(points_w, robot_paint(placed.rgba)));
+            scene.items.push(Item::Hull(points_w, robot_paint(placed.rgba)));
         }
     }
     let half_m = plan.object.size_m.map(|side| side / 2.0);
     let board_w = corners(Shape::Box { half_m }).into_iter().map(|p| plan.object.x_wo * p).collect();
-    items.push(Item::Hull(board_w, BOARD.to_owned()));
+    scene.items.push(Item::Hull(board_w, BOARD.to_owned()));
     if let Some(posture) = &plan.human {
-        let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.operation.kind), |scenario| scenario.tool);
-        let human = Human::new(&posture.person(&Person::default()), &tool)?;
-        for Capsule { name, p0_w, p1_w, radius_m } in human.capsules_w(&posture.x_wb, &posture.q_rad) {
-            let stroke = if name == BodyPart::Tool { TOOL_STROKE } else { PERSON_STROKE };
-            items.push(Item::Capsule([p0_w, p1_w], radius_m, stroke));
+        add_person(&mut scene, plan, posture)?;
+    }
+    Ok(scene)
+}
+
+/// Adds the person of a plan and the tool in the hand.
+fn add_person(scene: &mut Scene, plan: &Plan, posture: &HumanPosture) -> Result<(), HumanError> {
+    let kind = plan.operation.kind;
+    let rules = plan.scenario.as_ref().map_or_else(Person::default, |scenario| scenario.human);
+    let tool = plan.scenario.as_ref().map_or_else(|| default_tool(kind), |scenario| scenario.tool);
+    let human = Human::new(&posture.person(&rules), &tool)?;
+    let (x_wb, q_rad) = (&posture.x_wb, &posture.q_rad);
+    for Capsule { name, p0_w, p1_w, radius_m } in human.capsules_w(x_wb, q_rad) {
+        if name != BodyPart::Tool {
+            scene.items.push(Item::Capsule([p0_w, p1_w], radius_m, PERSON_STROKE));
         }
     }
-    Ok(items)
+    scene.items.extend(human.eyes_w(x_wb).map(|eye_w| Item::Capsule([eye_w; 2], EYE_RADIUS_M, EYE_STROKE)));
+    let parts = human.tool_parts_w(x_wb, q_rad, kind).into_iter();
+    scene.items.extend(parts.map(|part| Item::Hull(part.ends_w.concat(), tool_paint(part.material))));
+    scene.sector_w = human.sector_w(x_wb);
+    scene.sight_w = human.line_of_sight_w(x_wb, q_rad).to_vec();
+    Ok(())
+}
+
+fn tool_paint(material: ToolMaterial) -> String {
+    let fill = match material {
+        ToolMaterial::Steel => "#cfd4da",
+        ToolMaterial::Housing => "#e07b39",
+        ToolMaterial::Grip => "#4a4a4a",
+    };
+    format!("fill=\"{fill}\" stroke=\"#222222\"")
 }
 
 /// The robot's colours, lightened so that outlines are visible.
@@ -159,20 +205,24 @@ fn corners(shape: Shape) -> Vec<Point3<f64>> {
 }
 
 impl View {
+    fn is_from_above(&self) -> bool {
+        self.axes_w[2] == Vector3::z()
+    }
+
     /// The projection of a point, m: to the right and upward.
     fn project(&self, p_w: &Point3<f64>) -> Point2 {
         [self.axes_w[0].dot(&p_w.coords), self.axes_w[1].dot(&p_w.coords)]
     }
 }
 
-/// Lower left and upper right corner of the projection of all primitives, m.
-fn bounds(view: &View, items: &[Item]) -> [Point2; 2] {
+/// Lower left and upper right corner of the projection of all that is drawn in a view, m.
+fn bounds(view: &View, scene: &Scene) -> [Point2; 2] {
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for item in items {
-        let (points, reach_m) = match item {
-            Item::Hull(points, _) => (points.as_slice(), 0.0),
-            Item::Capsule(ends, radius_m, _) => (ends.as_slice(), *radius_m),
-        };
+    let extents = scene.items.iter().map(|item| match item {
+        Item::Hull(points, _) => (points.as_slice(), 0.0),
+        Item::Capsule(ends, radius_m, _) => (ends.as_slice(), *radius_m),
+    });
+    for (points, reach_m) in extents.chain(view.is_from_above().then_some((scene.sector_w.as_slice(), 0.0))) {
         for point in points.iter().map(|point| view.project(point)) {
             for axis in 0..2 {
                 bounds[0][axis] = bounds[0][axis].min(point[axis] - reach_m);
@@ -184,19 +234,25 @@ fn bounds(view: &View, items: &[Item]) -> [Point2; 2] {
 }
 
 /// Draws one view; `origin` is the position of W's origin, px.
-fn draw(body: &mut String, view: &View, origin: Point2, items: &[Item], plan: &Plan) {
+fn draw(body: &mut String, view: &View, origin: Point2, scene: &Scene, plan: &Plan) {
     let px = |p_w: &Point3<f64>| {
         let [right, up] = view.project(p_w);
         [origin[0] + right * PX_PER_M, origin[1] - up * PX_PER_M]
     };
-    let mut order: Vec<(f64, &Item)> = items.iter().map(|item| (view.axes_w[2].dot(&item.centre()), item)).collect();
+    let corners =
+        |points: &[Point2]| points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ");
+    let polyline = |points_w: &[Point3<f64>]| corners(&points_w.iter().map(px).collect::<Vec<_>>());
+    if view.is_from_above() && !scene.sector_w.is_empty() {
+        let _ = writeln!(body, "<polygon points=\"{}\" {SECTOR}/>", polyline(&scene.sector_w));
+    }
+    let mut order: Vec<(f64, &Item)> =
+        scene.items.iter().map(|item| (view.axes_w[2].dot(&item.centre()), item)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, item) in order {
         match item {
             Item::Hull(points, paint) => {
-                let corners = convex_hull(points.iter().map(px).collect());
-                let corners: Vec<_> = corners.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
-                let _ = writeln!(body, "<polygon points=\"{}\" {paint} stroke-width=\"0.7\"/>", corners.join(" "));
+                let outline = corners(&convex_hull(points.iter().map(px).collect()));
+                let _ = writeln!(body, "<polygon points=\"{outline}\" {paint} stroke-width=\"0.7\"/>");
             }
             Item::Capsule(ends, radius_m, strokes) => {
                 let ([x1, y1], [x2, y2]) = (px(&ends[0]), px(&ends[1]));
@@ -211,14 +267,17 @@ fn draw(body: &mut String, view: &View, origin: Point2, items: &[Item], plan: &P
             }
         }
     }
+    if !scene.sight_w.is_empty() {
+        let _ = writeln!(body, "<polyline points=\"{}\" {SIGHT}/>", polyline(&scene.sight_w));
+    }
     arrow(body, plan, px);
 }
 
-/// Draws the tool's force as an arrow that ends at the tip, on top of everything.
+/// Draws the tool's force as an arrow that starts at the tip, so that it does not hide the tool, on top of everything.
 fn arrow(body: &mut String, plan: &Plan, px: impl Fn(&Point3<f64>) -> Point2) {
     let tip_w = plan.object.x_wo * Point3::from(plan.operation.x_ot.translation.vector);
     let force_m = plan.object.x_wo.rotation * plan.operation.wrench_o.force_n * ARROW_M_PER_N;
-    let ([x1, y1], [x2, y2]) = (px(&(tip_w - force_m)), px(&tip_w));
+    let ([x1, y1], [x2, y2]) = (px(&tip_w), px(&(tip_w + force_m)));
     let _ = writeln!(body, "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" stroke=\"{FORCE}\" stroke-width=\"2.5\"/>");
     let length_px = libm::hypot(x2 - x1, y2 - y1);
     // Along the direction of view the arrow is a dot.
@@ -228,5 +287,41 @@ fn arrow(body: &mut String, plan: &Plan, px: impl Fn(&Point3<f64>) -> Point2) {
         let _ = writeln!(body, "<polygon points=\"{x2:.1},{y2:.1} {} {}\" fill=\"{FORCE}\"/>", wing(1.0), wing(-1.0));
     } else {
         let _ = writeln!(body, "<circle cx=\"{x2:.1}\" cy=\"{y2:.1}\" r=\"4\" fill=\"{FORCE}\"/>");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::{model::scenario::PostureLimits, scenario};
+
+    /// The picture of a committed plan under limits of the posture.
+    fn picture(posture: PostureLimits) -> String {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/long-lever.json");
+        let loaded = scenario::load_plan(&path, None).unwrap();
+        let mut plan = loaded.plan;
+        let mut rules = loaded.scenario;
+        rules.human.posture = posture;
+        plan.scenario = Some(rules);
+        svg(&plan, &loaded.robot, "long-lever").unwrap()
+    }
+
+    #[test]
+    fn both_views_show_the_line_of_sight_and_the_view_from_above_the_sector() {
+        let natural = picture(PostureLimits::NATURAL);
+        assert_eq!((natural.matches(SIGHT).count(), natural.matches(SECTOR).count()), (2, 1));
+        let unrestricted = picture(PostureLimits::UNRESTRICTED);
+        assert_eq!((unrestricted.matches(SIGHT).count(), unrestricted.matches(SECTOR).count()), (2, 0));
+    }
+
+    #[test]
+    fn a_drill_has_parts_of_three_materials_and_the_person_two_eyes() {
+        let picture = picture(PostureLimits::NATURAL);
+        let count = |material| picture.matches(&tool_paint(material)).count();
+        // Two views of bit and chuck, of the body, of grip and battery.
+        assert_eq!([ToolMaterial::Steel, ToolMaterial::Housing, ToolMaterial::Grip].map(count), [4, 2, 4]);
+        assert_eq!(picture.matches(EYE_STROKE[1]).count(), 4);
     }
 }
