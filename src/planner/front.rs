@@ -98,7 +98,11 @@ pub fn front(
     }
     Ok(match points.first().cloned() {
         Some(own) => Outcome::Found(Front { optima, points: non_dominated(points), own }),
-        None => Outcome::Infeasible(sweep.infeasible.unwrap_or(Infeasible { candidates: 0, removed: Vec::new() })),
+        None => Outcome::Infeasible(sweep.infeasible.unwrap_or(Infeasible {
+            candidates: 0,
+            removed: Vec::new(),
+            unnatural: None,
+        })),
     })
 }
 

@@ -13,6 +13,7 @@ mod candidate;
 mod configurations;
 mod domain;
 mod evaluate;
+mod explain;
 mod front;
 mod library;
 mod natural_boards;
@@ -35,7 +36,7 @@ mod verify;
 mod warm_starts;
 
 pub use front::{Front, FrontPoint};
-pub use outcome::{Infeasible, Outcome, PlanError};
+pub use outcome::{Infeasible, Outcome, PlanError, UnnaturalHolds};
 pub use planner::{Planner, Search};
 pub use select::differ;
 pub use stats::{Observer, Progress};

@@ -11,7 +11,8 @@ use super::super::{
     assemble::{assemble_placed, is_sound},
     candidate::{Candidate, Placement, WorkPose},
     evaluate::{self, Evaluator},
-    library::{BoardGrasp, GraspLibrary, Posture, PostureMap},
+    library::{BoardGrasp, GraspLibrary, LibraryEntry, Posture, PostureMap},
+    natural_boards::natural_entries,
     outcome::PlanError,
     params::{SearchBudget, path::RESPONSE_STARTS},
     problem::{self, Problem},
@@ -63,6 +64,13 @@ impl<'a> PathProblem<'a> {
         // Force and person are the same at all points, seen from the tool.
         let postures = problem::posture_map(problem.scenario, &problem.human);
         Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, last_evaluation: 0, observer }))
+    }
+
+    /// Grasps of the boards that natural postures ask for.
+    pub fn natural_entries(&self) -> Vec<LibraryEntry> {
+        let Some(Evaluator { problem, .. }) = self.evaluators.first() else { return Vec::new() };
+        let count = self.budget.natural_boards;
+        natural_entries(problem.scenario, &problem.human, problem.robot, &self.postures, count)
     }
 
     /// Begins a search: the scenario's limit of evaluations applies to each one.
