@@ -36,6 +36,8 @@ pub enum Outcome {
         verdict: Box<Verdict>,
         /// The compliant load factor that the plan predicts; `None` for a plan without a prediction.
         predicted_load_factor: Option<f64>,
+        /// The scores of the person's posture in words; `None` for a plan without them.
+        scores: Option<String>,
         /// The judge's time series; `None` if nothing was simulated.
         measures: Option<Box<Measures>>,
         /// The recording's file, if one was written.
