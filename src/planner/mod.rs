@@ -27,6 +27,7 @@ mod problem;
 pub mod qp;
 mod random;
 mod refine;
+mod scores;
 mod screen;
 mod search;
 mod select;

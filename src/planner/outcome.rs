@@ -127,6 +127,12 @@ pub enum Rejection {
     Collision,
     /// The grasp does not resist the load.
     Stability,
+    /// The RULA score of the finished plan's posture exceeds its limit.
+    Rula,
+    /// The RULA score of arm and wrist of the finished plan's posture exceeds its limit.
+    RulaArm,
+    /// The REBA score of the finished plan's posture exceeds its limit.
+    Reba,
     /// The check of the finished plan found a flaw.
     Verification,
     /// The candidate was not evaluated: the limit of evaluations was reached, or the search was stopped.
@@ -145,6 +151,9 @@ impl Rejection {
             Self::RobotReach => "robot reach",
             Self::Collision => "collision or too close",
             Self::Stability => "stability",
+            Self::Rula => "RULA score",
+            Self::RulaArm => "RULA score of arm and wrist",
+            Self::Reba => "REBA score",
             Self::Verification => "the check of the finished plan",
             Self::NotEvaluated => "not evaluated",
         }

@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
 
 use super::super::{
-    assemble::{assemble_placed, is_sound},
+    assemble::{accepted, assemble_placed},
     candidate::{Candidate, Placement, WorkPose},
     evaluate::{self, Evaluator},
     library::{BoardGrasp, GraspLibrary, LibraryEntry, Posture, PostureMap},
@@ -166,7 +166,7 @@ impl<'a> PathProblem<'a> {
         evaluate::response_query(problem, problem.scenario.operation, link_poses, grasp.x_wo, robot_points_w)
     }
 
-    /// The plan of a grasp with a response at a point, if its check finds no flaw.
+    /// The plan of a grasp with a response at a point, if it is accepted.
     pub fn plan(&mut self, grasp: &BoardGrasp, point: usize, response: &Response) -> Option<Plan> {
         let evaluations = self.evaluations;
         let robot = &self.library.robot;
@@ -180,7 +180,7 @@ impl<'a> PathProblem<'a> {
         candidate.work = WorkPose { q_h_rad: response.q_rad, heading_rad, ..candidate.work };
         let placement = Placement { x_wo: grasp.x_wo, x_wb: response.x_wb };
         let plan = assemble_placed(evaluator, &candidate, &placement, &comfort, evaluations)?;
-        is_sound(evaluator, &plan).then_some(plan)
+        accepted(evaluator, plan)
     }
 
     /// Seed of the search.
