@@ -74,7 +74,8 @@ impl std::fmt::Display for UnnaturalHolds {
         }
         limits.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
         write!(f, "of {} holds that a person without limits of posture and place could work on", self.candidates)?;
-        for (key, count) in limits {
+        // One that next to none breaks is not in the way.
+        for (key, count) in limits.into_iter().filter(|(_, count)| 100 * count >= self.candidates) {
             let share = 100.0 * count as f64 / self.candidates as f64;
             write!(f, ", {share:.0} % break {key}")?;
         }
@@ -113,6 +114,8 @@ pub enum PlanError {
 pub enum Rejection {
     /// The board is outside the search domain, or its worked face points away from the person's side.
     BoardPlace,
+    /// No posture of the person that was drawn is natural.
+    NaturalPosture,
     /// The person would stand elsewhere than the scenario says.
     PersonPlace,
     /// The person would not stand naturally or not see the work.
@@ -144,6 +147,7 @@ impl Rejection {
     pub fn name(self) -> &'static str {
         match self {
             Self::BoardPlace => "board outside the search domain",
+            Self::NaturalPosture => "natural posture",
             Self::PersonPlace => "person's place",
             Self::Posture(constraint) => constraint.key(),
             Self::Strength => "person's strength",
