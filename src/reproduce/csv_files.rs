@@ -5,7 +5,11 @@ use super::{
     table,
 };
 use crate::{
-    model::{scenario::PlannerKind, verdict::CheckKind},
+    model::{
+        plan::{Comfort, PostureConstraint},
+        scenario::PlannerKind,
+        verdict::CheckKind,
+    },
     report::csv_text::csv_text,
 };
 
@@ -61,6 +65,29 @@ pub fn plans(reproduction: &Reproduction) -> String {
         &["operation", "planner", "muscular", "peripersonal_m", "objective", "load_factor", "compliant_load_factor"],
         rows,
     )
+}
+
+/// `postures.csv`: how the person stands and sees the work in the plans with the first seed, with the scores.
+#[must_use]
+pub fn postures(reproduction: &Reproduction) -> String {
+    let keys = PostureConstraint::ALL.map(PostureConstraint::key);
+    let rows = reproduction.first_seeds().map(|hold| {
+        let figures = hold.posture().map(|figures| figures.iter().map(|(_, figure)| Some(figure.value)).collect());
+        let figures: Vec<_> = figures.unwrap_or_else(|| vec![None; keys.len()]);
+        let score = |of: fn(&Comfort) -> Option<u8>| {
+            hold.comfort().and_then(of).map(|score| score.to_string()).unwrap_or_default()
+        };
+        let mut row = vec![hold.operation.clone(), hold.planner.to_string()];
+        row.extend(figures.into_iter().map(cell));
+        row.extend([
+            score(|comfort| Some(comfort.rula?.score)),
+            score(|comfort| Some(comfort.rula?.arm_and_wrist)),
+            score(|comfort| Some(comfort.reba?.score)),
+        ]);
+        row
+    });
+    let head = ["operation", "planner"].into_iter().chain(keys).chain(["rula", "rula_arm", "reba"]);
+    csv_text(&head.collect::<Vec<_>>(), rows)
 }
 
 /// `physics.csv` and `best_case.csv`: the simulated plans. `load_factor_simulated` is the largest load factor that holds;

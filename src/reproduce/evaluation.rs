@@ -6,7 +6,7 @@ use crate::{
     human::BODY_POINTS,
     model::{
         operation::OperationKind,
-        plan::{Comfort, Plan},
+        plan::{Comfort, Plan, PostureFigures},
         scenario::PlannerKind,
         verdict::{CheckKind, Verdict, VerdictKind},
     },
@@ -48,6 +48,12 @@ impl HoldRow {
     #[must_use]
     pub fn comfort(&self) -> Option<&Comfort> {
         self.plan.as_ref()?.comfort.as_ref()
+    }
+
+    /// How the person stands and sees the work.
+    #[must_use]
+    pub fn posture(&self) -> Option<PostureFigures> {
+        self.plan.as_ref()?.human?.posture
     }
 
     /// The regularised muscular comfort by which plans are compared: the mean over the person's responses if the plan has one,

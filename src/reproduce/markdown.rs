@@ -11,8 +11,8 @@ use super::{
 use crate::{
     model::{
         operation::OperationKind,
-        plan::Comfort,
-        scenario::PlannerKind,
+        plan::{Comfort, PostureFigures},
+        scenario::{MuscularMetric, PlannerKind},
         verdict::{CheckKind, VerdictKind},
     },
     report::explanation,
@@ -34,7 +34,7 @@ pub fn report(reproduction: &Reproduction) -> String {
     }
     table_one(&mut text, reproduction);
     claims_section(&mut text, reproduction);
-    raw(&mut text, reproduction);
+    raw(&mut text, reproduction, MuscularMetric::Paper);
     seeds(&mut text, reproduction);
     physics(&mut text, reproduction);
     best_case(&mut text, reproduction);
@@ -45,6 +45,62 @@ pub fn report(reproduction: &Reproduction) -> String {
     );
     sensitivity(&mut text, reproduction);
     text
+}
+
+/// The report of the evaluation for a person who stands naturally.
+#[must_use]
+pub fn natural_report(reproduction: &Reproduction) -> String {
+    let mut text = String::from("# The paper's operations for a person who stands as people stand\n\n");
+    text.push_str(
+        "Written by `benchdog reproduce --natural`; do not edit. The operations, the planners and the robot are those of the\n\
+         [reproduction](../report.md). The person keeps the limits of a natural posture, muscular comfort is the intrinsic\n\
+         metric, and the knife is drawn towards the person: the defaults of a scenario. `docs/reproduction.md` compares the\n\
+         two.\n",
+    );
+    if let Some(left_out) = &reproduction.left_out {
+        let _ = writeln!(text, "\n**Not the whole evaluation**: {left_out}.");
+    }
+    table_one(&mut text, reproduction);
+    claims_section(&mut text, reproduction);
+    raw(&mut text, reproduction, MuscularMetric::Intrinsic);
+    postures(&mut text, reproduction);
+    seeds(&mut text, reproduction);
+    physics(&mut text, reproduction);
+    pictures(&mut text, reproduction);
+    text
+}
+
+/// Mean and worst value of each figure of the posture, by task and planner.
+fn postures(text: &mut String, reproduction: &Reproduction) {
+    text.push_str(
+        "\n## Postures\n\nMean over the plans with the first seed, and the smallest distance of any plan from the nearer limit (`postures.csv`).\n\n\
+         | task | figure | limit |",
+    );
+    PlannerKind::ALL.iter().for_each(|planner| text.push_str(&format!(" {planner} |")));
+    text.push_str("\n|---|---|---|---|---|---|---|\n");
+    for kind in KINDS {
+        let of = |planner: PlannerKind| -> Vec<PostureFigures> {
+            let holds = reproduction.first_seeds().filter(|hold| hold.kind == kind && hold.planner == planner);
+            holds.filter_map(HoldRow::posture).collect()
+        };
+        let by_planner = PlannerKind::ALL.map(of);
+        let Some(any) = by_planner.iter().flatten().next() else { continue };
+        for (place, (constraint, limits)) in any.iter().enumerate() {
+            let limit = match (limits.min, limits.max) {
+                (Some(min), Some(max)) => format!("{min} to {max}"),
+                (Some(min), None) => format!("at least {min}"),
+                (None, max) => format!("at most {}", figure(max, 1)),
+            };
+            let _ = write!(text, "| {} | {} | {limit} |", task(kind), constraint.key());
+            for figures in &by_planner {
+                let all = || figures.iter().filter_map(|figures| figures.iter().nth(place)).map(|(_, figure)| figure);
+                let mean = statistics::mean(all().map(|figure| figure.value));
+                let margin = all().map(|figure| figure.margin()).reduce(f64::min);
+                let _ = write!(text, " {} ({}) |", figure(mean, 2), figure(margin.map(|m| m + 0.0), 3));
+            }
+            text.push('\n');
+        }
+    }
 }
 
 fn figure(value: Option<f64>, digits: usize) -> String {
@@ -82,9 +138,17 @@ fn claims_section(text: &mut String, reproduction: &Reproduction) {
     }
 }
 
-fn raw(text: &mut String, reproduction: &Reproduction) {
+fn raw(text: &mut String, reproduction: &Reproduction, metric: MuscularMetric) {
+    text.push_str(match metric {
+        MuscularMetric::Paper => {
+            "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of `1 / ||alpha||^2`.\n"
+        }
+        MuscularMetric::Intrinsic => {
+            "\n## Raw values\n\nMuscular comfort is the intrinsic one, `1 / (||alpha||^2 + 0.0175)`; `printed` is the median of the paper's metric.\n"
+        }
+    });
     text.push_str(
-        "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of `1 / ||alpha||^2`.\n\
+        "\
          Peripersonal comfort is the sum over 64 body points, as in the captions of the paper; the figures in brackets are those\n\
          of the one configuration per planner that the paper shows. `candidates` is the mean number of evaluated candidates: the\n\
          random planner draws until a candidate is feasible; the others might find better plans with more candidates. Single\n\

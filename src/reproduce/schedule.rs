@@ -16,6 +16,8 @@ pub struct Scope {
     pub sensitivity_seeds: Option<u64>,
     /// The last step of the jobs with the first seed.
     pub first: Stage,
+    /// True if the comfort planner is also run with the paper's stability alone.
+    pub best_case: bool,
 }
 
 impl Scope {
@@ -23,13 +25,19 @@ impl Scope {
     #[must_use]
     pub fn full() -> Self {
         // The variants of the sensitivity analysis share their seeds, so a few seeds are enough to compare them.
-        Self { random_seeds: 20, sensitivity_seeds: Some(4), first: Stage::FailingLoad }
+        Self { random_seeds: 20, sensitivity_seeds: Some(4), first: Stage::FailingLoad, best_case: true }
     }
 
     /// Fewer random plans, no failing loads, no sensitivity analysis.
     #[must_use]
     pub fn quick() -> Self {
-        Self { random_seeds: 3, sensitivity_seeds: None, first: Stage::Simulate }
+        Self { random_seeds: 3, sensitivity_seeds: None, first: Stage::Simulate, best_case: true }
+    }
+
+    /// The evaluation for a person who stands naturally: no failing loads, no analysis of what the paper assumes.
+    #[must_use]
+    pub fn natural(random_seeds: u64) -> Self {
+        Self { random_seeds, sensitivity_seeds: None, first: Stage::Simulate, best_case: false }
     }
 }
 
@@ -54,7 +62,10 @@ impl Schedule {
         let mut jobs: Vec<Job> =
             scenarios().flat_map(|scenario| jobs::jobs_of(scenario, scope.random_seeds, scope.first)).collect();
         let evaluation = jobs.len();
-        jobs.extend(scenarios().map(jobs::best_case));
+        if scope.best_case {
+            jobs.extend(scenarios().map(jobs::best_case));
+        }
+        let best_case = jobs.len() - evaluation;
         let mut variants = Vec::new();
         for variant in scope.sensitivity_seeds.map_or(&[][..], |_| &sensitivity::VARIANTS) {
             let before = jobs.len();
@@ -63,7 +74,7 @@ impl Schedule {
             }
             variants.push((variant.name, jobs.len() - before));
         }
-        Self { jobs, evaluation, best_case: operations.len(), variants }
+        Self { jobs, evaluation, best_case, variants }
     }
 
     /// The evaluation from the results of all jobs, in the order of the jobs.

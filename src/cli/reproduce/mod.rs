@@ -37,7 +37,7 @@ use runner::JobRunner;
 
 /// Runs the evaluation and writes its results.
 pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
-    let operations = operations(&args.filter)?;
+    let operations = operations(args)?;
     let Some(first) = operations.first() else { return Ok(Exit::Met) };
     let out = args.folder();
     file::check_folder(&out)?;
@@ -54,7 +54,11 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
         return Ok(Exit::Interrupted);
     };
     let reproduction = schedule.reproduction(rows, &scope, left_out(args, operations.len()));
-    write_results(&reproduction, &operations, &first.robot, &out)?;
+    if args.natural {
+        write_natural_results(&reproduction, &first.robot, &out)?;
+    } else {
+        write_results(&reproduction, &operations, &first.robot, &out)?;
+    }
     output::print(&summary(&reproduction, &out))?;
     Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
 }
@@ -65,10 +69,10 @@ fn exit_of(row: &HoldRow) -> Exit {
 }
 
 /// The operations that pass a filter, or all without one.
-fn operations(filters: &[String]) -> Result<Vec<LoadedScenario>, CliError> {
-    let asked = filters.join(", ");
-    let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
-    let all = paper::operations();
+fn operations(args: &ReproduceArgs) -> Result<Vec<LoadedScenario>, CliError> {
+    let asked = args.filter.join(", ");
+    let filters = args.filter.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
+    let all = if args.natural { paper::natural_operations() } else { paper::operations() };
     let wanted = |name: &str| filters.is_empty() || filters.iter().any(|filter| filter.passes(name));
     let operations: Vec<_> =
         all.iter().filter(|operation| wanted(&operation.name)).map(|o| o.load()).collect::<Result<_, _>>()?;
@@ -152,6 +156,23 @@ fn write_results(
     Ok(())
 }
 
+/// Writes all files of the evaluation for a person who stands naturally, the report last.
+fn write_natural_results(reproduction: &Reproduction, robot: &Robot, out: &Path) -> Result<(), CliError> {
+    let write = |name: &str, text: &str| file::write_whole(&out.join(name), text.as_bytes());
+    file::remove(&out.join("report.md"))?;
+    write("table1.csv", &csv_files::table1(reproduction))?;
+    write("plans.csv", &csv_files::plans(reproduction))?;
+    write("postures.csv", &csv_files::postures(reproduction))?;
+    write("physics.csv", &csv_files::physics(reproduction.first_seeds()))?;
+    write("random.csv", &csv_files::random(reproduction))?;
+    write("timing.csv", &csv_files::timing(reproduction))?;
+    for kind in KINDS {
+        write_pictures(reproduction, kind, robot, &out.join("pictures"))?;
+    }
+    write("report.md", &markdown::natural_report(reproduction))?;
+    Ok(())
+}
+
 /// Writes one picture per planner, for one operation of this kind.
 fn write_pictures(
     reproduction: &Reproduction,
@@ -201,12 +222,18 @@ fn summary(reproduction: &Reproduction, out: &Path) -> String {
 
 impl ReproduceArgs {
     fn scope(&self) -> Scope {
-        if self.quick { Scope::quick() } else { Scope::full() }
+        let usual = if self.quick { Scope::quick() } else { Scope::full() };
+        if self.natural { Scope::natural(usual.random_seeds) } else { usual }
     }
 
     /// The folder of the results. By default a quick run does not overwrite those of a whole run.
     fn folder(&self) -> PathBuf {
-        let default = if self.quick { "out/reproduce-quick" } else { "results" };
+        let default = match (self.quick, self.natural) {
+            (false, false) => "results",
+            (false, true) => "results/natural",
+            (true, false) => "out/reproduce-quick",
+            (true, true) => "out/reproduce-quick-natural",
+        };
         self.out.clone().unwrap_or_else(|| default.into())
     }
 }
