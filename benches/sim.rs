@@ -5,7 +5,7 @@ use std::{hint::black_box, path::Path};
 
 use benchdog::{
     check::CheckedPlan,
-    human::paper_tool,
+    human::default_tool,
     judge::judge,
     model::{
         plan::Plan,
@@ -33,7 +33,7 @@ const LIMITS: Limits = Limits {
 };
 
 fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
-    CheckedPlan::new(robot, plan, &Person::PAPER, &paper_tool(plan.operation.kind))
+    CheckedPlan::new(robot, plan, &Person::default(), &default_tool(plan.operation.kind))
         .expect("the repository's plans are valid")
 }
 

@@ -5,7 +5,7 @@ use std::{hint::black_box, path::Path};
 
 use benchdog::{
     check::CheckedPlan,
-    human::paper_tool,
+    human::default_tool,
     model::scenario::{Limits, Person},
     scenario::read_plan,
     statics::{ContactModel, EquilibriumOutcome, EquilibriumSolver, StabilityWorkspace},
@@ -36,7 +36,7 @@ fn models() -> Vec<(&'static str, ContactModel)> {
         .map(|name| {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenarios/plans/{name}.json"));
             let (plan, robot) = read_plan(&path, None).expect("the repository's plans can be read");
-            let checked = CheckedPlan::new(&robot, &plan, &Person::PAPER, &paper_tool(plan.operation.kind));
+            let checked = CheckedPlan::new(&robot, &plan, &Person::default(), &default_tool(plan.operation.kind));
             let checked = checked.expect("the repository's plans are valid");
             let model = ContactModel::of_plan(&checked, FRICTION);
             (name, model.expect("the repository's plans have a contact model"))

@@ -200,7 +200,7 @@ pub enum Flaw {
         /// What is missing.
         key: &'static str,
     },
-    /// A figure of stability beyond the scenario's limit.
+    /// A figure of stability or a score of the posture beyond the scenario's limit.
     Limit {
         /// The figure's key.
         key: &'static str,

@@ -65,8 +65,9 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
         return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
     }
     let flaws = checked.posture_flaws();
-    if let Some(flaw) = flaws.first() {
-        let reason = format!("{}: {flaw}", flaw.verdict_name().unwrap_or_default());
+    if !flaws.is_empty() {
+        let named = flaws.iter().map(|flaw| format!("{}: {flaw}", flaw.verdict_name().unwrap_or_default()));
+        let reason = named.collect::<Vec<_>>().join("; ");
         let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, reason);
         return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
     }

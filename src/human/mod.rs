@@ -17,8 +17,10 @@
 //! | [`ranges`] | ranges of the arm's joints, swing and twist of the shoulder |
 //! | [`place`] | where the person may stand |
 //! | [`posture`] | how the person stands and sees the work |
+//! | `observed` | a posture as an observer scores it |
 //! | [`rula`] | the RULA score of a posture |
 //! | [`tool_shape`] | the shape of the tool in the hand, as it is drawn |
+//! | [`reba`] | the REBA score of a posture |
 //! | [`tools`] | the tools of the paper |
 
 pub mod arm;
@@ -30,6 +32,7 @@ pub mod peripersonal;
 pub mod place;
 pub mod posture;
 pub mod ranges;
+pub mod reba;
 pub mod rula;
 pub mod shape;
 pub mod strength;
@@ -38,6 +41,7 @@ pub mod tool_shape;
 pub mod tools;
 
 mod mirror;
+mod observed;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
@@ -62,7 +66,6 @@ use self::mirror::Mirrored;
 use crate::model::{
     GRAVITY_W,
     frames::{Pose, rotation_from_xyzw},
-    plan::RulaScore,
     scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StandingPlace, StrengthDirection, Tool},
     wrench::Wrench,
 };
@@ -285,12 +288,6 @@ impl Human {
             origins_w: std::array::from_fn(|joint| to_w(frames.joint_origin_m(joint))),
             axes_w: frames.axes_b.map(axis_w),
         }
-    }
-
-    /// The RULA score of a posture; arguments as for [`Self::joint_torques`].
-    pub fn rula(&self, q_rad: &ArmAngles, wrench_w: &Wrench) -> RulaScore {
-        let load_n = (wrench_w.force_n - GRAVITY_W * self.tool_kg).norm();
-        rula::rula(&self.arm, &self.body, q_rad, load_n)
     }
 
     /// The points on the body's surface, in W.

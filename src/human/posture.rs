@@ -53,6 +53,15 @@ pub struct Gaze {
     pub distance_m: f64,
 }
 
+impl Gaze {
+    /// The line of sight from the eye to the tool tip, both in the same frame of a right-handed person, m.
+    fn between(eye: &Vector3<f64>, tip: &Vector3<f64>) -> Self {
+        let d = tip - eye;
+        let distance_m = d.norm();
+        Self { yaw_rad: libm::atan2(-d.y, d.x), pitch_rad: libm::asin((d.z / distance_m).clamp(-1.0, 1.0)), distance_m }
+    }
+}
+
 /// The tool tip and the worked face in the body frame of a right-handed person.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Work {
@@ -66,9 +75,7 @@ pub(super) struct Work {
 
 impl Work {
     fn gaze(&self) -> Gaze {
-        let d = self.tip_b - self.eye_b;
-        let distance_m = d.norm();
-        Gaze { yaw_rad: libm::atan2(-d.y, d.x), pitch_rad: libm::asin((d.z / distance_m).clamp(-1.0, 1.0)), distance_m }
+        Gaze::between(&self.eye_b, &self.tip_b)
     }
 
     /// Cosine of the angle between the face's normal and the direction to the eye.
@@ -158,6 +165,12 @@ impl Human {
     #[must_use]
     pub fn gaze(&self, x_bt: &Pose) -> Gaze {
         self.work(x_bt, &Vector3::z()).gaze()
+    }
+
+    /// The line of sight to the tool tip as seen from the trunk: its yaw and pitch are in V, which leans with the trunk.
+    #[must_use]
+    pub fn gaze_v(&self, q_rad: &ArmAngles) -> Gaze {
+        Gaze::between(&self.body.eye_b_m, &self.arm.tool_pose_b(q_rad).translation.vector)
     }
 
     /// Tool and face as a right-handed person has them; `normal_t` is the face's normal in T.

@@ -12,24 +12,27 @@
 //! | wrist 1..3 | flexion q6: within 5 degrees, up to 15, more |
 //! | wrist +1 | ulnar or radial deviation q7 beyond 5 degrees |
 //! | wrist twist 1..2 | pronation q5 within 45 degrees, or beyond |
-//! | neck 1 | neutral |
-//! | trunk 1..2 | upright, or leaning forward by up to 20 degrees |
+//! | neck 1..3 | flexion that the gaze asks of the head: up to 10 degrees, up to 20, more |
+//! | neck 4 | extension: a gaze above the trunk's horizontal |
+//! | neck +1 | yaw of the gaze beyond 10 degrees |
+//! | trunk 1..4 | upright; leaning forward by up to 20 degrees, up to 60, more |
+//! | trunk +1 | yaw of the gaze beyond the 60 degrees that the neck gives |
 //! | legs 1 | both legs supported |
 //! | force 0, 1, 3 | tool's weight and tool's force together under 2 kg, up to 10 kg, more: intermittent |
 //! | muscle use 0 | one operation of a few seconds, neither static nor repeated |
 //!
-//! Raised shoulders, supported arms, and a turned head or trunk do not occur in this body model.
+//! [`super::observed`] defines the angles.
 
 use std::sync::LazyLock;
 
-use nalgebra::Vector3;
 use serde::Deserialize;
 
 use super::{
-    arm::{Arm, ArmAngles},
-    body::Body,
+    Human,
+    arm::ArmAngles,
+    observed::{Observed, Observer, band},
 };
-use crate::model::{GRAVITY_W, plan::RulaScore};
+use crate::model::{plan::RulaScore, wrench::Wrench};
 
 /// `assets/human/rula.toml`.
 #[derive(Deserialize)]
@@ -38,16 +41,19 @@ struct Tables {
     table_a: [[[u8; 8]; 3]; 6],
     table_b: [[u8; 12]; 6],
     table_c: [[u8; 7]; 8],
+    bands: Bands,
     observer: Observer,
 }
 
-/// Thresholds that RULA leaves to the observer, degrees.
+/// The steps between the bands of a score, degrees.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Observer {
-    abducted_deg: f64,
-    neutral_wrist_deg: f64,
-    twist_mid_range_deg: f64,
+struct Bands {
+    upper_arm_deg: [f64; 3],
+    lower_arm_deg: [f64; 2],
+    wrist_deg: f64,
+    neck_deg: [f64; 2],
+    trunk_deg: [f64; 3],
 }
 
 static TABLES: LazyLock<Tables> = LazyLock::new(|| {
@@ -55,21 +61,35 @@ static TABLES: LazyLock<Tables> = LazyLock::new(|| {
     toml::from_str(include_str!("../../assets/human/rula.toml")).expect("the built-in RULA tables are valid")
 });
 
-/// The scores of the arm's parts, from 1: indices of table A.
+/// The thresholds that RULA and REBA leave to the observer.
+pub(super) fn observer() -> &'static Observer {
+    &TABLES.observer
+}
+
+/// The scores of the body's parts, from 1: indices of tables A and B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct ArmScores {
+struct PartScores {
     upper_arm: usize,
     lower_arm: usize,
     wrist: usize,
     twist: usize,
+    neck: usize,
+    trunk: usize,
+    legs: usize,
 }
 
-/// The score of a posture of the right arm whose hand carries `load_n`, the tool's weight and force together.
-pub fn rula(arm: &Arm, body: &Body, q_rad: &ArmAngles, load_n: f64) -> RulaScore {
-    let ArmScores { upper_arm, lower_arm, wrist, twist } = arm_scores(arm, body, q_rad);
-    let force = force_score(load_n);
+impl Human {
+    /// The RULA score of a posture whose hand exerts `wrench_w` at the tool tip: about the tip, W axes.
+    #[must_use]
+    pub fn rula(&self, q_rad: &ArmAngles, wrench_w: &Wrench) -> RulaScore {
+        score(&part_scores(&self.observed(q_rad, observer())), force_score(self.load_kg(wrench_w)))
+    }
+}
+
+/// The score of the parts' scores and of the force.
+fn score(parts: &PartScores, force: u8) -> RulaScore {
+    let PartScores { upper_arm, lower_arm, wrist, twist, neck, trunk, legs } = *parts;
     let in_a = TABLES.table_a[upper_arm - 1][lower_arm - 1][2 * (wrist - 1) + twist - 1];
-    let (neck, trunk, legs) = (1, if body.lean_rad > 0.0 { 2 } else { 1 }, 1);
     let in_b = TABLES.table_b[neck - 1][2 * (trunk - 1) + legs - 1];
     let (arm_and_wrist, neck_trunk_legs) = (in_a + force, in_b + force);
     let row = usize::from(arm_and_wrist).min(TABLES.table_c.len());
@@ -77,38 +97,26 @@ pub fn rula(arm: &Arm, body: &Body, q_rad: &ArmAngles, load_n: f64) -> RulaScore
     RulaScore { score: TABLES.table_c[row - 1][column - 1], arm_and_wrist, neck_trunk_legs }
 }
 
-/// The scores of the arm's parts, by the table in the module documentation.
-fn arm_scores(arm: &Arm, body: &Body, q_rad: &ArmAngles) -> ArmScores {
-    let frames = arm.frames(q_rad);
-    let [_, abduction, _, elbow, twist, flexion, deviation] = q_rad.map(f64::to_degrees);
-    let observer = &TABLES.observer;
-    let upper_arm = frames.p_be_m - frames.p_bs_m;
-    let raised_deg = upper_arm.angle(&-Vector3::z()).to_degrees();
-    let by_elevation = match raised_deg {
-        raised if raised <= 20.0 => 1,
-        raised if raised <= 45.0 || upper_arm.x < 0.0 => 2,
-        raised if raised <= 90.0 => 3,
-        _ => 4,
-    };
-    // Right arm: y_B points to the left.
-    let outermost_m = body.p_bs_m.y - body.thickness.upper_arm_radius_m;
-    let aside = frames.p_bw_m.y > 0.0 || frames.p_bw_m.y < outermost_m;
-    let by_flexion = match flexion.abs() {
-        bent if bent <= observer.neutral_wrist_deg => 1,
-        bent if bent <= 15.0 => 2,
-        _ => 3,
-    };
-    ArmScores {
-        upper_arm: by_elevation + usize::from(abduction > observer.abducted_deg),
-        lower_arm: if (60.0..=100.0).contains(&elbow) { 1 } else { 2 } + usize::from(aside),
-        wrist: by_flexion + usize::from(deviation.abs() > observer.neutral_wrist_deg),
-        twist: 1 + usize::from(twist.abs() > observer.twist_mid_range_deg),
+/// The scores of the parts, by the table in the module documentation.
+fn part_scores(observed: &Observed) -> PartScores {
+    let Bands { upper_arm_deg, lower_arm_deg: [least_deg, most_deg], wrist_deg, neck_deg, trunk_deg } = &TABLES.bands;
+    let bent_well = (*least_deg..=*most_deg).contains(&observed.elbow_deg);
+    let neck = if observed.neck_deg < 0.0 { 4 } else { band(observed.neck_deg, neck_deg) };
+    PartScores {
+        upper_arm: observed.upper_arm_band(upper_arm_deg) + usize::from(observed.is_arm_abducted),
+        lower_arm: if bent_well { 1 } else { 2 } + usize::from(observed.is_forearm_aside),
+        wrist: band(observed.wrist_deg, &[observer().neutral_wrist_deg, *wrist_deg])
+            + usize::from(observed.is_wrist_deviated),
+        twist: 1 + usize::from(observed.is_forearm_twisted),
+        neck: neck + usize::from(observed.is_neck_twisted),
+        trunk: band(observed.trunk_deg, trunk_deg) + usize::from(observed.is_trunk_twisted),
+        legs: 1,
     }
 }
 
-/// RULA's score of an intermittent force. Its thresholds are masses, kg.
-fn force_score(load_n: f64) -> u8 {
-    match load_n / GRAVITY_W.norm() {
+/// RULA's score of an intermittent force, of its size as a mass.
+fn force_score(load_kg: f64) -> u8 {
+    match load_kg {
         mass_kg if mass_kg < 2.0 => 0,
         mass_kg if mass_kg <= 10.0 => 1,
         _ => 3,
@@ -117,77 +125,167 @@ fn force_score(load_n: f64) -> u8 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::{
         human::{
-            Human, default_tool,
+            default_tool,
             testing::{average_man, worker},
         },
         model::{
+            GRAVITY_W,
             operation::OperationKind,
             scenario::{Hand, Person},
-            wrench::Wrench,
         },
     };
 
-    fn scores(q_deg: ArmAngles) -> ArmScores {
-        let human = worker(Hand::Right, OperationKind::Drill);
-        arm_scores(human.arm(), human.body(), &q_deg.map(f64::to_radians))
+    /// Upper arm hanging, elbow at 80 degrees, wrist straight.
+    const BEST_DEG: ArmAngles = [0.0, 0.0, 0.0, 80.0, 0.0, 0.0, 0.0];
+    /// The scores of a posture without any fault.
+    const BEST: PartScores = PartScores { upper_arm: 1, lower_arm: 1, wrist: 1, twist: 1, neck: 1, trunk: 1, legs: 1 };
+
+    fn observed(q_deg: ArmAngles) -> Observed {
+        worker(Hand::Right, OperationKind::Drill).observed(&q_deg.map(f64::to_radians), observer())
     }
 
-    fn score(q_deg: ArmAngles, load_n: f64) -> RulaScore {
-        let human = worker(Hand::Right, OperationKind::Drill);
-        rula(human.arm(), human.body(), &q_deg.map(f64::to_radians), load_n)
+    fn scores(q_deg: ArmAngles) -> PartScores {
+        part_scores(&observed(q_deg))
+    }
+
+    /// The scores with neck and trunk as given, the arm in the best posture.
+    fn of_neck_and_trunk(change: impl Fn(&mut Observed)) -> [usize; 2] {
+        let mut observed = Observed { neck_deg: 0.0, is_neck_twisted: false, ..observed(BEST_DEG) };
+        change(&mut observed);
+        let PartScores { neck, trunk, .. } = part_scores(&observed);
+        [neck, trunk]
     }
 
     #[test]
     fn the_best_posture_scores_one() {
-        // Upper arm hanging, elbow at 80 degrees, wrist straight: A 1, B 1, C 1.
-        let best = [0.0, 0.0, 0.0, 80.0, 0.0, 0.0, 0.0];
-        assert_eq!(score(best, 10.0), RulaScore { score: 1, arm_and_wrist: 1, neck_trunk_legs: 1 });
+        // A 1, B 1, C 1.
+        assert_eq!(score(&BEST, 0), RulaScore { score: 1, arm_and_wrist: 1, neck_trunk_legs: 1 });
         // 5 kg: 1 more in both, row 2 and column 2 of table C.
-        assert_eq!(score(best, 49.0), RulaScore { score: 2, arm_and_wrist: 2, neck_trunk_legs: 2 });
+        assert_eq!(score(&BEST, force_score(5.0)), RulaScore { score: 2, arm_and_wrist: 2, neck_trunk_legs: 2 });
         // Above 10 kg: 3 more, row 4 and column 4.
-        assert_eq!(score(best, 99.0), RulaScore { score: 4, arm_and_wrist: 4, neck_trunk_legs: 4 });
+        assert_eq!(score(&BEST, force_score(10.1)), RulaScore { score: 4, arm_and_wrist: 4, neck_trunk_legs: 4 });
     }
 
     #[test]
     fn an_arm_raised_before_the_body_by_hand() {
         // Upper arm 60 degrees forward: 3. Elbow 30: 2. Wrist flexed 10: 2, deviated 10: 3. Twisted 60: 2.
-        let raised = [60.0, 0.0, 0.0, 30.0, 60.0, 10.0, 10.0];
-        assert_eq!(scores(raised), ArmScores { upper_arm: 3, lower_arm: 2, wrist: 3, twist: 2 });
+        let raised = scores([60.0, 0.0, 0.0, 30.0, 60.0, 10.0, 10.0]);
+        let arm = PartScores { upper_arm: 3, lower_arm: 2, wrist: 3, twist: 2, ..BEST };
+        assert_eq!(PartScores { neck: 1, ..raised }, arm);
         // Table A, third upper arm, second lower arm, wrist 3 with twist 2: 4. B 1. Table C, row 4, column 1: 3.
-        assert_eq!(score(raised, 0.0), RulaScore { score: 3, arm_and_wrist: 4, neck_trunk_legs: 1 });
+        assert_eq!(score(&arm, 0), RulaScore { score: 3, arm_and_wrist: 4, neck_trunk_legs: 1 });
+        // Looking up and to the side, neck 5: B 7. Table C, row 4, column 7: 6.
+        let looking_up = PartScores { neck: 5, ..arm };
+        assert_eq!(score(&looking_up, 0), RulaScore { score: 6, arm_and_wrist: 4, neck_trunk_legs: 7 });
     }
 
     #[test]
     fn every_step_of_the_arm_counts() {
-        let hanging = [0.0, 0.0, 0.0, 80.0, 0.0, 0.0, 0.0];
         let upper_arm = |flexion, abduction| scores([flexion, abduction, 0.0, 80.0, 0.0, 0.0, 0.0]).upper_arm;
         assert_eq!([19.0, 21.0, 44.0, 46.0, 89.0, 91.0].map(|q1| upper_arm(q1, 0.0)), [1, 2, 2, 3, 3, 4]);
         assert_eq!([-19.0, -21.0, -50.0].map(|q1| upper_arm(q1, 0.0)), [1, 2, 2]);
         // Out to the side: the elevation, and one more for the abduction.
         assert_eq!([19.0, 30.0, 60.0, 110.0].map(|q2| upper_arm(0.0, q2)), [1, 3, 4, 5]);
         // Turned inward by 90 degrees the forearm crosses the middle; turned outward it is beyond the shoulder.
-        assert_eq!(scores(hanging).lower_arm, 1);
+        assert_eq!(scores(BEST_DEG).lower_arm, 1);
         for turn in [85.0, -85.0] {
             assert_eq!(scores([0.0, 0.0, turn, 80.0, 0.0, 0.0, 0.0]).lower_arm, 2, "{turn}");
         }
+        let lower_arm = |elbow| scores([0.0, 0.0, 0.0, elbow, 0.0, 0.0, 0.0]).lower_arm;
+        assert_eq!([59.0, 61.0, 99.0, 101.0].map(lower_arm), [2, 1, 1, 2]);
         let wrist = |flexion, deviation| scores([0.0, 0.0, 0.0, 80.0, 0.0, flexion, deviation]).wrist;
         assert_eq!([0.0, 6.0, -6.0, 16.0].map(|q6| wrist(q6, 0.0)), [1, 2, 2, 3]);
         assert_eq!([6.0, -6.0].map(|q7| wrist(0.0, q7)), [2, 2]);
+        let twist = |pronation| scores([0.0, 0.0, 0.0, 80.0, pronation, 0.0, 0.0]).twist;
+        assert_eq!([0.0, 44.0, 46.0, -46.0].map(twist), [1, 1, 2, 2]);
     }
 
     #[test]
-    fn a_leaning_trunk_and_the_tools_weight_count() {
-        // Trunk 2: table B gives 2; the drill's 1.3 kg and no force: under 2 kg. Table C, row 1, column 2: 2.
+    fn every_step_of_neck_and_trunk_counts() {
+        let neck = |neck_deg| of_neck_and_trunk(|observed| observed.neck_deg = neck_deg)[0];
+        assert_eq!([0.0, 9.9, 10.1, 19.9, 20.1, 80.0, -0.1, -30.0].map(neck), [1, 1, 2, 2, 3, 3, 4, 4]);
+        let trunk = |trunk_deg| of_neck_and_trunk(|observed| observed.trunk_deg = trunk_deg)[1];
+        assert_eq!([0.0, 0.1, 19.9, 20.1, 59.9, 60.1].map(trunk), [1, 2, 2, 3, 3, 4]);
+        assert_eq!(of_neck_and_trunk(|observed| observed.is_neck_twisted = true), [2, 1]);
+        let turned_far = |observed: &mut Observed| (observed.is_neck_twisted, observed.is_trunk_twisted) = (true, true);
+        assert_eq!(of_neck_and_trunk(turned_far), [2, 2]);
+    }
+
+    #[test]
+    fn the_steps_of_the_force() {
+        assert_eq!([0.0, 1.9, 2.0, 10.0, 10.1].map(force_score), [0, 0, 1, 1, 3]);
+    }
+
+    #[test]
+    fn a_gaze_to_the_tool_a_leaning_trunk_and_the_tools_weight_count() {
+        // The hand at the height of the elbow: the person looks steeply down, flexion above 20 degrees, neck 3.
         let tool = default_tool(OperationKind::Drill);
         let leaning = Human::new(&Person { lean_deg: 10.0, ..average_man() }, &tool).unwrap();
-        let best = [0.0, 0.0, 0.0, 80_f64.to_radians(), 0.0, 0.0, 0.0];
-        let idle = leaning.rula(&best, &Wrench::default());
-        assert_eq!(idle, RulaScore { score: 2, arm_and_wrist: 1, neck_trunk_legs: 2 });
+        let best_rad = BEST_DEG.map(f64::to_radians);
+        let parts = part_scores(&leaning.observed(&best_rad, observer()));
+        assert!((3..=4).contains(&parts.neck) && parts.trunk >= 2, "{parts:?}");
+        // The drill's 1.3 kg and no force: under 2 kg, so A is 1.
+        let idle = leaning.rula(&best_rad, &Wrench::default());
+        assert_eq!(idle, score(&parts, 0));
+        assert_eq!(idle.arm_and_wrist, 1);
         // 10 N up besides the weight of 12.8 N: above 2 kg.
-        let lifting = leaning.rula(&best, &Wrench::from_force(-GRAVITY_W.normalize() * 10.0));
-        assert_eq!(lifting.arm_and_wrist, 2);
+        let lifting = leaning.rula(&best_rad, &Wrench::from_force(-GRAVITY_W.normalize() * 10.0));
+        assert_eq!([lifting.arm_and_wrist, lifting.neck_trunk_legs], [2, idle.neck_trunk_legs + 1]);
+    }
+
+    #[test]
+    fn a_left_handed_person_scores_as_the_mirror_image() {
+        let [right, left] = [Hand::Right, Hand::Left].map(|hand| worker(hand, OperationKind::Cut));
+        for q_deg in [BEST_DEG, [60.0, 30.0, 20.0, 30.0, 60.0, 10.0, 10.0], [110.0, -20.0, 0.0, 10.0, 0.0, 0.0, 0.0]] {
+            let q_rad = q_deg.map(f64::to_radians);
+            let score = |human: &Human| human.rula(&q_rad, &Wrench::default());
+            assert_eq!(score(&right), score(&left));
+        }
+    }
+
+    #[test]
+    fn rows_of_the_tables_as_printed() {
+        // McAtamney & Corlett 1993, tables 1 to 3: first and last row of each, and one between.
+        assert_eq!(TABLES.table_a[0][0], [1, 2, 2, 2, 2, 3, 3, 3]);
+        assert_eq!(TABLES.table_a[2][1], [3, 4, 4, 4, 4, 4, 5, 5]);
+        assert_eq!(TABLES.table_a[5][2], [9; 8]);
+        assert_eq!(TABLES.table_b[0], [1, 3, 2, 3, 3, 4, 5, 5, 6, 6, 7, 7]);
+        assert_eq!(TABLES.table_b[3], [5, 5, 5, 6, 6, 7, 7, 7, 7, 7, 8, 8]);
+        assert_eq!(TABLES.table_b[5], [8, 8, 8, 8, 8, 8, 8, 9, 9, 9, 9, 9]);
+        assert_eq!(TABLES.table_c[0], [1, 2, 3, 3, 4, 5, 5]);
+        assert_eq!(TABLES.table_c[3], [3, 3, 3, 4, 5, 6, 6]);
+        assert_eq!(TABLES.table_c[7], [5, 5, 6, 7, 7, 7, 7]);
+    }
+
+    proptest! {
+        /// The tables are monotone: a higher score of one part never lowers any score.
+        #[test]
+        fn a_higher_score_of_one_part_never_lowers_a_score(
+            parts in [0..6_usize, 0..3, 0..4, 0..2, 0..6, 0..6, 0..2],
+            raised in 0..7_usize,
+            force in [0..4_u8, 0..4],
+        ) {
+            let largest = [6, 3, 4, 2, 6, 6, 2];
+            let mut higher = parts;
+            higher[raised] = (higher[raised] + 1).min(largest[raised] - 1);
+            let of = |[upper_arm, lower_arm, wrist, twist, neck, trunk, legs]: [usize; 7]| PartScores {
+                upper_arm: upper_arm + 1,
+                lower_arm: lower_arm + 1,
+                wrist: wrist + 1,
+                twist: twist + 1,
+                neck: neck + 1,
+                trunk: trunk + 1,
+                legs: legs + 1,
+            };
+            let [less, more] = [force[0].min(force[1]), force[0].max(force[1])];
+            let (low, high) = (score(&of(parts), less), score(&of(higher), more));
+            prop_assert!(low.score <= high.score, "{low:?} {high:?}");
+            prop_assert!(low.arm_and_wrist <= high.arm_and_wrist && low.neck_trunk_legs <= high.neck_trunk_legs);
+        }
     }
 }

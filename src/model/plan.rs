@@ -341,6 +341,15 @@ pub struct Comfort {
     pub reba: Option<RebaScore>,
 }
 
+impl Comfort {
+    /// The posture's scores in words, such as `RULA 3 (arm and wrist 4), REBA 5`; `None` without both.
+    #[must_use]
+    pub fn scores(&self) -> Option<String> {
+        let (rula, reba) = (self.rula?, self.reba?);
+        Some(format!("RULA {} (arm and wrist {}), REBA {}", rula.score, rula.arm_and_wrist, reba.score))
+    }
+}
+
 /// The moment that the working arm exerts about the shoulder (`docs/method.md#414-intrinsic-metric`). For a left-handed person
 /// that of the mirrored right arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

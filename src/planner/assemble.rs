@@ -4,6 +4,7 @@ use super::{
     candidate::{Candidate, Placement},
     evaluate::{self, Configuration, Evaluator, Feasible},
     outcome::Rejection,
+    scores::{beyond_limits, scored},
     verify::verify,
 };
 use crate::{
@@ -39,8 +40,8 @@ pub fn assemble_placed(
         .free_share_of_sight(problem);
     let figures = problem.human.posture_figures(&candidate.work.q_h_rad, &problem.normal_t, free_share);
     let posture = HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad);
-    let rula = problem.human.rula(&candidate.work.q_h_rad, &scenario.operation.wrench_w(&x_wo));
-    let comfort = Comfort { rula: Some(rula), ..comfort::weighted(*comfort, &scenario.comfort) };
+    let comfort = comfort::weighted(*comfort, &scenario.comfort);
+    let comfort = scored(&problem.human, &candidate.work.q_h_rad, &operation.wrench_w(&x_wo), comfort);
     let stability = evaluator.predict(&arms, &object, &operation)?;
     Some(Plan {
         format: FORMAT,
@@ -58,23 +59,34 @@ pub fn assemble_placed(
     })
 }
 
-/// The plan of a candidate if the check of the finished plan finds no flaw. The check takes nothing from the search but the
-/// plan. Rejections are counted.
+/// The plan of a candidate if it is [`accepted`]. Rejections are counted.
 pub fn verified(evaluator: &mut Evaluator<'_>, found: &Feasible) -> Option<Plan> {
     let evaluations = evaluator.stats.candidates();
     let Some(plan) = assemble(evaluator, found, evaluations) else {
         evaluator.stats.reject(Rejection::Stability);
         return None;
     };
-    if is_sound(evaluator, &plan) {
-        return Some(plan);
-    }
-    evaluator.stats.reject(Rejection::Verification);
-    None
+    accepted(evaluator, plan)
 }
 
-/// True if the verification of a plan finds no flaw.
-pub fn is_sound(evaluator: &Evaluator<'_>, plan: &Plan) -> bool {
+/// The finished plan if its posture's scores keep their limits and its check finds no flaw. The check takes nothing from the
+/// search but the plan. Rejections are counted.
+pub fn accepted(evaluator: &mut Evaluator<'_>, plan: Plan) -> Option<Plan> {
+    match rejection(evaluator, &plan) {
+        None => Some(plan),
+        Some(why) => {
+            evaluator.stats.reject(why);
+            None
+        }
+    }
+}
+
+/// Why a finished plan is rejected.
+fn rejection(evaluator: &Evaluator<'_>, plan: &Plan) -> Option<Rejection> {
     let problem = &evaluator.problem;
-    verify(plan, problem.scenario, &problem.robot.robot).is_empty()
+    let score = plan.comfort.and_then(|comfort| beyond_limits(&comfort, &problem.scenario.limits).next());
+    score.map(|score| score.why).or_else(|| {
+        let flaws = verify(plan, problem.scenario, &problem.robot.robot);
+        (!flaws.is_empty()).then_some(Rejection::Verification)
+    })
 }

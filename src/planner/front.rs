@@ -6,7 +6,7 @@
 //! search: the true front may lie farther out, never farther in.
 
 use super::{
-    assemble::{assemble, is_sound},
+    assemble::{accepted, assemble},
     evaluate::{Evaluator, Feasible},
     library::GraspLibrary,
     outcome::{Infeasible, Outcome, PlanError},
@@ -98,7 +98,11 @@ pub fn front(
     }
     Ok(match points.first().cloned() {
         Some(own) => Outcome::Found(Front { optima, points: non_dominated(points), own }),
-        None => Outcome::Infeasible(sweep.infeasible.unwrap_or(Infeasible { candidates: 0, removed: Vec::new() })),
+        None => Outcome::Infeasible(sweep.infeasible.unwrap_or(Infeasible {
+            candidates: 0,
+            removed: Vec::new(),
+            unnatural: None,
+        })),
     })
 }
 
@@ -142,7 +146,7 @@ struct Sweep<'m> {
     /// Warm starts for the scenario's own weights; they serve all weightings.
     warm: &'m WarmStarts,
     pool: Vec<Feasible>,
-    /// Why the first search without a result found nothing.
+    /// Why the first search without a result found nothing, or why every candidate was rejected.
     infeasible: Option<Infeasible>,
 }
 
@@ -192,16 +196,20 @@ impl Sweep<'_> {
         comforts.fold([0.0; 2], |best, comforts| std::array::from_fn(|i| comforts[i].max(best[i])))
     }
 
-    /// The plan of the pool's best candidate that passes the check.
+    /// The plan of the pool's best candidate that is accepted. If none is, the rejections are why there is no front.
     fn best(&mut self, scenario: &Scenario) -> Result<Option<Plan>, PlanError> {
         let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot)?, SearchStats::unlimited());
         while let Some(index) = self.index_of_best(scenario) {
             if let Some(plan) = assemble(&mut evaluator, &self.pool[index], 0)
-                && is_sound(&evaluator, &plan)
+                && let Some(plan) = accepted(&mut evaluator, plan)
             {
                 return Ok(Some(plan));
             }
+            evaluator.stats.count();
             self.pool.swap_remove(index);
+        }
+        if evaluator.stats.candidates() > 0 {
+            self.infeasible = Some(evaluator.stats.into_infeasible());
         }
         Ok(None)
     }

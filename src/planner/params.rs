@@ -59,6 +59,14 @@ pub mod library {
     pub const POSTURE_HEIGHT_M: f64 = 3.0;
 }
 
+/// Numbers of the explanation of a search that found nothing ([`super::explain`]).
+pub mod explanation {
+    /// Grasps of the library that are tried.
+    pub const GRASPS: usize = 1_000;
+    /// Postures that are tried with each.
+    pub const PAIRS_PER_GRASP: usize = 2;
+}
+
 /// Numbers of screening and of the warm starts.
 pub mod screening {
     /// Pairs that are ranked by the medium point sets, per pair that is evaluated.

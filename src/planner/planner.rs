@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::{
     assemble::verified,
     evaluate::Evaluator,
+    explain::explained,
     front::{self, Front},
     library::GraspLibrary,
     normalise::{alone, needs_optima, with_optima},
@@ -154,7 +155,15 @@ fn best_plan<'a>(
             return Ok(Outcome::Found(plan));
         }
     }
-    Ok(Outcome::Infeasible(evaluator.stats.into_infeasible()))
+    explained_if_infeasible(Outcome::Infeasible(evaluator.stats.into_infeasible()), scenario, maps)
+}
+
+/// What was found, or why nothing was, with the limits of posture and place that are in the way.
+fn explained_if_infeasible<T>(found: Outcome<T>, scenario: &Scenario, maps: &Maps) -> Result<Outcome<T>, PlanError> {
+    match found {
+        Outcome::Found(_) => Ok(found),
+        Outcome::Infeasible(why) => Ok(Outcome::Infeasible(explained(scenario, &maps.library, why)?)),
+    }
 }
 
 fn evaluator<'a>(
@@ -212,7 +221,7 @@ impl<'a> Search<'a> {
             Outcome::Found(scenario) => {
                 let warm = planner.warm_starts(&maps, &scenario)?;
                 let evaluator = evaluator(&scenario, &maps, reborrow(&mut observer))?;
-                Ok(select::top(evaluator, &maps.library, &warm, wanted))
+                explained_if_infeasible(select::top(evaluator, &maps.library, &warm, wanted), &scenario, &maps)
             }
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }
@@ -230,7 +239,8 @@ impl<'a> Search<'a> {
         match planner.normalised(&maps, &Scenario { planner: settings, ..scenario.clone() })? {
             Outcome::Found(scenario) => {
                 let warm = planner.warm_starts(&maps, &front::own_weights(&scenario))?;
-                front::front(&scenario, &maps.library, &warm, reborrow(&mut observer))
+                let found = front::front(&scenario, &maps.library, &warm, reborrow(&mut observer))?;
+                explained_if_infeasible(found, &scenario, &maps)
             }
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }

@@ -14,8 +14,13 @@ use super::{
     library::{ArmGrasp, BoardGrasp, draw_grasp},
     outcome::Rejection,
     params::screening::RANDOM_DRAWS,
+    problem::Problem,
+    scores::{beyond_limits, scored},
 };
-use crate::{comfort, model::frames::Pose};
+use crate::{
+    comfort,
+    model::{frames::Pose, plan::Comfort},
+};
 
 /// The first draw that satisfies every constraint and has a response.
 pub fn draw(evaluator: &mut Evaluator<'_>, random: &mut Pcg64) -> Option<Feasible> {
@@ -91,7 +96,15 @@ fn with_response(
     let configuration = Configuration::new(problem, &candidate);
     evaluate::test_collisions(problem, &configuration)?;
     let comfort = evaluate::comfort(problem, &candidate, &configuration);
+    test_scores(problem, &candidate, &comfort)?;
     // The roll is now the response's.
     let utilisation = evaluator.utilisation(&candidate, &grasp.x_wo);
     Ok(evaluator.feasible(candidate, configuration, comfort, utilisation))
+}
+
+/// Tests the scores of the posture: the planner draws again instead of trying the next of several candidates.
+fn test_scores(problem: &Problem<'_>, candidate: &Candidate, comfort: &Comfort) -> Result<(), Rejection> {
+    let wrench_w = problem.scenario.operation.wrench_w(&candidate.x_wo(problem));
+    let comfort = scored(&problem.human, &candidate.work.q_h_rad, &wrench_w, *comfort);
+    beyond_limits(&comfort, &problem.scenario.limits).next().map_or(Ok(()), |score| Err(score.why))
 }

@@ -52,7 +52,7 @@ pub fn screen<'e>(
         }
         stats.count();
         if postures.is_empty() {
-            stats.reject(Rejection::Strength);
+            stats.reject(if postures.has_natural() { Rejection::Strength } else { Rejection::NaturalPosture });
             continue;
         }
         let x_wt = entry.grasp.x_wo * problem.scenario.operation.x_ot;

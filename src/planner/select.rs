@@ -1,7 +1,7 @@
 //! The best plans that differ from one another.
 
 use super::{
-    assemble::{assemble, is_sound},
+    assemble::{accepted, assemble},
     configurations::other_configurations,
     evaluate::{Evaluator, Feasible},
     library::GraspLibrary,
@@ -64,8 +64,8 @@ pub fn top(
         let evaluations = evaluator.stats.candidates();
         let Some(plan) = assemble(&mut evaluator, &found, evaluations) else { continue };
         // The comparison is cheap beside the check.
-        if plans.iter().all(|other| differ(other, &plan)) && is_sound(&evaluator, &plan) {
-            plans.push(plan);
+        if plans.iter().all(|other| differ(other, &plan)) {
+            plans.extend(accepted(&mut evaluator, plan));
         }
     }
     if plans.is_empty() { Outcome::Infeasible(evaluator.stats.into_infeasible()) } else { Outcome::Found(plans) }

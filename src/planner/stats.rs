@@ -107,7 +107,7 @@ impl<'a> SearchStats<'a> {
         let candidates = self.candidates();
         let mut removed: Vec<_> = self.removed.into_iter().map(|(why, count)| (why.name(), count)).collect();
         removed.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
-        Infeasible { candidates, removed }
+        Infeasible { candidates, removed, unnatural: None }
     }
 
     fn report(&mut self, better: Option<&Comfort>) {

@@ -14,7 +14,7 @@ use super::{
 use crate::model::{
     frames::Pose,
     operation::Operation,
-    scenario::{PlannerSettings, Scenario},
+    scenario::{Limits, PlannerSettings, Scenario},
     wrench::Wrench,
 };
 
@@ -44,6 +44,8 @@ impl TaskFamily {
             name: String::new(),
             operation: placed(&scenario.operation, &wrench_t, p_ot_m, rotation),
             planner: PlannerSettings { evaluations: None, ..scenario.planner.clone() },
+            // Warm starts are no finished plans, whose scores are limited.
+            limits: Limits { rula: None, rula_arm: None, reba: None, ..scenario.limits },
             ..scenario.clone()
         })
     }

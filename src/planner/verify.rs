@@ -1,9 +1,10 @@
 //! The verification of a plan from scratch: nothing is taken from the search but the plan itself.
 //!
-//! Every pose is recomputed from joint angles; comfort, load factors and deflection are compared with what the plan states;
-//! reach, joint limits, strength, standing and collisions are tested. It serves plans of other planners as well. Metrics,
-//! collision model and stability program are those of the search; its way of choosing and placing is not.
+//! Every pose is recomputed from joint angles; comfort, posture scores, load factors and deflection are compared with what the
+//! plan states; reach, joint limits, strength, standing and collisions are tested. It serves plans of other planners as well.
+//! Metrics, collision model and stability program are those of the search; its way of choosing and placing is not.
 
+use super::scores::{beyond_limits, scored};
 use crate::{
     check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
     collision::CollisionModel,
@@ -83,6 +84,34 @@ fn verify_comfort(
             flaws.push(Flaw::Figure { key, stated, computed });
         }
     }
+    let found = scored(human, &posture.q_rad, &wrench_w, found);
+    flaws.extend(wrong_scores(stated, &found));
+    flaws.extend(beyond_limits(&found, &scenario.limits).map(|score| Flaw::Limit {
+        key: score.key,
+        found: score.found.into(),
+        limit: score.limit.into(),
+    }));
+}
+
+/// The stated scores of the posture that differ from the recomputed ones. A plan need not state them.
+fn wrong_scores(stated: &Comfort, found: &Comfort) -> impl Iterator<Item = Flaw> {
+    let pairs = scores(stated).into_iter().zip(scores(found));
+    pairs.filter_map(|((key, stated), (_, computed))| {
+        let (stated, computed) = (stated?, computed?);
+        (stated != computed).then(|| Flaw::Figure { key, stated: stated.into(), computed: computed.into() })
+    })
+}
+
+/// The scores of a posture with their keys.
+fn scores(Comfort { rula, reba, .. }: &Comfort) -> [(&'static str, Option<u8>); 6] {
+    [
+        ("comfort.rula.score", rula.map(|rula| rula.score)),
+        ("comfort.rula.arm_and_wrist", rula.map(|rula| rula.arm_and_wrist)),
+        ("comfort.rula.neck_trunk_legs", rula.map(|rula| rula.neck_trunk_legs)),
+        ("comfort.reba.score", reba.map(|reba| reba.score)),
+        ("comfort.reba.neck_trunk_legs", reba.map(|reba| reba.neck_trunk_legs)),
+        ("comfort.reba.arm_and_wrist", reba.map(|reba| reba.arm_and_wrist)),
+    ]
 }
 
 /// Figures of the posture that the plan states otherwise.

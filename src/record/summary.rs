@@ -121,7 +121,8 @@ fn figures(text: &mut String, plan: &Plan) {
     }
     if let Some(comfort) = &plan.comfort {
         let (muscular, peripersonal_m) = (comfort.muscular_regularised, comfort.peripersonal_m);
-        push(text, format_args!("Comfort: muscular {muscular:.1}, peripersonal {peripersonal_m:.3} m"));
+        let scores = comfort.scores().map(|scores| format!("; {scores}")).unwrap_or_default();
+        push(text, format_args!("Comfort: muscular {muscular:.1}, peripersonal {peripersonal_m:.3} m{scores}"));
     }
 }
 

@@ -106,9 +106,10 @@ fn section(outcome: &Outcome) -> Markup {
             summary {
                 h2 { (name) } " " span class=(status.name()) { (status.mark()) } " " (outcome.sentence())
             }
-            @if let Outcome::Judged { verdict, posture, measures, .. } = outcome {
+            @if let Outcome::Judged { verdict, posture, measures, scores, .. } = outcome {
                 (checks(verdict))
                 @if let Some(figures) = posture { (person(figures)) }
+                @if let Some(scores) = scores { p { "Posture: " (scores) } }
                 @if let Some(measures) = measures { (plots(verdict, measures)) }
                 p.quiet { (origin(verdict)) }
             }

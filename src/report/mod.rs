@@ -40,6 +40,8 @@ pub enum Outcome {
         predicted_load_factor: Option<f64>,
         /// How the person stands and sees the work; `None` without a person.
         posture: Option<Box<PostureFigures>>,
+        /// The scores of the person's posture in words; `None` for a plan without them.
+        scores: Option<String>,
         /// The judge's time series; `None` if nothing was simulated.
         measures: Option<Box<Measures>>,
         /// The recording's file, if one was written.

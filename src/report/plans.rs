@@ -1,16 +1,33 @@
 //! A table of several plans of one scenario.
 
 use super::console::aligned;
-use crate::model::{grasp::Edge, plan::Plan};
+use crate::model::{
+    grasp::Edge,
+    plan::{Comfort, Plan, Stability},
+};
 
-/// One line per plan: the edges that the arms hold, comforts, load factors.
+/// One line per plan: the edges that the arms hold, comforts, scores of the posture, load factors.
 #[must_use]
 pub fn table(plans: &[Plan]) -> String {
-    let header = ["plan", "edges", "objective", "muscular", "peripersonal m", "load", "compliant load"];
+    let header = [
+        "plan",
+        "edges",
+        "objective",
+        "muscular",
+        "peripersonal m",
+        "RULA",
+        "RULA arm",
+        "REBA",
+        "load",
+        "compliant load",
+    ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for (index, plan) in plans.iter().enumerate() {
-        let comfort = |figure: fn(&crate::model::plan::Comfort) -> f64| plan.comfort.as_ref().map(figure);
-        let stability = |figure: fn(&crate::model::plan::Stability) -> f64| plan.stability.as_ref().map(figure);
+        let comfort = |figure: fn(&Comfort) -> f64| plan.comfort.as_ref().map(figure);
+        let stability = |figure: fn(&Stability) -> f64| plan.stability.as_ref().map(figure);
+        let score = |score: fn(&Comfort) -> Option<u8>| {
+            plan.comfort.as_ref().and_then(score).map_or("-".to_owned(), |score| score.to_string())
+        };
         let cell = |figure: Option<f64>, digits| figure.map_or("-".to_owned(), |figure| format!("{figure:.digits$}"));
         rows.push(vec![
             (index + 1).to_string(),
@@ -18,6 +35,9 @@ pub fn table(plans: &[Plan]) -> String {
             cell(comfort(|comfort| comfort.objective), 2),
             cell(comfort(|comfort| comfort.muscular_regularised), 2),
             cell(comfort(|comfort| comfort.peripersonal_m), 3),
+            score(|comfort| Some(comfort.rula?.score)),
+            score(|comfort| Some(comfort.rula?.arm_and_wrist)),
+            score(|comfort| Some(comfort.reba?.score)),
             cell(stability(|stability| stability.load_factor), 2),
             cell(stability(|stability| stability.compliant_load_factor), 2),
         ]);

@@ -62,6 +62,7 @@ fn outcomes() -> Vec<Outcome> {
         verdict: Box::new(verdict),
         predicted_load_factor,
         posture: None,
+        scores: predicted_load_factor.map(|_| "RULA 3 (arm and wrist 4), REBA 5".into()),
         measures: None,
         recording: None,
     };
@@ -154,4 +155,10 @@ fn files_are_written_whole_or_not_at_all() {
     let error = file::write_whole(&taken, b"three").unwrap_err();
     assert!(error.to_string().starts_with(&format!("failed to write {}: ", taken.display())), "{error}");
     assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2, "nothing is left beside the directory");
+}
+
+#[test]
+fn the_page_states_the_scores_of_the_posture_where_there_are_any() {
+    let page = html::page(&outcomes());
+    assert_eq!(page.matches("Posture: RULA 3 (arm and wrist 4), REBA 5").count(), 1);
 }

@@ -11,6 +11,7 @@ use super::{
 use crate::{
     model::{
         operation::OperationKind,
+        plan::Comfort,
         scenario::PlannerKind,
         verdict::{CheckKind, VerdictKind},
     },
@@ -266,8 +267,9 @@ pub fn picture_name(hold: &HoldRow) -> String {
 /// The title of a picture.
 #[must_use]
 pub fn picture_title(hold: &HoldRow) -> String {
+    let scores = hold.comfort().and_then(Comfort::scores).map(|scores| format!(", {scores}")).unwrap_or_default();
     format!(
-        "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
+        "{}, {} planner: muscular comfort {}, peripersonal comfort {}{scores}",
         hold.operation,
         hold.planner,
         figure(hold.muscular(), 1),

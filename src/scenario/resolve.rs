@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     human::{
+        Human,
         body::MAX_LEAN_DEG,
         tools::{TOOL_NAMES, default_tool, named_tool},
     },
@@ -68,6 +69,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
 pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> Result<(), InputError> {
     check_person(check, &scenario.human)?;
     check_tool(check, &scenario.tool)?;
+    Human::new(&scenario.human, &scenario.tool).map_err(|error| check.syntax("human", error.to_string()))?;
     grip(check, &scenario.grip, robot)?;
     comfort(check, &scenario.comfort)?;
     simulation(check, &scenario.simulation)?;

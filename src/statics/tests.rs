@@ -14,7 +14,7 @@ use super::{
         interior_point::{InteriorPoint, Solution},
     },
 };
-use crate::{check::CheckedPlan, human::paper_tool, model::scenario::Person, scenario::read_plan};
+use crate::{check::CheckedPlan, human::default_tool, model::scenario::Person, scenario::read_plan};
 
 /// Friction of pad and board, docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
@@ -27,7 +27,7 @@ fn models() -> Vec<ContactModel> {
     let (_, robot) = read_plan(&paths[0], None).unwrap();
     let model = |path: &std::path::PathBuf| {
         let (plan, _) = read_plan(path, Some(&robot)).unwrap();
-        let checked = CheckedPlan::new(&robot, &plan, &Person::PAPER, &paper_tool(plan.operation.kind)).unwrap();
+        let checked = CheckedPlan::new(&robot, &plan, &Person::default(), &default_tool(plan.operation.kind)).unwrap();
         ContactModel::of_plan(&checked, FRICTION).unwrap()
     };
     paths.iter().map(model).collect()

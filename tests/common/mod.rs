@@ -7,7 +7,7 @@ use std::{path::Path, sync::LazyLock};
 
 use benchdog::{
     check::CheckedPlan,
-    human::paper_tool,
+    human::default_tool,
     model::{
         plan::Plan,
         scenario::{Person, Scenario},
@@ -34,7 +34,7 @@ pub fn scenario(name: &str) -> Scenario {
 
 /// The check of a plan with the default tool for its operation.
 pub fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
-    CheckedPlan::new(robot, plan, &Person::PAPER, &paper_tool(plan.operation.kind)).unwrap()
+    CheckedPlan::new(robot, plan, &Person::default(), &default_tool(plan.operation.kind)).unwrap()
 }
 
 /// The ten plans of `tests/data/holds` in the order of their names: object, arms and operation as `benchdog plan` wrote them.

@@ -2,7 +2,7 @@
 
 use benchdog::{
     check::{CheckedPlan, Flaw},
-    human::{Human, paper_tool},
+    human::{Human, default_tool},
     model::{plan::Plan, scenario::Person},
     robot::Robot,
     scenario::read_plan,
@@ -19,7 +19,7 @@ fn load() -> (Plan, Robot) {
 fn flaws(change: impl Fn(&mut Plan)) -> Vec<Flaw> {
     let (mut plan, robot) = load();
     change(&mut plan);
-    match CheckedPlan::new(&robot, &plan, &Person::PAPER, &paper_tool(plan.operation.kind)) {
+    match CheckedPlan::new(&robot, &plan, &Person::default(), &default_tool(plan.operation.kind)) {
         Ok(_) => Vec::new(),
         Err(flaws) => flaws.iter().cloned().collect(),
     }
@@ -161,7 +161,7 @@ fn a_thick_board_is_a_flaw_of_both_arms() {
 fn the_two_tolerances_differ() {
     let (mut plan, robot) = load();
     plan.arms[0].x_og.translation.vector.x += 0.9e-3;
-    let checked = CheckedPlan::new(&robot, &plan, &Person::PAPER, &paper_tool(plan.operation.kind)).unwrap();
+    let checked = CheckedPlan::new(&robot, &plan, &Person::default(), &default_tool(plan.operation.kind)).unwrap();
     let inexact = checked.inexact();
     let flaw = inexact.iter().find(|flaw| matches!(flaw, Flaw::Hand { arm: 0, .. })).unwrap().to_string();
     assert!(flaw.contains("9.0e-4 m and ") && flaw.ends_with("within 1e-6 m and 1e-6 rad"), "{flaw}");
@@ -173,9 +173,10 @@ fn the_two_tolerances_differ() {
 #[test]
 fn the_planner_keeps_limits_exactly() {
     let (mut plan, robot) = load();
-    let human = Human::new(&plan.human.unwrap().person(&Person::PAPER), &paper_tool(plan.operation.kind)).unwrap();
+    let human =
+        Human::new(&plan.human.unwrap().person(&Person::default()), &default_tool(plan.operation.kind)).unwrap();
     plan.human.as_mut().unwrap().q_rad[0] = human.arm().ranges.joints_rad[0][1] + 1e-7;
-    let checked = CheckedPlan::new(&robot, &plan, &Person::PAPER, &paper_tool(plan.operation.kind)).unwrap();
+    let checked = CheckedPlan::new(&robot, &plan, &Person::default(), &default_tool(plan.operation.kind)).unwrap();
     assert!(checked.inexact().iter().any(|flaw| matches!(flaw, Flaw::PersonAngle { joint: 0, .. })));
     assert_eq!(flaws(|plan| plan.human.as_mut().unwrap().q_rad[0] = 9.0)[0].key(), "human.q_rad[0]");
 }

@@ -3,7 +3,7 @@
 use benchdog::{
     model::{
         operation::Operation,
-        plan::Plan,
+        plan::{Plan, RebaScore, RulaScore},
         scenario::{Budget, Optima, PlannerKind, Scenario, StabilityKind},
     },
     planner::{Outcome, Planner},
@@ -37,6 +37,12 @@ fn the_check_finds_what_was_changed() {
     assert!(flaws(&|plan| plan.human.as_mut().unwrap().q_rad[3] += 1e-3).contains("human.q_rad: found the tool"));
     assert!(flaws(&|plan| plan.human.as_mut().unwrap().x_wb.translation.z += 0.1).contains("off the floor"));
     assert!(flaws(&|plan| plan.comfort.as_mut().unwrap().peripersonal_m += 0.01).contains("peripersonal_m"));
+    let rula =
+        |change: fn(&mut RulaScore)| flaws(&|plan| change(plan.comfort.as_mut().unwrap().rula.as_mut().unwrap()));
+    assert!(rula(|rula| rula.arm_and_wrist += 1).contains("comfort.rula.arm_and_wrist: found"));
+    let reba =
+        |change: fn(&mut RebaScore)| flaws(&|plan| change(plan.comfort.as_mut().unwrap().reba.as_mut().unwrap()));
+    assert!(reba(|reba| reba.score += 1).contains("comfort.reba.score: found"));
     assert!(flaws(&|plan| plan.operation.wrench_o.force_n *= 10.0).contains("does not resist the load"));
     assert!(flaws(&|plan| plan.stability = None).contains("stability: found nothing"));
     // The person walks into the robot, board and all.
@@ -205,5 +211,28 @@ fn a_load_beyond_anyones_strength_is_infeasible_and_says_so() {
     match PLANNER.plan(&scenario).unwrap() {
         Outcome::Infeasible(why) => assert_eq!(why.removed[0].0, "person's strength", "{why}"),
         Outcome::Found(plan) => panic!("nobody drills with 1500 N: {:?}", plan.comfort),
+    }
+}
+
+#[test]
+fn a_limit_of_a_score_filters_finished_plans_and_is_named() {
+    let mut scenario = fast("quickstart");
+    let free = plan(&scenario);
+    let comfort = free.comfort.unwrap();
+    let (rula, reba) = (comfort.rula.unwrap(), comfort.reba.unwrap());
+    // A plan that is at its limits is the best one still.
+    scenario.limits.rula = Some(rula.score);
+    scenario.limits.rula_arm = Some(rula.arm_and_wrist);
+    scenario.limits.reba = Some(reba.score);
+    assert_eq!(plan(&scenario).object, free.object);
+    // Below it, another plan is chosen or none is left.
+    scenario.limits.rula_arm = Some(rula.arm_and_wrist - 1);
+    let key = "comfort.rula.arm_and_wrist: found";
+    assert!(flaws(&free, &scenario).iter().any(|flaw| flaw.starts_with(key)));
+    match PLANNER.plan(&scenario).unwrap() {
+        Outcome::Found(plan) => verified(&plan, &scenario),
+        Outcome::Infeasible(why) => {
+            assert!(why.removed.iter().any(|(what, _)| *what == "RULA score of arm and wrist"), "{why}");
+        }
     }
 }

@@ -66,6 +66,8 @@ pub struct PostureMap {
     cells: Vec<Vec<Posture>>,
     /// Places of the most promising postures in `cells`, the best first.
     ranked: Vec<[usize; 2]>,
+    /// True if a posture within the limits of a natural one was drawn.
+    has_natural: bool,
 }
 
 impl PostureMap {
@@ -77,7 +79,8 @@ impl PostureMap {
         budget: &SearchBudget,
         seed: u64,
     ) -> Self {
-        let mut map = Self { roll_is_free: load.roll_is_free, cells: Vec::new(), ranked: Vec::new() };
+        let mut map =
+            Self { roll_is_free: load.roll_is_free, cells: Vec::new(), ranked: Vec::new(), has_natural: false };
         let mut found = vec![Vec::new(); map.cell_count()];
         let mut random = Pcg64::new(u128::from(seed), 0);
         let draws = if human.posture().is_natural() { budget.natural_postures } else { budget.postures };
@@ -87,6 +90,7 @@ impl PostureMap {
             if human.work_violation(&x_bt, &load.normal_t).is_some() {
                 continue;
             }
+            map.has_natural = true;
             let muscular = posture_muscular(human, &q_h_rad, &x_bt, &load.wrench_t, objective);
             if !within_strength(&muscular) {
                 continue;
@@ -132,7 +136,12 @@ impl PostureMap {
         if self.roll_is_free { POSTURE_RINGS } else { direction_cells(POSTURE_DIRECTIONS) }
     }
 
-    /// True if no posture is within the person's strength.
+    /// True if a posture within the limits of a natural one was drawn, strong enough or not.
+    pub fn has_natural(&self) -> bool {
+        self.has_natural
+    }
+
+    /// True if no posture is natural and within the person's strength.
     pub fn is_empty(&self) -> bool {
         self.cells.iter().all(Vec::is_empty)
     }

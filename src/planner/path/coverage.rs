@@ -8,10 +8,11 @@ use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
 
 use super::super::{
-    assemble::{assemble_placed, is_sound},
+    assemble::{accepted, assemble_placed},
     candidate::{Candidate, Placement, WorkPose},
     evaluate::{self, Evaluator},
-    library::{BoardGrasp, GraspLibrary, Posture, PostureMap},
+    library::{BoardGrasp, GraspLibrary, LibraryEntry, Posture, PostureMap},
+    natural_boards::natural_entries,
     outcome::PlanError,
     params::{SearchBudget, path::RESPONSE_STARTS},
     problem::{self, Problem},
@@ -63,6 +64,13 @@ impl<'a> PathProblem<'a> {
         // Force and person are the same at all points, seen from the tool.
         let postures = problem::posture_map(problem.scenario, &problem.human);
         Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, last_evaluation: 0, observer }))
+    }
+
+    /// Grasps of the boards that natural postures ask for.
+    pub fn natural_entries(&self) -> Vec<LibraryEntry> {
+        let Some(Evaluator { problem, .. }) = self.evaluators.first() else { return Vec::new() };
+        let count = self.budget.natural_boards;
+        natural_entries(problem.scenario, &problem.human, problem.robot, &self.postures, count)
     }
 
     /// Begins a search: the scenario's limit of evaluations applies to each one.
@@ -158,7 +166,7 @@ impl<'a> PathProblem<'a> {
         evaluate::response_query(problem, problem.scenario.operation, link_poses, grasp.x_wo, robot_points_w)
     }
 
-    /// The plan of a grasp with a response at a point, if its check finds no flaw.
+    /// The plan of a grasp with a response at a point, if it is accepted.
     pub fn plan(&mut self, grasp: &BoardGrasp, point: usize, response: &Response) -> Option<Plan> {
         let evaluations = self.evaluations;
         let robot = &self.library.robot;
@@ -172,7 +180,7 @@ impl<'a> PathProblem<'a> {
         candidate.work = WorkPose { q_h_rad: response.q_rad, heading_rad, ..candidate.work };
         let placement = Placement { x_wo: grasp.x_wo, x_wb: response.x_wb };
         let plan = assemble_placed(evaluator, &candidate, &placement, &comfort, evaluations)?;
-        is_sound(evaluator, &plan).then_some(plan)
+        accepted(evaluator, plan)
     }
 
     /// Seed of the search.

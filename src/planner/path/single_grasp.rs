@@ -35,6 +35,9 @@ pub fn search(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
 fn starts(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
     let library = problem.library;
     let mut estimated = best_estimates(problem, &library.entries);
+    let natural = problem.natural_entries();
+    estimated.extend(best_estimates(problem, &natural));
+    estimated.sort_by(|a, b| a.0.order(&b.0));
     let boards: Vec<_> = estimated.iter().take(RESAMPLED_BOARDS).map(|(_, grasp)| grasp.x_wo).collect();
     let count = problem.budget.path.resampled_boards;
     let resampled = resample(&library.robot, &boards, count, [problem.seed(), 1]);
