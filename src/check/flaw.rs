@@ -182,6 +182,15 @@ pub enum Flaw {
         /// The figure and its limits.
         figure: PostureFigure,
     },
+    /// A score of the person's posture beyond the scenario's limit.
+    Score {
+        /// The score's key.
+        key: &'static str,
+        /// The score.
+        found: u8,
+        /// The limit.
+        limit: u8,
+    },
     /// The person stands elsewhere than the scenario says.
     Place {
         /// Where the plan puts them.
@@ -247,17 +256,19 @@ impl Flaw {
             Self::Place { .. } => "human.x_wb".into(),
             Self::NoResponse => "comfort.average".into(),
             Self::NoEquilibrium | Self::ContactModel(_) => "stability".into(),
-            Self::Missing { key } | Self::Limit { key, .. } | Self::Figure { key, .. } => (*key).into(),
+            Self::Score { key, .. } | Self::Missing { key } | Self::Limit { key, .. } | Self::Figure { key, .. } => {
+                (*key).into()
+            }
         }
     }
 
     /// The name of a flaw for which there is no simulation: `not_visible` if the person does not see the work, `not_natural` if
-    /// they would not stand so, `not_there` if they stand elsewhere; `None` for all others.
+    /// they would not stand so or a score of the posture is too high, `not_there` if they stand elsewhere; `None` for all others.
     #[must_use]
     pub fn verdict_name(&self) -> Option<&'static str> {
         match self {
             Self::Posture { constraint, .. } if constraint.is_of_sight() => Some("not_visible"),
-            Self::Posture { .. } => Some("not_natural"),
+            Self::Posture { .. } | Self::Score { .. } => Some("not_natural"),
             Self::Place { .. } => Some("not_there"),
             _ => None,
         }
@@ -304,6 +315,7 @@ impl Flaw {
             Self::Contact(contact) => contact.clone(),
             Self::Strength { found } => format!("an activation of {found}"),
             Self::Posture { constraint, figure } => format!("{:.3}, {}", figure.value, constraint.broken()),
+            Self::Score { found, .. } => found.to_string(),
             Self::Place { found, .. } => describe(found),
             Self::NoResponse => "no response on the grid".into(),
             Self::NoEquilibrium => "a grasp that does not resist the load".into(),
@@ -368,6 +380,7 @@ impl Flaw {
                 (None, Some(max)) => format!("at most {max}"),
                 (None, None) => "any value".into(),
             },
+            Self::Score { limit, .. } => format!("at most {limit}"),
             Self::Place { expected, .. } => format!("the scenario's {}", describe(expected)),
             Self::NoResponse => "at least one response".into(),
             Self::NoEquilibrium | Self::ContactModel(_) => "a stable grasp".into(),

@@ -11,4 +11,4 @@ mod tolerances;
 
 pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan};
 pub use flaw::{Flaw, Flaws};
-pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, POSTURE_TOLERANCE, PoseTolerance};
+pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, POSTURE_DEG, POSTURE_M, PoseTolerance};

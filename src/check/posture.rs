@@ -6,12 +6,15 @@ use nalgebra::Point3;
 use super::{
     checked_plan::{CheckedPerson, CheckedPlan},
     flaw::Flaw,
-    tolerances::POSTURE_TOLERANCE,
+    tolerances::{POSTURE_DEG, POSTURE_M},
 };
 use crate::{
     collision::{CollisionModel, Scene},
     human::Standing,
-    model::plan::PostureFigures,
+    model::{
+        plan::{PostureConstraint, PostureFigures},
+        scenario::Limits,
+    },
 };
 
 impl CheckedPlan<'_> {
@@ -28,6 +31,24 @@ impl CheckedPlan<'_> {
         Some(human.posture_figures(&posture.q_rad, &normal_t, free_share))
     }
 
+    /// The scores of the person's posture that exceed their limits.
+    #[must_use]
+    pub fn score_flaws(&self, limits: &Limits) -> Vec<Flaw> {
+        let Some(CheckedPerson { posture, human }) = self.person() else { return Vec::new() };
+        let wrench_w = self.plan().operation.wrench_w(&self.plan().object.x_wo);
+        let (rula, reba) = (human.rula(&posture.q_rad, &wrench_w), human.reba(&posture.q_rad, &wrench_w));
+        let scores = [
+            ("comfort.rula.score", rula.score, limits.rula),
+            ("comfort.rula.arm_and_wrist", rula.arm_and_wrist, limits.rula_arm),
+            ("comfort.reba.score", reba.score, limits.reba),
+        ];
+        let exceeded = scores.into_iter().filter_map(|(key, found, limit)| {
+            let limit = limit.filter(|limit| found > *limit)?;
+            Some(Flaw::Score { key, found, limit })
+        });
+        exceeded.collect()
+    }
+
     /// The limits of posture and place that the person does not keep, but for rounding of written numbers.
     #[must_use]
     pub fn posture_flaws(&self) -> Vec<Flaw> {
@@ -36,9 +57,10 @@ impl CheckedPlan<'_> {
         };
         let standing = Standing::of(&posture.x_wb);
         let margin = human.place_margins(&standing).into_iter().fold(f64::INFINITY, f64::min);
-        let place =
-            (margin < -POSTURE_TOLERANCE).then(|| Flaw::Place { found: standing, expected: human.given_standing() });
-        let broken = figures.iter().filter(|(_, figure)| figure.margin() < -POSTURE_TOLERANCE);
+        let place = (margin < -POSTURE_M).then(|| Flaw::Place { found: standing, expected: human.given_standing() });
+        let tolerance =
+            |constraint: PostureConstraint| if constraint.unit() == "deg" { POSTURE_DEG } else { POSTURE_M };
+        let broken = figures.iter().filter(|(constraint, figure)| figure.margin() < -tolerance(*constraint));
         place.into_iter().chain(broken.map(|(constraint, figure)| Flaw::Posture { constraint, figure })).collect()
     }
 }

@@ -54,9 +54,12 @@ pub const EXACT: PoseTolerance = PoseTolerance { position_m: 1e-6, rotation_rad:
 /// Largest excess of a joint angle over its limit, rad: rounding of written numbers.
 pub(super) const LIMIT_RAD: f64 = 1e-6;
 
-/// Largest excess of a posture's figure over its limit, in its own unit (degrees, m or 1): a plan that is written with three
-/// decimals of rad and m misses degrees by a few hundredths, and m by a millimetre.
-pub const POSTURE_TOLERANCE: f64 = 1e-3;
+/// Largest excess of a posture's angle over its limit, degrees: a plan that is written with three decimals of rad and m
+/// misses its angles by less. It is that of [`GIVEN`].
+pub const POSTURE_DEG: f64 = 0.1;
+
+/// The same of a distance, m, and of a share. It is that of [`GIVEN`].
+pub const POSTURE_M: f64 = 1e-3;
 
 /// Largest distance of the tool point outside the board, m: rounding of written numbers.
 pub const ON_BOARD_M: f64 = 1e-9;

@@ -4,7 +4,7 @@
 //! plan states; reach, joint limits, strength, standing and collisions are tested. It serves plans of other planners as well.
 //! Metrics, collision model and stability program are those of the search; its way of choosing and placing is not.
 
-use super::scores::{beyond_limits, scored};
+use super::scores::scored;
 use crate::{
     check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
     collision::CollisionModel,
@@ -86,11 +86,7 @@ fn verify_comfort(
     }
     let found = scored(human, &posture.q_rad, &wrench_w, found);
     flaws.extend(wrong_scores(stated, &found));
-    flaws.extend(beyond_limits(&found, &scenario.limits).map(|score| Flaw::Limit {
-        key: score.key,
-        found: score.found.into(),
-        limit: score.limit.into(),
-    }));
+    flaws.extend(checked.score_flaws(&scenario.limits));
 }
 
 /// The stated scores of the posture that differ from the recomputed ones. A plan need not state them.
