@@ -9,11 +9,12 @@ use super::{
     assemble::{accepted, assemble},
     evaluate::{Evaluator, Feasible},
     library::GraspLibrary,
+    natural_boards::natural_entries,
     outcome::{Infeasible, Outcome, PlanError},
     params::{SearchBudget, select::FRONT_SHARES},
     problem::Problem,
     refine,
-    search::screened,
+    search::{own_postures, screened},
     stats::{Observer, SearchStats, reborrow},
     warm_starts::WarmStarts,
 };
@@ -164,7 +165,14 @@ impl Sweep<'_> {
         let mut budget = SearchBudget::of(scenario);
         let mut starts = Vec::new();
         if from_scratch {
-            starts = screened(&mut evaluator, self.library, None, &self.warm.entries, &budget);
+            let postures = own_postures(&evaluator.problem.human, scenario);
+            // The postures of one comfort alone are others than those of both.
+            let own = is_alone(scenario).then(|| {
+                let Evaluator { problem, .. } = &evaluator;
+                natural_entries(scenario, &problem.human, problem.robot, &postures, budget.natural_boards)
+            });
+            let entries = own.as_ref().unwrap_or(&self.warm.entries);
+            starts = screened(&mut evaluator, self.library, &postures, entries, &budget);
         }
         let screened = starts.len();
         if from_scratch {

@@ -18,7 +18,7 @@ use super::{
     problem::Problem,
 };
 use crate::{
-    human::{ArmAngles, peripersonal_m},
+    human::{ArmAngles, Standing, peripersonal_m},
     model::frames::Pose,
 };
 
@@ -41,6 +41,7 @@ pub fn screen<'e>(
     budget: &SearchBudget,
 ) -> Vec<Feasible> {
     let Evaluator { problem, stats, .. } = evaluator;
+    let place_is_given = problem.human.place_is_given();
     let mut entries = entries.peekable();
     if entries.peek().is_none() {
         stats.count_rejected(draws, Rejection::RobotReach);
@@ -57,17 +58,21 @@ pub fn screen<'e>(
         }
         let x_wt = entry.grasp.x_wo * problem.scenario.operation.x_ot;
         let matching = postures.postures(&x_wt, problem.robot.robot.floor_z_m);
-        if matching.is_empty() {
-            stats.reject(Rejection::PersonReach);
-        }
-        pairs.extend(matching.iter().map(|posture| {
+        let before = pairs.len();
+        pairs.extend(matching.iter().filter_map(|posture| {
+            let x_wb = Alignment::new(problem, &entry.grasp, &posture.x_bt).x_wb;
             let (robot_w, body_b) = (&entry.coarse_points_w, &posture.medium_points_b[..COARSE_POINTS]);
-            Pair { entry, posture, estimate: estimate(problem, &entry.grasp, posture, robot_w, body_b) }
+            let pair = || Pair { entry, posture, estimate: estimate(problem, &x_wb, posture, robot_w, body_b) };
+            (!place_is_given || problem.human.may_stand(&Standing::of(&x_wb))).then(pair)
         }));
+        if pairs.len() == before {
+            stats.reject(if matching.is_empty() { Rejection::PersonReach } else { Rejection::PersonPlace });
+        }
     }
     keep_best(&mut pairs, SECOND_RANKING * budget.evaluated_pairs);
     for Pair { entry, posture, estimate: estimated } in &mut pairs {
-        *estimated = estimate(problem, &entry.grasp, posture, &entry.robot_points_w, &posture.medium_points_b);
+        let x_wb = Alignment::new(problem, &entry.grasp, &posture.x_bt).x_wb;
+        *estimated = estimate(problem, &x_wb, posture, &entry.robot_points_w, &posture.medium_points_b);
     }
     keep_best(&mut pairs, budget.evaluated_pairs);
     evaluate_pairs(evaluator, budget, &pairs)
@@ -122,16 +127,16 @@ fn evaluate_pairs(evaluator: &mut Evaluator<'_>, budget: &SearchBudget, pairs: &
     kept
 }
 
-/// The objective of a grasp and a posture if they fitted exactly, by the given points of the robot (W) and the body (B).
+/// The objective of a grasp and a posture if they fitted exactly with the body at `x_wb`, by the given points of the robot (W) and
+/// the body (B).
 fn estimate(
     problem: &Problem<'_>,
-    grasp: &BoardGrasp,
+    x_wb: &Pose,
     posture: &Posture,
     robot_w: &[Point3<f64>],
     body_b: &[Point3<f64>],
 ) -> f64 {
     let settings = &problem.objective;
-    let x_wb = Alignment::new(problem, grasp, &posture.x_bt).x_wb;
     let body_w: ArrayVec<_, MEDIUM_POINTS> = body_b.iter().map(|p_b| x_wb * p_b).collect();
     let distance_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body_w, robot_w);
     settings.weight_muscular * posture.muscular + settings.weight_peripersonal * distance_m

@@ -31,7 +31,9 @@ pub fn search(
         match &budget.warm_rounds {
             Some(rounds) if !starts.is_empty() => refine::refine(evaluator, starts, rounds),
             _ => {
-                starts.extend(screened(evaluator, library, warm.postures.as_ref(), &warm.entries, budget));
+                if let Some(postures) = &warm.postures {
+                    starts.extend(screened(evaluator, library, postures, &warm.entries, budget));
+                }
                 refine::refine(evaluator, starts, &budget.rounds)
             }
         }
@@ -39,26 +41,19 @@ pub fn search(
     rank(evaluator, found)
 }
 
-/// Starts from screening the library and the entries for natural postures; without a posture map it makes one.
+/// Starts from screening the library and the entries for natural postures.
 pub fn screened(
     evaluator: &mut Evaluator<'_>,
     library: &GraspLibrary,
-    postures: Option<&PostureMap>,
+    postures: &PostureMap,
     natural: &[LibraryEntry],
     budget: &SearchBudget,
 ) -> Vec<Feasible> {
-    let entries = library.entries.iter().chain(natural);
-    match postures {
-        Some(postures) => screen::screen(evaluator, entries, library.draws, postures, budget),
-        None => {
-            let postures = own_postures(&evaluator.problem.human, evaluator.problem.scenario);
-            screen::screen(evaluator, entries, library.draws, &postures, budget)
-        }
-    }
+    screen::screen(evaluator, library.entries.iter().chain(natural), library.draws, postures, budget)
 }
 
 /// The posture map of the scenario's task family.
-fn own_postures(human: &Human, scenario: &Scenario) -> PostureMap {
+pub fn own_postures(human: &Human, scenario: &Scenario) -> PostureMap {
     problem::posture_map(TaskFamily::of(scenario).scenario(), human)
 }
 

@@ -119,7 +119,17 @@ fn all_faults_are_found_at_once() {
         plan.human.as_mut().unwrap().q_rad[0] = 9.0;
     });
     let keys: Vec<_> = flaws.iter().map(Flaw::key).collect();
-    assert_eq!(keys, ["object.mass_kg", "arms[0].grip_force_n", "arms[1].q_rad[0]", "human.q_rad[0]"]);
+    assert_eq!(
+        keys,
+        [
+            "object.mass_kg",
+            "arms[0].grip_force_n",
+            "arms[1].q_rad[0]",
+            "human.q_rad[0]",
+            // The upper arm of that angle is raised above the shoulder.
+            "human.q_rad"
+        ]
+    );
 }
 
 /// What cannot follow from a fault is still checked, and what follows from it is not reported.
@@ -175,8 +185,8 @@ fn the_planner_keeps_limits_exactly() {
     let (mut plan, robot) = load();
     let human =
         Human::new(&plan.human.unwrap().person(&Person::default()), &default_tool(plan.operation.kind)).unwrap();
-    plan.human.as_mut().unwrap().q_rad[0] = human.arm().ranges.joints_rad[0][1] + 1e-7;
+    plan.human.as_mut().unwrap().q_rad[3] = human.anatomy().joints_rad[3][1] + 1e-7;
     let checked = CheckedPlan::new(&robot, &plan, &Person::default(), &default_tool(plan.operation.kind)).unwrap();
-    assert!(checked.inexact().iter().any(|flaw| matches!(flaw, Flaw::PersonAngle { joint: 0, .. })));
+    assert!(checked.inexact().iter().any(|flaw| matches!(flaw, Flaw::PersonAngle { joint: 3, .. })));
     assert_eq!(flaws(|plan| plan.human.as_mut().unwrap().q_rad[0] = 9.0)[0].key(), "human.q_rad[0]");
 }

@@ -7,5 +7,6 @@ mod shared;
 
 mod check;
 mod comfort;
+mod natural;
 mod planner;
 mod plans;

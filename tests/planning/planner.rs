@@ -132,7 +132,7 @@ fn the_default_budget_comes_near_the_best_known_objective() {
     let scenario = scenario("cut-rim");
     let [_, _, thickness_m] = scenario.object.size_m;
     for (angle_deg, best_known, least) in
-        [(0.0_f64, 138.8, 0.98), (180.0, 138.8, 0.98), (157.5, 142.2, 0.99), (270.0, 140.8, 0.98)]
+        [(0.0_f64, 86.7, 0.985), (180.0, 86.7, 0.985), (157.5, 86.0, 0.985), (270.0, 89.7, 0.985)]
     {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         let mut scenario = scenario.clone();
@@ -140,7 +140,7 @@ fn the_default_budget_comes_near_the_best_known_objective() {
         scenario.operation = Operation::cut([0.12 * cos, 0.12 * sin], direction_o, 30.0, thickness_m);
         let plan = plan(&scenario);
         let share = plan.comfort.unwrap().objective / best_known;
-        // Single seeds reach 0.984 to 1. At 157.5 degrees a local optimum that is easier to find has 0.985.
+        // Of 25 operations a single seed reaches 0.99 for 24 or 25, and 0.987 for the rest.
         assert!(share > least, "at {angle_deg} degrees: {share}");
     }
 }

@@ -255,7 +255,7 @@ mod tests {
             evaluate::{Configuration, Evaluator, comfort},
             library::GraspLibrary,
             params::SearchBudget,
-            search::screened,
+            search::{own_postures, screened},
             stats::SearchStats,
         },
         super::linearization::simple_margins,
@@ -272,8 +272,9 @@ mod tests {
             loaded.scenario.planner.budget = Budget::Fast;
             let library = GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m);
             let problem = Problem::new(&loaded.scenario, &library.robot).unwrap();
+            let postures = own_postures(&problem.human, &loaded.scenario);
             let mut evaluator = Evaluator::new(problem, SearchStats::unlimited());
-            let starts = screened(&mut evaluator, &library, None, &[], &SearchBudget::of(&loaded.scenario));
+            let starts = screened(&mut evaluator, &library, &postures, &[], &SearchBudget::of(&loaded.scenario));
             assert!(starts.len() > 2);
             starts.iter().for_each(|start| compare(&evaluator.problem, start));
         }
