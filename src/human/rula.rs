@@ -25,10 +25,7 @@ use std::sync::LazyLock;
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use super::{
-    arm::{Arm, ArmAngles},
-    body::Body,
-};
+use super::{arm::Arm, body::Body, ranges::ArmAngles};
 use crate::model::{GRAVITY_W, plan::RulaScore};
 
 /// `assets/human/rula.toml`.
