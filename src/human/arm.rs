@@ -10,12 +10,11 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use super::{body::Body, ranges::ArmRanges};
+use super::{
+    body::Body,
+    ranges::{ArmAngles, ArmRanges},
+};
 use crate::model::frames::Pose;
-
-/// Joint angles of the working arm, rad, positive towards: shoulder flexion, abduction, internal rotation, elbow flexion,
-/// pronation, wrist flexion, ulnar deviation. For a left-handed person those of the mirrored right arm.
-pub type ArmAngles = [f64; 7];
 
 /// Rounding of twist and elevation, rad.
 const ORIENTATION_TOLERANCE_RAD: f64 = 1e-9;

@@ -233,3 +233,287 @@ impl Strength {
         (self.torque_nm(2, 0.0, Sense::Positive) + self.torque_nm(2, 0.0, Sense::Negative)) / 2.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+    use nalgebra::Rotation3;
+    use rand::RngExt;
+
+    use super::*;
+    use crate::{
+        human::{
+            ArmAngles, Human, Muscular,
+            ranges::{elevation_rad, shoulder_angles},
+            standing_pose_w,
+            testing::{HANDS, generator, leaning, random_wrench, worker},
+        },
+        model::{
+            frames::Pose,
+            operation::OperationKind,
+            scenario::{ComfortSettings, Hand, MuscularMetric, Sex},
+            wrench::Wrench,
+        },
+    };
+
+    fn settings() -> ComfortSettings {
+        ComfortSettings { muscular: MuscularMetric::Intrinsic, ..ComfortSettings::default() }
+    }
+
+    fn man() -> Strength {
+        Strength::new(Sex::Male, 50.0)
+    }
+
+    /// The squares of the shoulder's activations of a man.
+    fn squares(r_vu: &Matrix3<f64>, moment_nm: Vector3<f64>, strength: &Strength) -> [f64; 3] {
+        let zero = Vector3::zeros();
+        Shoulder { r_vu, moment_nm, moment_slope: zero, turn: zero }.squares(strength).map(|square| square.value)
+    }
+
+    /// The upper arm with this elevation, azimuth from x_V towards y_V, and twist.
+    fn upper_arm(elevation_deg: f64, azimuth_deg: f64, twist_deg: f64) -> Matrix3<f64> {
+        let [q1, q2, q3] =
+            shoulder_angles(elevation_deg.to_radians(), azimuth_deg.to_radians(), twist_deg.to_radians());
+        worker(Hand::Right, OperationKind::Drill).arm().frames(&[q1, q2, q3, 0.0, 0.0, 0.0, 0.0]).r_bu
+    }
+
+    /// The angles of an orientation of the upper arm.
+    fn angles_of(r_vu: &Matrix3<f64>) -> [f64; 3] {
+        let azimuth_rad = atan2(-r_vu.m23, -r_vu.m13);
+        shoulder_angles(elevation_rad(r_vu), azimuth_rad, twist_rad(r_vu))
+    }
+
+    #[test]
+    fn angles_of_the_same_orientations_give_the_same_value() {
+        let x_wb = standing_pose_w(1.0, 0.2, 2.0, -0.9);
+        for hand in HANDS {
+            let (human, mut generator) = (leaning(hand, 8.0), generator(41));
+            for round in 0..5_000 {
+                let mut angle_rad = || generator.random_range(-PI..PI);
+                let q_rad: ArmAngles = std::array::from_fn(|_| angle_rad());
+                let ([q1, q2, q3, ..], turn) = (q_rad, angle_rad());
+                // The other branch; and at 90 degrees of abduction q1 and q3 turn the arm about one axis.
+                let (one, other) = match round % 3 {
+                    0 => ([q1, q2, q3], [q1 + PI, PI - q2, q3 + PI]),
+                    1 => ([q1, FRAC_PI_2, q3], [q1 + turn, FRAC_PI_2, q3 + turn]),
+                    _ => ([q1, -FRAC_PI_2, q3], [q1 + turn, -FRAC_PI_2, q3 - turn]),
+                };
+                let with = |shoulder: [f64; 3]| {
+                    let mut q_rad = q_rad;
+                    q_rad[..3].copy_from_slice(&shoulder);
+                    q_rad
+                };
+                let (one, other) = (with(one), with(other));
+                let frames = [one, other].map(|q_rad| human.arm().frames(&q_rad));
+                // Rounding of angles up to 2 pi in seven turns.
+                assert!((frames[0].r_bu - frames[1].r_bu).norm() < 1e-14);
+                assert!((frames[0].r_bh - frames[1].r_bh).norm() < 1e-14);
+                let wrench_w = random_wrench(&mut generator);
+                let [one, other] = [one, other].map(|q_rad| human.muscular(&q_rad, &x_wb, &wrench_w, &settings()));
+                for (a, b) in one.activations.iter().zip(other.activations) {
+                    // The azimuth loses digits by 1 / 0.2 and the twist by 1 / cos^2(85 degrees), activations are up to 20.
+                    assert!((a - b).abs() < 1e-9, "{one:?} {other:?}");
+                }
+                assert!((one.regularised - other.regularised).abs() < 1e-9, "{one:?} {other:?}");
+            }
+        }
+    }
+
+    /// Largest slope of an activation of the shoulder if it turns, 1/rad. The moment is up to 70 N m (52 N at 0.95 m, and the
+    /// weights), the smallest strength 18 N m, so the activation a is up to 4. By the moment 4, by its direction 4 / s with the
+    /// horizontal part s = 0.2 of u, by the strength's slope of up to 50 N m/rad 11, by the azimuth between two strengths
+    /// 4 x 2 x 5 / 2, and by the blend near hanging 4 x sqrt(3) / 0.2.
+    const STEEPEST: f64 = 4.0 + 20.0 + 11.0 + 20.0 + 35.0;
+
+    /// Largest slope of the comfort `1 / (a^2 + eps)` by the norm a of the activations: at `a^2 = eps / 3`.
+    const STEEPEST_COMFORT: f64 = 280.0;
+
+    #[test]
+    fn the_value_has_no_jumps_on_paths_of_the_shoulder() {
+        const STEP_RAD: f64 = 1e-6;
+        let x_wb = standing_pose_w(1.0, 0.2, 2.0, -0.9);
+        for hand in HANDS {
+            let (human, mut generator) = (leaning(hand, 8.0), generator(42));
+            for round in 0..5_000 {
+                let mut within = |low: f64, high: f64| generator.random_range(low..=high);
+                let (azimuth, twist) = (within(-180.0, 180.0), within(-89.0, 89.0));
+                // Through hanging, through 90 degrees of abduction to either side, through the end of the blend, anywhere.
+                let middle = match round % 5 {
+                    0 => upper_arm(0.0, azimuth, twist),
+                    1 => upper_arm(90.0, -90.0, twist),
+                    2 => upper_arm(90.0, 90.0, twist),
+                    3 => upper_arm(within(0.0, 12.0), azimuth, twist),
+                    _ => upper_arm(within(0.0, 149.0), azimuth, twist),
+                };
+                let axis = Vector3::from_fn(|_, _| within(-1.0, 1.0)).normalize();
+                let beyond = [within(0.0, 2.0), within(-1.5, 1.5), within(-1.2, 1.3), within(-0.3, 0.6)];
+                let wrench_w = random_wrench(&mut generator);
+                let at = |step: f64| -> Muscular {
+                    let r_vu = Rotation3::new(axis * (step * STEP_RAD)).matrix() * middle;
+                    let [q1, q2, q3] = angles_of(&r_vu);
+                    let [q4, q5, q6, q7] = beyond;
+                    human.muscular(&[q1, q2, q3, q4, q5, q6, q7], &x_wb, &wrench_w, &settings())
+                };
+                let path = [-2.5, -1.5, -0.5, 0.5, 1.5, 2.5].map(at);
+                for pair in path.windows(2) {
+                    let steps = [0, 1, 2].map(|part| (pair[0].activations[part] - pair[1].activations[part]).abs());
+                    assert!(steps.iter().all(|step| *step < STEEPEST * STEP_RAD), "{middle} {pair:?}");
+                    let step = (pair[0].regularised - pair[1].regularised).abs();
+                    // All seven activations together are no steeper than the sum of the shoulder's three.
+                    assert!(step < STEEPEST_COMFORT * 3.0 * STEEPEST * STEP_RAD, "{middle} {pair:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn raising_a_horizontal_arm_takes_flexion_abduction_or_the_mean_of_both() {
+        let strength = man();
+        let of = |joint, sense| strength.torque_nm(joint, FRAC_PI_2, sense);
+        let at_end = |joint, degrees: f64, sense| strength.torque_nm(joint, degrees.to_radians(), sense);
+        use Sense::{Negative, Positive};
+        let mean = |sense| (of(0, sense) + of(1, sense)) / 2.0;
+        // Behind the body raising is extension at its end of -60 degrees, across it adduction at -30 degrees.
+        let expected = [
+            (0.0, of(0, Positive), of(0, Negative)),
+            (-90.0, of(1, Positive), of(1, Negative)),
+            (-45.0, mean(Positive), mean(Negative)),
+            (180.0, at_end(0, -60.0, Negative), at_end(0, -60.0, Positive)),
+            (90.0, at_end(1, -30.0, Negative), at_end(1, -30.0, Positive)),
+        ];
+        for (azimuth_deg, up_nm, down_nm) in expected {
+            let r_vu = upper_arm(90.0, azimuth_deg, 20.0);
+            let (sin, cos) = libm::sincos(azimuth_deg.to_radians());
+            // u x z, the axis about which u rises.
+            let axis = Vector3::new(sin, -cos, 0.0);
+            for (moment_nm, limit_nm) in [(10.0, up_nm), (-10.0, down_nm)] {
+                let found = squares(&r_vu, axis * moment_nm, &strength);
+                // Rounding of the azimuth.
+                assert!((found[0] - (10.0 / limit_nm).powi(2)).abs() < 1e-14, "{azimuth_deg}: {found:?}");
+                assert!(found[1] < 1e-28 && found[2] < 1e-28, "{azimuth_deg}: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn moving_a_raised_arm_sideways_and_turning_it_take_their_own_strengths() {
+        let strength = man();
+        // Straight ahead: about z the arm goes to the left, to the middle of the body. Tabulated: 92 and 67 N m.
+        let r_vu = upper_arm(90.0, 0.0, 30.0);
+        for (moment_nm, limit_nm) in [(10.0, 92.0_f64), (-10.0, 67.0)] {
+            let found = squares(&r_vu, Vector3::z() * moment_nm, &strength);
+            assert!((found[1] - (10.0 / limit_nm).powi(2)).abs() < 1e-14, "{found:?}");
+        }
+        // Internal rotation is about the axis from elbow to shoulder, here backward.
+        for (moment_nm, sense) in [(10.0, Sense::Positive), (-10.0, Sense::Negative)] {
+            let found = squares(&r_vu, Vector3::x() * -moment_nm, &strength);
+            let limit_nm = strength.torque_nm(2, 30_f64.to_radians(), sense);
+            assert!((found[2] - (10.0 / limit_nm).powi(2)).abs() < 1e-14, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_hanging_arm_has_the_activations_of_flexion_abduction_and_rotation() {
+        use Sense::{Negative, Positive};
+        let strength = man();
+        let r_vu = upper_arm(0.0, 0.0, -25.0);
+        let at = |joint, q_deg: f64, sense| strength.torque_nm(joint, q_deg.to_radians(), sense);
+        // Flexion is about -y, abduction of the right arm about -x, internal rotation about z.
+        let moment_nm = Vector3::new(-3.0, -7.0, 4.0);
+        let expected = [7.0 / at(0, 0.0, Positive), 3.0 / at(1, 0.0, Positive), 4.0 / at(2, -25.0, Positive)];
+        let opposite = [7.0 / at(0, 0.0, Negative), 3.0 / at(1, 0.0, Negative), 4.0 / at(2, -25.0, Negative)];
+        for (moment_nm, expected) in [(moment_nm, expected), (-moment_nm, opposite)] {
+            for (found, expected) in squares(&r_vu, moment_nm, &strength).into_iter().zip(expected) {
+                assert!((found.sqrt() - expected).abs() < 1e-14, "{found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn straight_up_the_strengths_are_means_without_direction() {
+        let strength = man();
+        let r_vu = upper_arm(175.0, 10.0, 60.0);
+        let moment_nm = Vector3::new(5.0, -8.0, 3.0);
+        let parts = parts_nm(&r_vu, &moment_nm);
+        let rotation_nm = [Sense::Positive, Sense::Negative].map(|sense| strength.torque_nm(2, 0.0, sense));
+        let limits_nm = [79.5, 79.5, (rotation_nm[0] + rotation_nm[1]) / 2.0];
+        for ((found, part), limit_nm) in squares(&r_vu, moment_nm, &strength).iter().zip(parts).zip(limits_nm) {
+            assert!((found.sqrt() - part.abs() / limit_nm).abs() < 1e-13, "{found} {part} {limit_nm}");
+        }
+    }
+
+    #[test]
+    fn parts_of_simple_moments() {
+        let near = |found: [f64; 3], expected: [f64; 3]| {
+            assert!(found.iter().zip(expected).all(|(f, e)| (f - e).abs() < 1e-14), "{found:?} {expected:?}");
+        };
+        let ahead = upper_arm(90.0, 0.0, 0.0);
+        near(parts_nm(&ahead, &-Vector3::y()), [1.0, 0.0, 0.0]);
+        near(parts_nm(&ahead, &Vector3::z()), [0.0, 1.0, 0.0]);
+        near(parts_nm(&ahead, &-Vector3::x()), [0.0, 0.0, 1.0]);
+        let aside = upper_arm(90.0, -90.0, 0.0);
+        near(parts_nm(&aside, &-Vector3::x()), [1.0, 0.0, 0.0]);
+        near(parts_nm(&aside, &Vector3::z()), [0.0, 1.0, 0.0]);
+        near(parts_nm(&aside, &Vector3::y()), [0.0, 0.0, 1.0]);
+        // A vertical upper arm has no direction of raising.
+        assert_eq!(parts_nm(&Matrix3::identity(), &Vector3::new(3.0, 4.0, 5.0)), [0.0, 0.0, 5.0]);
+        // The three directions are perpendicular.
+        let parts = parts_nm(&upper_arm(50.0, -30.0, 40.0), &Vector3::new(3.0, 4.0, 5.0));
+        assert!((parts.iter().map(|part| part * part).sum::<f64>() - 50.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_straight_arm_held_out_is_as_hard_as_its_weight_in_every_direction() {
+        let human = worker(Hand::Right, OperationKind::Drill);
+        // As for the paper's metric by hand: masses 2.0325, 1.215, 0.4575 kg and the drill's 1.3 kg.
+        let hand = 0.4575 * 0.3624 * 0.189 + 1.3 * 0.0875;
+        let elbow = 1.215 * 0.4574 * 0.2555 + 1.7575 * 0.2555 + hand;
+        let shoulder_nm = 9.81 * (2.0325 * 0.5772 * 0.3255 + (1.215 + 1.7575) * 0.3255 + elbow);
+        let strength = man();
+        let [flexion_nm, abduction_nm] = [0, 1].map(|joint| strength.torque_nm(joint, FRAC_PI_2, Sense::Positive));
+        let limits_nm =
+            [(0.0, flexion_nm), (-FRAC_PI_4, (flexion_nm + abduction_nm) / 2.0), (-FRAC_PI_2, abduction_nm)];
+        for (azimuth_rad, limit_nm) in limits_nm {
+            let [q1, q2, q3] = shoulder_angles(FRAC_PI_2, azimuth_rad, 0.0);
+            let q_rad = [q1, q2, q3, 0.0, 0.0, 0.0, 0.0];
+            let found = human.muscular(&q_rad, &Pose::identity(), &Wrench::default(), &settings());
+            // Rounding of some ten products.
+            assert!((found.activations[0] - shoulder_nm / limit_nm).abs() < 1e-13, "{found:?}");
+            assert!(found.activations[1..3].iter().all(|activation| activation.abs() < 1e-13), "{found:?}");
+            let figures = human.muscular_figures(&q_rad, &Pose::identity(), &Wrench::default(), &settings());
+            assert_eq!(figures.intrinsic, found);
+            assert!((figures.shoulder.raising_nm - shoulder_nm).abs() < 1e-13, "{figures:?}");
+        }
+    }
+
+    #[test]
+    fn a_womans_arm_is_weaker_and_the_percentile_scales_every_part() {
+        let woman = Strength::new(Sex::Female, 50.0);
+        let (man, weak_man, mut generator) = (man(), Strength::new(Sex::Male, 5.0), generator(43));
+        for _ in 0..1_000 {
+            let mut within = |low: f64, high: f64| generator.random_range(low..=high);
+            let r_vu = upper_arm(within(0.0, 180.0), within(-180.0, 180.0), within(-90.0, 90.0));
+            let moment_nm = Vector3::from_fn(|_, _| within(-30.0, 30.0));
+            let of = |strength: &Strength| squares(&r_vu, moment_nm, strength);
+            for ((his, hers), weak) in of(&man).into_iter().zip(of(&woman)).zip(of(&weak_man)) {
+                assert!(hers > his, "{hers} {his}");
+                // z at 5 % is -1.644854: strengths are 1 - 0.277 x 1.644854 = 0.544375 of the median.
+                assert!((his / weak / 0.544_375_f64.powi(2) - 1.0).abs() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn the_comfort_is_bounded_by_the_resting_co_contraction() {
+        let (human, mut generator): (Human, _) = (worker(Hand::Right, OperationKind::Drill), generator(44));
+        for _ in 0..1_000 {
+            let q_rad = std::array::from_fn(|_| generator.random_range(-PI..PI));
+            let wrench_w = random_wrench(&mut generator);
+            let found = human.muscular(&q_rad, &Pose::identity(), &wrench_w, &settings());
+            let effort: f64 = found.activations.iter().map(|activation| activation * activation).sum();
+            assert!((found.regularised * (effort + 0.0175) - 1.0).abs() < 1e-14);
+            assert!(found.regularised > 0.0 && found.regularised <= 1.0 / 0.0175);
+        }
+    }
+}

@@ -47,14 +47,14 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use arm::{Arm, ArmAngles, ArmFrames};
+pub use arm::{Arm, ArmFrames};
 pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use gradient::{ArmAxes, MuscularGradient};
 pub use muscular::{JointTorques, Muscular, MuscularFigures};
 pub use peripersonal::{Distances, Pull, peripersonal_m, peripersonal_pulls};
 pub use place::Standing;
 pub use posture::Gaze;
-pub use ranges::ArmRanges;
+pub use ranges::{ArmAngles, ArmRanges};
 pub use shape::{BODY_POINTS, BodyPart, CAPSULES, Capsule, STILL_POINTS, Side, body_point_joints};
 pub use strength::{Sense, Strength};
 pub use swivel::{ArmSolutions, ShoulderBranch, SwivelCircle, SwivelInterval, SwivelIntervals};

@@ -5,9 +5,10 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{
-    arm::{Arm, ArmAngles, ArmFrames},
+    arm::{Arm, ArmFrames},
     body::Body,
     intrinsic::{self, CO_CONTRACTION, Shoulder},
+    ranges::ArmAngles,
     strength::{Sense, Strength},
 };
 use crate::model::{
@@ -332,19 +333,22 @@ mod tests {
 
     #[test]
     fn the_metric_by_hand() {
-        let muscular = Muscular::of([0.1, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0]);
+        let muscular = Muscular::of([0.1, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0], MuscularMetric::Paper);
         // 0.01 + 0.04 + 0.04 = 0.09
         assert!((muscular.printed - 1.0 / 0.09).abs() < 1e-14);
         assert!((muscular.regularised - 10.0).abs() < 1e-14);
-        let idle = Muscular::of([0.0; 7]);
+        let idle = Muscular::of([0.0; 7], MuscularMetric::Paper);
         assert_eq!((idle.printed, idle.regularised), (f64::INFINITY, 100.0));
+        // A resting co-contraction of 5 % in seven terms.
+        let idle = Muscular::of([0.0; 7], MuscularMetric::Intrinsic);
+        assert_eq!((idle.printed, idle.regularised), (f64::INFINITY, 1.0 / 0.0175));
     }
 
     #[test]
     fn the_direction_picks_the_strength() {
         // Elbow flexion (28.9 N m at 0) and extension (38.5 N m): lowering 2 N m of a load of 5 N m.
         let strength = Strength::new(Sex::Male, 50.0);
-        let mut torques = JointTorques { operation_nm: [0.0; 7], gravity_nm: [0.0; 7] };
+        let mut torques = JointTorques { operation_nm: [0.0; 7], gravity_nm: [0.0; 7], shoulder_v_nm: NO_GRAVITY };
         (torques.operation_nm[3], torques.gravity_nm[3]) = (-2.0, 5.0);
         let elbow = |torques: &JointTorques, direction| torques.activations(&[0.0; 7], &strength, direction)[3];
         assert!((elbow(&torques, StrengthDirection::Paper) - 3.0 / 38.5230).abs() < 1e-15);

@@ -14,7 +14,7 @@
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use super::{Human, arm::ArmAngles, ranges::twist_rad};
+use super::{Human, ranges::ArmAngles, ranges::twist_rad};
 use crate::model::{GRAVITY_W, wrench::Wrench};
 
 /// Thresholds that both scores leave to the observer, degrees.

@@ -14,7 +14,10 @@
 use arrayvec::ArrayVec;
 use nalgebra::{Point3, Vector3};
 
-use super::{Human, arm::ArmAngles, ranges::elevation_rad};
+use super::{
+    Human,
+    ranges::{ArmAngles, elevation_rad},
+};
 use crate::model::{
     frames::Pose,
     plan::{PostureConstraint, PostureFigure, PostureFigures},

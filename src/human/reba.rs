@@ -27,8 +27,8 @@ use serde::Deserialize;
 
 use super::{
     Human,
-    arm::ArmAngles,
     observed::{Observed, band},
+    ranges::ArmAngles,
     rula::observer,
 };
 use crate::model::{plan::RebaScore, wrench::Wrench};

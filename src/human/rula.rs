@@ -29,8 +29,8 @@ use serde::Deserialize;
 
 use super::{
     Human,
-    arm::ArmAngles,
     observed::{Observed, Observer, band},
+    ranges::ArmAngles,
 };
 use crate::model::{plan::RulaScore, wrench::Wrench};
 

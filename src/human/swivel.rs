@@ -29,8 +29,8 @@ use libm::{acos, asin, atan2, cos, hypot, sincos};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{
-    arm::{Arm, ArmAngles},
-    ranges::ArmRanges,
+    arm::Arm,
+    ranges::{ArmAngles, ArmRanges},
 };
 use crate::model::frames::Pose;
 

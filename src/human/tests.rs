@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use rand::RngExt;
 
 use super::{
-    testing::{average_man, generator, random_angles, worker},
+    testing::{average_man, generator, leaning, random_angles, worker},
     *,
 };
 use crate::model::{
@@ -155,11 +155,6 @@ fn the_shoulder_is_on_the_side_of_the_hand() {
     assert_abs_diff_eq!(left.translation.vector, Vector3::new(0.0, 0.22575, 1.4315), epsilon = 1e-12);
 }
 
-/// The person who leans, with either hand.
-fn leaning(hand: Hand, lean_deg: f64) -> Human {
-    Human::new(&Person { hand, lean_deg, ..average_man() }, &default_tool(OperationKind::Drill)).unwrap()
-}
-
 #[test]
 fn leaning_brings_the_shoulder_forward_about_the_hips() {
     let shoulder = leaning(Hand::Left, 15.0).x_bs();
@@ -235,12 +230,13 @@ fn a_weaker_person_has_less_comfort_under_the_same_load() {
     let tool = default_tool(OperationKind::Drill);
     let x_wb = standing_pose_w(1.2, 0.0, PI, -0.9);
     let w = Wrench::from_force(Vector3::new(-15.0, 0.0, 0.0));
+    let settings = ComfortSettings { muscular: MuscularMetric::Paper, ..Default::default() };
     let mut generator = generator(11);
     let man = Human::new(&average_man(), &tool).unwrap();
     let weak_man = Human::new(&Person { percentile: 5.0, ..average_man() }, &tool).unwrap();
     for _ in 0..100 {
         let q_rad = random_angles(man.arm(), &mut generator);
-        let effort = |human: &Human| human.muscular(&q_rad, &x_wb, &w, StrengthDirection::Paper);
+        let effort = |human: &Human| human.muscular(&q_rad, &x_wb, &w, &settings);
         let (strong, weak) = (effort(&man), effort(&weak_man));
         assert!(weak.printed < strong.printed);
         // z at 5 % is -1.644854: strengths fall to 1 - 0.277 x 1.644854 = 0.544375 in every joint.

@@ -7,7 +7,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::{Human, arm::ArmAngles};
+use super::{Human, ranges::ArmAngles};
 use crate::model::{
     frames::Pose,
     operation::OperationKind,
@@ -169,15 +169,16 @@ fn circle(radius_m: f64) -> Section {
 mod tests {
     use super::*;
     use crate::{
-        human::{standing_pose_w, testing::worker},
-        model::scenario::Hand,
+        human::{default_tool, standing_pose_w, testing::average_man},
+        model::scenario::{Hand, Person},
     };
 
     const KINDS: [OperationKind; 3] = [OperationKind::Drill, OperationKind::Cut, OperationKind::Wrench];
     const Q_RAD: ArmAngles = [0.6, 0.3, 0.2, 1.2, 0.4, 0.2, 0.1];
 
     fn worker_and_poses(hand: Hand, kind: OperationKind) -> (Human, Pose, Pose) {
-        let (human, x_wb) = (worker(hand, kind), standing_pose_w(1.0, 0.2, 2.0, -0.9));
+        let human = Human::new(&Person { hand, ..average_man() }, &default_tool(kind)).unwrap();
+        let x_wb = standing_pose_w(1.0, 0.2, 2.0, -0.9);
         let x_wt = x_wb * human.tool_pose_b(&Q_RAD);
         (human, x_wb, x_wt)
     }

@@ -130,10 +130,11 @@ mod tests {
     use nalgebra::Isometry3;
 
     use super::*;
-    use crate::human::Muscular;
+    use crate::{human::Muscular, model::scenario::MuscularMetric};
 
     fn curve() -> Curve {
-        let span = Span { worst: Muscular::of([0.5; 7]), best: Muscular::of([0.1; 7]) };
+        let of = |activation| Muscular::of([activation; 7], MuscularMetric::Paper);
+        let span = Span { worst: of(0.5), best: of(0.1) };
         let mut points = [CurvePoint { angle_rad: 0.0, free: Some(span), fixed: Some(span) }; POINTS];
         points[3] = CurvePoint { angle_rad: std::f64::consts::FRAC_PI_2, free: Some(span), fixed: None };
         Curve { x_wo: Isometry3::identity(), x_wb_fixed: None, points }

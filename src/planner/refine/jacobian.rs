@@ -254,6 +254,7 @@ mod tests {
         super::super::{
             evaluate::{Configuration, Evaluator, comfort},
             library::GraspLibrary,
+            natural_boards::natural_entries,
             params::SearchBudget,
             search::{own_postures, screened},
             stats::SearchStats,
@@ -261,23 +262,39 @@ mod tests {
         super::linearization::simple_margins,
         *,
     };
-    use crate::{model::scenario::Budget, reproduce::paper};
+    use crate::{
+        model::scenario::{Budget, Scenario, StandingPlace},
+        reproduce::paper,
+    };
 
-    /// The gradients against differences of the figures themselves, on starts of a search for a cut and a drill.
+    /// The gradients against differences of the figures themselves, on starts of a search for a cut and a drill: by the paper's
+    /// person, by one who stands naturally, and by one who stands in a given place.
     #[test]
     fn gradients_equal_differences() {
-        for name in ["cut-03", "drill-2"] {
-            let operation = paper::operations().into_iter().find(|operation| operation.name == name).unwrap();
-            let mut loaded = operation.load().unwrap();
-            loaded.scenario.planner.budget = Budget::Fast;
-            let library = GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m);
-            let problem = Problem::new(&loaded.scenario, &library.robot).unwrap();
-            let postures = own_postures(&problem.human, &loaded.scenario);
-            let mut evaluator = Evaluator::new(problem, SearchStats::unlimited());
-            let starts = screened(&mut evaluator, &library, &postures, &[], &SearchBudget::of(&loaded.scenario));
-            assert!(starts.len() > 2);
-            starts.iter().for_each(|start| compare(&evaluator.problem, start));
+        let given =
+            StandingPlace::Given { p_wb_m: [1.0, -0.2], heading_deg: 185.0, tolerance_m: 0.3, tolerance_deg: 30.0 };
+        let natural = paper::natural_operations;
+        for (operations, place) in
+            [(paper::operations(), StandingPlace::Free), (natural(), StandingPlace::Free), (natural(), given)]
+        {
+            for name in ["cut-03", "drill-2"] {
+                let operation = operations.iter().find(|operation| operation.name == name).unwrap();
+                let mut loaded = operation.load().unwrap();
+                loaded.scenario.planner.budget = Budget::Fast;
+                loaded.scenario.human.place = place;
+                compare_starts(&loaded.scenario, &GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m));
+            }
         }
+    }
+
+    fn compare_starts(scenario: &Scenario, library: &GraspLibrary) {
+        let problem = Problem::new(scenario, &library.robot).unwrap();
+        let postures = own_postures(&problem.human, scenario);
+        let natural = natural_entries(scenario, &problem.human, &library.robot, &postures, 300);
+        let mut evaluator = Evaluator::new(problem, SearchStats::unlimited());
+        let starts = screened(&mut evaluator, library, &postures, &natural, &SearchBudget::of(scenario));
+        assert!(starts.len() > 2, "{}: {}", scenario.name, starts.len());
+        starts.iter().for_each(|start| compare(&evaluator.problem, start));
     }
 
     fn compare(problem: &Problem<'_>, here: &Feasible) {
