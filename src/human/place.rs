@@ -73,3 +73,83 @@ impl Human {
         self.place != StandingPlace::Free
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        human::{default_tool, standing_pose_w},
+        model::{operation::OperationKind, scenario::Person},
+    };
+
+    fn human(place: StandingPlace) -> Human {
+        Human::new(&Person { place, ..Person::default() }, &default_tool(OperationKind::Drill)).unwrap()
+    }
+
+    /// 0.1 m and 5 degrees about a place, towards -x_W.
+    const GIVEN: StandingPlace =
+        StandingPlace::Given { p_wb_m: [1.1, -0.2], heading_deg: 178.0, tolerance_m: 0.1, tolerance_deg: 5.0 };
+
+    fn standing(p_wb_m: [f64; 2], heading_deg: f64) -> Standing {
+        Standing { p_wb_m, heading_rad: heading_deg.to_radians() }
+    }
+
+    #[test]
+    fn margins_are_the_distances_from_the_tolerances() {
+        let human = human(GIVEN);
+        assert!(human.place_is_given());
+        let margins = human.place_margins(&standing([1.13, -0.28], 176.0));
+        let expected = [0.13, 0.07, 0.02, 0.18, 3_f64.to_radians(), 7_f64.to_radians()];
+        // Differences of numbers up to pi.
+        assert!(margins.iter().zip(expected).all(|(found, e)| (found - e).abs() < 1e-14), "{margins:?}");
+    }
+
+    #[test]
+    fn a_heading_beyond_a_half_turn_is_the_same_as_on_the_other_side() {
+        let human = human(GIVEN);
+        let margins = |heading_deg: f64| human.place_margins(&standing([1.1, -0.2], heading_deg));
+        for turns in [-2.0, -1.0, 0.0, 1.0] {
+            // -179 degrees is 181: 3 degrees beyond the given heading.
+            let found = margins(-179.0 + 360.0 * turns);
+            let expected = [8_f64, 2.0].map(f64::to_radians);
+            // Angles up to 16 rad.
+            assert!(found[4..].iter().zip(expected).all(|(found, e)| (found - e).abs() < 1e-14), "{found:?}");
+        }
+        for (heading_deg, may) in [(172.5, false), (173.5, true), (-177.5, true), (-176.5, false), (0.0, false)] {
+            assert_eq!(human.may_stand(&standing([1.1, -0.2], heading_deg)), may, "{heading_deg}");
+        }
+    }
+
+    #[test]
+    fn the_person_may_stand_within_the_tolerances_only() {
+        let human = human(GIVEN);
+        for (p_wb_m, may) in [
+            ([1.1, -0.2], true),
+            ([1.19, -0.29], true),
+            ([1.21, -0.2], false),
+            ([0.99, -0.2], false),
+            ([1.1, -0.31], false),
+            ([1.1, -0.09], false),
+        ] {
+            assert_eq!(human.may_stand(&standing(p_wb_m, 178.0)), may, "{p_wb_m:?}");
+        }
+        assert!(human.may_stand(&human.given_standing()));
+    }
+
+    #[test]
+    fn a_free_place_has_no_margins() {
+        let human = human(StandingPlace::Free);
+        assert!(!human.place_is_given() && human.given_standing() == Standing::default());
+        assert!(human.place_margins(&standing([7.0, -9.0], 50.0)).is_empty());
+        assert!(human.may_stand(&standing([7.0, -9.0], 50.0)));
+    }
+
+    #[test]
+    fn a_standing_pose_has_its_place_and_heading() {
+        for heading_rad in [-3.0, -0.5, 0.0, 2.0, 3.1] {
+            let found = Standing::of(&standing_pose_w(0.4, -0.7, heading_rad, -0.9));
+            assert_eq!(found.p_wb_m, [0.4, -0.7]);
+            assert!((found.heading_rad - heading_rad).abs() < 1e-15);
+        }
+    }
+}

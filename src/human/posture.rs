@@ -271,14 +271,29 @@ impl Human {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
+    use nalgebra::{Isometry3, UnitQuaternion};
+    use rand::RngExt;
+
     use super::*;
     use crate::{
-        human::{default_tool, standing_pose_w},
+        human::{
+            Arm, default_tool, standing_pose_w,
+            testing::{generator, random_shares},
+        },
         model::{
             operation::OperationKind,
-            scenario::{Person, PostureLimits},
+            scenario::{Hand, Person, PostureLimits},
         },
     };
+
+    impl Human {
+        /// The arm within its anatomical ranges.
+        fn anatomy_arm(&self) -> Arm {
+            Arm { ranges: self.anatomy, ..self.arm.clone() }
+        }
+    }
 
     fn human(posture: PostureLimits) -> Human {
         Human::new(&Person { posture, ..Person::PAPER }, &default_tool(OperationKind::Drill)).unwrap()
@@ -317,5 +332,193 @@ mod tests {
         let [eye_w, tip_w] = human.line_of_sight_w(&x_wb, &q_rad);
         assert!((eye_w.z - eyes_w[0].z).abs() < 1e-15);
         assert!((tip_w.coords - (x_wb * human.tool_pose_b(&q_rad)).translation.vector).norm() < 1e-14);
+    }
+
+    /// The average man with a drill, with either hand, leaning, within these limits.
+    fn leaning(posture: PostureLimits, hand: Hand) -> Human {
+        let person = Person { hand, lean_deg: 8.0, posture, ..Person::default() };
+        Human::new(&person, &default_tool(OperationKind::Drill)).unwrap()
+    }
+
+    /// A tool at a point in B with z_T along a direction.
+    fn tool_at(p_bt_m: [f64; 3], z_t: Vector3<f64>) -> Pose {
+        let turn = UnitQuaternion::rotation_between(&Vector3::z(), &z_t).unwrap();
+        Isometry3::from_parts(Vector3::from(p_bt_m).into(), turn)
+    }
+
+    /// The worked face's normal in T for a tool at a right angle to the face.
+    const NORMAL_T: Vector3<f64> = Vector3::new(0.0, 0.0, -1.0);
+
+    #[test]
+    fn the_gaze_at_known_points() {
+        // The eye is at 0.936 x 1.75 m = 1.638 m, 0.09 m ahead of the middle.
+        let human = human(PostureLimits::NATURAL);
+        assert!((human.eye_b() - Point3::new(0.09, 0.0, 1.638)).norm() < 1e-14);
+        // A triangle with the sides 3, 4 and 5 to the front and down; to the right at 45 degrees; up.
+        let points = [
+            ([0.49, 0.0, 1.338], 0.0, -0.6_f64.asin(), 0.5),
+            ([0.39, -0.3, 1.638], 45_f64.to_radians(), 0.0, 0.3 * 2_f64.sqrt()),
+            ([0.39, 0.3, 1.638], -45_f64.to_radians(), 0.0, 0.3 * 2_f64.sqrt()),
+            ([0.39, 0.0, 2.038], 0.0, 0.8_f64.asin(), 0.5),
+        ];
+        for (p_bt_m, yaw_rad, pitch_rad, distance_m) in points {
+            let found = human.gaze(&tool_at(p_bt_m, Vector3::x()));
+            let errors = [found.yaw_rad - yaw_rad, found.pitch_rad - pitch_rad, found.distance_m - distance_m];
+            assert!(errors.iter().all(|error| error.abs() < 1e-14), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn the_margins_of_the_work_by_hand() {
+        let human = human(PostureLimits::NATURAL);
+        let degrees = |degrees: f64| degrees.to_radians();
+        let near = |found: &WorkMargins<f64>, expected: [f64; WORK_MARGINS]| {
+            assert!(found.iter().zip(expected).all(|(f, e)| (f - e).abs() < 1e-14), "{found:?} {expected:?}");
+        };
+        // Straight ahead; the face is upright and looks back to the person: seen at the cosine 0.8.
+        let margins = human.work_margins(&tool_at([0.49, 0.0, 1.338], Vector3::x()), &NORMAL_T);
+        let (pitch, seen, up) = (0.6_f64.asin(), 0.8 - degrees(70.0).cos(), degrees(10.0).sin());
+        let (ahead, gaze) = (degrees(30.0), degrees(55.0));
+        let [above, below] = [degrees(65.0) - pitch, degrees(35.0) + pitch];
+        near(&margins, [ahead, ahead, seen, gaze, gaze, above, below, 0.25, 0.35, up]);
+        // To the right by 60 degrees as seen from the middle; the face looks down by 30 degrees, to the person's front.
+        let (sin, cos) = libm::sincos(degrees(60.0));
+        let p_bt_m = [0.4 * cos, -0.4 * sin, 1.638];
+        let normal = Vector3::new(degrees(30.0).cos(), 0.0, -0.5);
+        let margins = human.work_margins(&tool_at(p_bt_m, -normal), &NORMAL_T);
+        let (x, y) = (0.4 * cos - 0.09, 0.4 * sin);
+        let (yaw, distance) = (y.atan2(x), x.hypot(y));
+        let seen = -normal.x * x / distance - degrees(70.0).cos();
+        near(
+            &margins,
+            [
+                degrees(90.0),
+                degrees(-30.0),
+                seen,
+                gaze + yaw,
+                gaze - yaw,
+                degrees(65.0),
+                degrees(35.0),
+                distance - 0.25,
+                0.85 - distance,
+                up - 0.5,
+            ],
+        );
+        let violation = human.work_violation(&tool_at(p_bt_m, -normal), &NORMAL_T);
+        assert_eq!(violation, Some(PostureConstraint::Facing));
+        assert!(self::human(PostureLimits::UNRESTRICTED).work_margins(&Pose::identity(), &NORMAL_T).is_empty());
+    }
+
+    #[test]
+    fn the_figures_of_a_bent_arm_by_hand() {
+        let human = human(PostureLimits::NATURAL);
+        // The upper arm hangs and the forearm is level: the drill points ahead from the right shoulder's plane, its tip
+        // 0.2555 + 0.26 m ahead, 0.05 m to the left and 0.05 m up of the wrist.
+        let q_rad = [0.0, 0.0, 0.0, 90_f64.to_radians(), 0.0, 0.0, 0.0];
+        let figures = human.posture_figures(&q_rad, &NORMAL_T, 0.75);
+        let (ahead, right, up) = (0.5155_f64, 0.22575 - 0.05, 1.4315 - 0.3255 + 0.05);
+        let (dx, dz) = (ahead - 0.09, up - 1.638);
+        let distance = (dx * dx + right * right + dz * dz).sqrt();
+        let expected = [
+            (figures.facing_deg, right.atan2(ahead).to_degrees(), Some(-30.0), Some(30.0)),
+            (figures.view_deg, (dx / distance).acos().to_degrees(), None, Some(70.0)),
+            (figures.gaze_yaw_deg, right.atan2(dx).to_degrees(), Some(-55.0), Some(55.0)),
+            (figures.gaze_pitch_deg, (dz / distance).asin().to_degrees(), Some(-65.0), Some(35.0)),
+            (figures.eye_distance_m, distance, Some(0.25), Some(0.85)),
+            (figures.line_of_sight, 0.75, Some(1.0), None),
+            (figures.face_elevation_deg, 0.0, Some(-10.0), None),
+            (figures.upper_arm_deg, 0.0, None, Some(60.0)),
+            (figures.reach, 0.3255_f64.hypot(0.2555) / 0.581, None, Some(0.9)),
+            (figures.elbow_deg, 90.0, Some(30.0), Some(130.0)),
+            // To -30 degrees of abduction, and to -20 degrees of radial deviation.
+            (figures.limit_margin_deg, 30.0, Some(10.0), None),
+            (figures.deviation_margin_deg, 20.0, Some(5.0), None),
+        ];
+        for (figure, value, min, max) in expected {
+            assert!((figure.value - value).abs() < 1e-12, "{figure:?} {value}");
+            assert_eq!((figure.min, figure.max), (min, max));
+        }
+        assert_eq!(figures.iter().filter(|(_, figure)| figure.margin() < 0.0).count(), 1);
+        // The same figures without limits.
+        let free = self::human(PostureLimits::UNRESTRICTED).posture_figures(&q_rad, &NORMAL_T, 0.75);
+        for ((_, free), (_, limited)) in free.iter().zip(figures.iter()) {
+            assert_eq!((free.value, free.min, free.max, free.margin()), (limited.value, None, None, f64::INFINITY));
+        }
+    }
+
+    #[test]
+    fn a_left_handed_person_has_the_figures_of_the_mirror_image() {
+        let [right, left] = [Hand::Right, Hand::Left].map(|hand| leaning(PostureLimits::NATURAL, hand));
+        let mut generator = generator(61);
+        for _ in 0..1_000 {
+            let q_rad = random_shares(&right.anatomy_arm(), &mut generator);
+            let normal_t = Vector3::from_fn(|_, _| generator.random_range(-1.0..1.0)).normalize();
+            // For a left-handed person x_T and z_T are mirrored and y_T is not.
+            let of_left = Vector3::new(normal_t.x, -normal_t.y, normal_t.z);
+            let figures =
+                [(&right, normal_t), (&left, of_left)].map(|(human, n)| human.posture_figures(&q_rad, &n, 1.0));
+            for ((constraint, r), (_, l)) in figures[0].iter().zip(figures[1].iter()) {
+                // Degrees; the arc sine of the pitch and the arc cosine of the view lose digits near their ends.
+                assert!((r.value - l.value).abs() < 1e-6, "{constraint:?}: {r:?} {l:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_gradients_of_the_works_margins_are_derivatives() {
+        const STEP: f64 = 1e-6;
+        for hand in [Hand::Right, Hand::Left] {
+            let (human, mut generator) = (leaning(PostureLimits::NATURAL, hand), generator(62));
+            for _ in 0..1_000 {
+                let q_rad = random_shares(&human.anatomy_arm(), &mut generator);
+                let normal_t = Vector3::from_fn(|_, _| generator.random_range(-1.0..1.0)).normalize();
+                let margins = |q_rad: &ArmAngles| human.work_margins(&human.tool_pose_b(q_rad), &normal_t);
+                let work = human.work(&human.tool_pose_b(&q_rad), &normal_t);
+                let to_tip = work.tip_b - work.eye_b;
+                if work.tip_b.xy().norm() < 0.05 || to_tip.xy().norm() < 0.05 {
+                    continue; // the azimuths run fast over and under the eye and the body's axis
+                }
+                let gradients = human.work_margin_gradients(&q_rad, &normal_t);
+                for joint in 0..7 {
+                    let [back, forth] = [-STEP, STEP].map(|by| {
+                        let mut q_rad = q_rad;
+                        q_rad[joint] += by;
+                        margins(&q_rad)
+                    });
+                    for ((gradient, back), forth) in gradients.iter().zip(back).zip(forth) {
+                        let turn = (forth - back).abs() > PI; // straight behind
+                        let slope = (forth - back) / (2.0 * STEP);
+                        // Rounding 1e-15 / step, third derivative (1 / 0.05)^3 step^2.
+                        assert!(turn || (gradient[joint] - slope).abs() < 3e-8, "{joint}: {gradient:?} {slope}");
+                    }
+                }
+            }
+        }
+        let unrestricted = leaning(PostureLimits::UNRESTRICTED, Hand::Right);
+        assert!(unrestricted.work_margin_gradients(&[0.0; 7], &NORMAL_T).is_empty());
+    }
+
+    #[test]
+    fn the_first_violated_limit_is_the_first_figure_beyond_its_limit() {
+        use PostureConstraint::{EyeDistance, FaceElevation, Facing, GazePitch, GazeYaw, View};
+        for hand in [Hand::Right, Hand::Left] {
+            let (human, mut generator) = (leaning(PostureLimits::NATURAL, hand), generator(63));
+            let mut found = std::collections::BTreeMap::new();
+            for _ in 0..10_000 {
+                let q_rad = random_shares(&human.anatomy_arm(), &mut generator);
+                let tilt = Vector3::from_fn(|_, _| generator.random_range(-0.5..0.5));
+                let normal_t = (NORMAL_T + tilt).normalize();
+                let figures = human.posture_figures(&q_rad, &normal_t, 1.0);
+                let is_of_work = |constraint: &PostureConstraint| {
+                    matches!(constraint, Facing | View | GazeYaw | GazePitch | EyeDistance | FaceElevation)
+                };
+                let expected = figures.iter().find(|(constraint, f)| is_of_work(constraint) && f.margin() < 0.0);
+                let violation = human.work_violation(&human.tool_pose_b(&q_rad), &normal_t);
+                assert_eq!(violation, expected.map(|(constraint, _)| constraint), "{q_rad:?} {figures:?}");
+                *found.entry(violation).or_insert(0) += 1;
+            }
+            // No violation, and each of the limits that can be the first.
+            assert!(found.len() >= 6 && found[&None] > 100, "{found:?}");
+        }
     }
 }

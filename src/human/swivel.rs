@@ -323,8 +323,14 @@ mod tests {
 
     use super::*;
     use crate::{
-        human::testing::{generator, random_angles, worker},
-        model::{operation::OperationKind, scenario::Hand},
+        human::{
+            Human, paper_tool,
+            testing::{generator, random_angles, random_shares, within as within_posture, worker},
+        },
+        model::{
+            operation::OperationKind,
+            scenario::{Hand, Person, PostureLimits},
+        },
     };
 
     fn arm() -> Arm {
@@ -400,29 +406,32 @@ mod tests {
 
     #[test]
     fn intervals_agree_with_a_scan_of_the_circle() {
-        let (arm, mut generator) = (arm(), generator(3));
-        let mut inside = 0;
-        for round in 0..1_000 {
-            let x_bt = if round % 2 == 0 {
-                arm.tool_pose_b(&random_angles(&arm, &mut generator))
-            } else {
-                random_pose(&arm, &mut generator)
-            };
-            let Some(circle) = arm.swivel_circle(&x_bt) else { continue };
-            let intervals = circle.intervals();
-            for swivel_rad in (-180..180).map(|degree| f64::from(degree).to_radians()) {
-                for branch in ShoulderBranch::ALL {
-                    let of_branch = intervals.iter().filter(|interval| interval.branch == branch);
-                    let covered = of_branch.clone().any(|interval| {
-                        let turn = (swivel_rad - interval.from_rad).rem_euclid(TAU);
-                        turn <= interval.to_rad - interval.from_rad
-                    });
-                    assert_eq!(covered, circle.solution(swivel_rad, branch).is_some(), "{swivel_rad} {intervals:?}");
-                    inside += usize::from(covered);
+        for arm in arms() {
+            let mut generator = generator(3);
+            let mut inside = 0;
+            for round in 0..1_000 {
+                let x_bt = if round % 2 == 0 {
+                    arm.tool_pose_b(&random_shares(&arm, &mut generator))
+                } else {
+                    random_pose(&arm, &mut generator)
+                };
+                let Some(circle) = arm.swivel_circle(&x_bt) else { continue };
+                let intervals = circle.intervals();
+                for swivel_rad in (-180..180).map(|degree| f64::from(degree).to_radians()) {
+                    for branch in ShoulderBranch::ALL {
+                        let mut of_branch = intervals.iter().filter(|interval| interval.branch == branch);
+                        let covered = of_branch.any(|interval| {
+                            let turn = (swivel_rad - interval.from_rad).rem_euclid(TAU);
+                            turn <= interval.to_rad - interval.from_rad
+                        });
+                        let found = circle.solution(swivel_rad, branch);
+                        assert_eq!(covered, found.is_some(), "{swivel_rad} {intervals:?}");
+                        inside += usize::from(covered);
+                    }
                 }
             }
+            assert!(inside > 5_000, "{inside}");
         }
-        assert!(inside > 10_000, "{inside}");
     }
 
     #[test]
@@ -491,5 +500,102 @@ mod tests {
         assert!(arm.swivel_circle(&x_bt).is_none());
         let at_shoulder = Isometry3::from_parts(arm.p_bs_m.into(), UnitQuaternion::identity()) * arm.x_ht;
         assert!(arm.swivel_circle(&at_shoulder).is_none());
+    }
+
+    /// The drill in the hand of a person with a swing-twist shoulder.
+    fn swing_twist(posture: PostureLimits) -> Arm {
+        within_posture(posture).arm().clone()
+    }
+
+    /// Arms with all kinds of limits.
+    fn arms() -> [Arm; 4] {
+        let [natural, unrestricted] = [PostureLimits::NATURAL, PostureLimits::UNRESTRICTED];
+        let natural_box = Person { posture: natural, ..Person::PAPER };
+        let natural_box = Human::new(&natural_box, &paper_tool(OperationKind::Drill)).unwrap();
+        [arm(), natural_box.arm().clone(), swing_twist(unrestricted), swing_twist(natural)]
+    }
+
+    #[test]
+    fn every_posture_of_a_swing_twist_shoulder_is_found_again_by_its_swivel() {
+        for posture in [PostureLimits::UNRESTRICTED, PostureLimits::NATURAL] {
+            let (arm, mut generator) = (swing_twist(posture), generator(6));
+            for _ in 0..10_000 {
+                let q_rad = random_shares(&arm, &mut generator);
+                let circle = arm.swivel_circle(&arm.tool_pose_b(&q_rad)).unwrap();
+                let swivel_rad = arm.swivel_rad(&q_rad);
+                let again = circle.solution(swivel_rad, ShoulderBranch::Low).unwrap();
+                // At 90 degrees of abduction only the sum of the first and the third angle is given, so orientations are
+                // compared; the bound is that of the box.
+                let [found, expected] = [again, q_rad].map(|q_rad| arm.frames(&q_rad).r_bu);
+                assert!((found - expected).norm() < 1e-10, "{q_rad:?} {again:?}");
+                assert!(again[3..].iter().zip(&q_rad[3..]).all(|(a, b)| (a - b).abs() < 1e-10), "{q_rad:?} {again:?}");
+                assert!(again[1].abs() <= FRAC_PI_2);
+                // Every orientation is in the low branch.
+                assert_eq!(circle.solution(swivel_rad, ShoulderBranch::High), None);
+            }
+        }
+    }
+
+    /// The arm without limits of its shoulder and its wrist.
+    fn without_limits(arm: &Arm) -> Arm {
+        let mut ranges = arm.ranges;
+        for joint in [0, 2, 4, 6] {
+            ranges.joints_rad[joint] = [-PI, PI];
+        }
+        for joint in [1, 5] {
+            ranges.joints_rad[joint] = [-FRAC_PI_2, FRAC_PI_2];
+        }
+        Arm { ranges: ArmRanges { twist_rad: Some([-PI, PI]), elevation_rad: None, ..ranges }, ..arm.clone() }
+    }
+
+    #[test]
+    fn the_arm_is_within_its_ranges_inside_the_intervals_and_nowhere_else() {
+        for posture in [PostureLimits::UNRESTRICTED, PostureLimits::NATURAL] {
+            let (arm, mut generator) = (swing_twist(posture), generator(7));
+            let free = without_limits(&arm);
+            let (mut inside, mut outside) = (0, 0);
+            for round in 0..1_000 {
+                let x_bt = if round % 2 == 0 {
+                    arm.tool_pose_b(&random_shares(&arm, &mut generator))
+                } else {
+                    random_pose(&arm, &mut generator)
+                };
+                let Some(circle) = arm.swivel_circle(&x_bt) else { continue };
+                let (intervals, free) = (circle.intervals(), free.swivel_circle(&x_bt).unwrap());
+                for swivel_rad in (0..120).map(|_| generator.random_range(-PI..PI)) {
+                    let turns = intervals.iter().map(|interval| {
+                        let length_rad = interval.to_rad - interval.from_rad;
+                        ((swivel_rad - interval.from_rad).rem_euclid(TAU), length_rad)
+                    });
+                    // The tolerance of the limits is 1e-9; near an end an angle may run fast or touch its limit.
+                    let is_near_end = |(turn, length): (f64, f64)| turn < 1e-6 || (turn - length).abs() < 1e-6;
+                    if turns.clone().any(is_near_end) {
+                        continue;
+                    }
+                    let covered = turns.clone().any(|(turn, length)| turn < length);
+                    let q_rad = free.solution(swivel_rad, ShoulderBranch::Low).unwrap();
+                    assert_eq!(covered, arm.within_limits(&q_rad), "{swivel_rad} {q_rad:?} {intervals:?}");
+                    *if covered { &mut inside } else { &mut outside } += 1;
+                }
+            }
+            assert!(inside > 10_000 && outside > 10_000, "{inside} {outside}");
+        }
+    }
+
+    #[test]
+    fn the_intervals_of_random_poses_have_room() {
+        for arm in arms() {
+            let (mut generator, mut most) = (generator(8), 0);
+            for round in 0..10_000 {
+                let x_bt = if round % 2 == 0 {
+                    arm.tool_pose_b(&random_shares(&arm, &mut generator))
+                } else {
+                    random_pose(&arm, &mut generator)
+                };
+                // More breaks or intervals than room for them would be a panic.
+                most = most.max(arm.swivel_circle(&x_bt).map_or(0, |circle| circle.intervals().len()));
+            }
+            assert!((2..MAX_INTERVALS).contains(&most), "{most}");
+        }
     }
 }
