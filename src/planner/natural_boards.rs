@@ -9,8 +9,8 @@ use rand_pcg::Pcg64;
 
 use super::{
     domain::uniform,
-    library::{GraspingRobot, LibraryEntry, PostureMap, grasps_at, resample},
-    params::library::NATURAL_PASS,
+    library::{GraspingRobot, LibraryEntry, Posture, PostureMap, grasps_for},
+    params::library::{GIVEN_PLACE_BOARDS, NATURAL_PASS},
 };
 use crate::{
     human::{Human, standing_pose_w},
@@ -20,7 +20,7 @@ use crate::{
     },
 };
 
-/// Collision-free grasps of `count` boards; none if the posture is unrestricted and the place is free.
+/// Collision-free grasps of `count` boards, more of them if the place is given; none if the posture is unrestricted and the place is free.
 pub fn natural_entries(
     scenario: &Scenario,
     human: &Human,
@@ -32,13 +32,14 @@ pub fn natural_entries(
         return Vec::new();
     }
     let stream = [scenario.planner.seed, NATURAL_PASS];
+    let count = if human.place_is_given() { GIVEN_PLACE_BOARDS * count } else { count };
     let boards = boards(scenario, robot.robot.floor_z_m, postures, count);
-    if human.place_is_given() { grasps_at(robot, &boards, stream) } else { resample(robot, &boards, count, stream) }
+    grasps_for(robot, &boards, !human.place_is_given(), stream)
 }
 
-/// Poses of the board in the most promising postures, at random rolls of the tool where it is free and, if the place is given, for
+/// The most promising postures with poses of the board in them, at random rolls of the tool where it is free and, if the place is given, for
 /// a person who stands there within the tolerances.
-fn boards(scenario: &Scenario, floor_z_m: f64, postures: &PostureMap, count: usize) -> Vec<Pose> {
+fn boards(scenario: &Scenario, floor_z_m: f64, postures: &PostureMap, count: usize) -> Vec<(Pose, Posture)> {
     let mut random = Pcg64::new(u128::from(scenario.planner.seed), u128::from(NATURAL_PASS));
     let operation = &scenario.operation;
     let mut board = |x_bt: &Pose| {
@@ -53,5 +54,5 @@ fn boards(scenario: &Scenario, floor_z_m: f64, postures: &PostureMap, count: usi
         let roll_rad = if operation.kind.roll_is_free() { around(0.0, std::f64::consts::PI) } else { 0.0 };
         x_wb * x_bt * operation.rolled(roll_rad).x_ot.inverse()
     };
-    postures.ranked().take(count).map(|posture| board(&posture.x_bt)).collect()
+    postures.ranked().take(count).map(|posture| (board(&posture.x_bt), *posture)).collect()
 }

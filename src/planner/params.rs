@@ -35,6 +35,8 @@ pub mod library {
     /// Grasps of one pattern that are kept of a resampled board.
     pub const RESAMPLED_PER_PATTERN: usize = 2;
 
+    /// Boards for a given place per board for a free one: most are out of the arms' reach.
+    pub const GIVEN_PLACE_BOARDS: usize = 4;
     /// Stream of the random numbers for boards of natural postures: far from those of the passes of warm starts.
     pub const NATURAL_PASS: u64 = 1 << 32;
 

@@ -59,7 +59,7 @@ pub fn screen<'e>(
         let x_wt = entry.grasp.x_wo * problem.scenario.operation.x_ot;
         let matching = postures.postures(&x_wt, problem.robot.robot.floor_z_m);
         let before = pairs.len();
-        pairs.extend(matching.iter().filter_map(|posture| {
+        pairs.extend(entry.posture.iter().chain(matching).filter_map(|posture| {
             let x_wb = Alignment::new(problem, &entry.grasp, &posture.x_bt).x_wb;
             let (robot_w, body_b) = (&entry.coarse_points_w, &posture.medium_points_b[..COARSE_POINTS]);
             let pair = || Pair { entry, posture, estimate: estimate(problem, &x_wb, posture, robot_w, body_b) };

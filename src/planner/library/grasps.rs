@@ -10,6 +10,7 @@ use rand_pcg::Pcg64;
 use super::{
     grasp::{ArmGrasp, BoardGrasp},
     grasping_robot::{GraspingArm, GraspingRobot},
+    postures::Posture,
 };
 use crate::{
     comfort,
@@ -44,6 +45,8 @@ pub struct LibraryEntry {
     pub robot_points_w: Vec<Point3<f64>>,
     /// Some of them, for a first ranking.
     pub coarse_points_w: Vec<Point3<f64>>,
+    /// The posture that the board was put for; it responds to the grasp exactly.
+    pub posture: Option<Posture>,
 }
 
 impl LibraryEntry {
@@ -51,7 +54,7 @@ impl LibraryEntry {
     pub fn new(robot: &GraspingRobot, grasp: BoardGrasp, link_poses: &[Pose]) -> Self {
         let robot_points_w = comfort::robot_points_w(&robot.robot, link_poses);
         let coarse_points_w = robot_points_w.iter().step_by(COARSE_STRIDE).copied().collect();
-        Self { grasp, robot_points_w, coarse_points_w }
+        Self { grasp, robot_points_w, coarse_points_w, posture: None }
     }
 }
 

@@ -15,4 +15,4 @@ pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, largest_joint_difference_rad
 pub use grasping_robot::{GraspingArm, GraspingRobot};
 pub use grasps::{GraspLibrary, LibraryEntry, draw_grasp};
 pub use postures::{COARSE_POINTS, MEDIUM_POINTS, Posture, PostureLoad, PostureMap, posture_muscular, within_strength};
-pub use resample::{grasps_at, resample};
+pub use resample::{grasps_for, resample};

@@ -15,6 +15,7 @@ use super::{
     grasp::{ArmGrasp, BoardGrasp, pattern},
     grasping_robot::{GraspingArm, GraspingRobot},
     grasps::{LibraryEntry, draw_arm_grasp},
+    postures::Posture,
 };
 use crate::{
     collision::{Body, Violation},
@@ -29,29 +30,52 @@ use crate::{
 /// arguments give the same grasps, whatever the number of threads.
 pub fn resample(robot: &GraspingRobot, boards: &[Pose], count: usize, stream: [u64; 2]) -> Vec<LibraryEntry> {
     let board = |number: usize, random: &mut Pcg64| moved(&boards[number % boards.len()], &robot.domain, random);
-    if boards.is_empty() { Vec::new() } else { grasps_of(robot, count, stream, board) }
+    if boards.is_empty() { Vec::new() } else { grasps_of(robot, count, stream, board).collect() }
 }
 
-/// Grasps of boards at these poses; boards outside the search domain have none. The same arguments give the same grasps,
-/// whatever the number of threads.
-pub fn grasps_at(robot: &GraspingRobot, boards: &[Pose], stream: [u64; 2]) -> Vec<LibraryEntry> {
-    grasps_of(robot, boards.len(), stream, |number, _| boards[number])
-}
-
-/// Grasps of `count` boards, each with a random generator of its own.
-fn grasps_of(
+/// Grasps of boards that postures ask for, each entry with its posture; boards outside the search domain have none. With
+/// `moves` each board is moved as by [`resample`]. The same arguments give the same grasps, whatever the number of threads.
+pub fn grasps_for(
     robot: &GraspingRobot,
+    boards: &[(Pose, Posture)],
+    moves: bool,
+    stream: [u64; 2],
+) -> Vec<LibraryEntry> {
+    let of_board = |number: usize, random: &mut Pcg64| {
+        let (x_wo, _) = &boards[number];
+        if moves { moved(x_wo, &robot.domain, random) } else { *x_wo }
+    };
+    numbered_grasps_of(robot, boards.len(), stream, of_board)
+        .map(|(number, entry)| LibraryEntry { posture: Some(boards[number].1), ..entry })
+        .collect()
+}
+
+/// Grasps of `count` boards, each board with a random generator of its own.
+fn grasps_of<'r>(
+    robot: &'r GraspingRobot,
+    count: usize,
+    stream: [u64; 2],
+    board: impl Fn(usize, &mut Pcg64) -> Pose + Sync + Send + 'r,
+) -> impl ParallelIterator<Item = LibraryEntry> + 'r {
+    numbered_grasps_of(robot, count, stream, board).map(|(_, entry)| entry)
+}
+
+/// As [`grasps_of`], each grasp with the number of its board.
+fn numbered_grasps_of<'r>(
+    robot: &'r GraspingRobot,
     count: usize,
     [seed, pass]: [u64; 2],
-    board: impl Fn(usize, &mut Pcg64) -> Pose + Sync,
-) -> Vec<LibraryEntry> {
-    let of_board = |number: usize| {
+    board: impl Fn(usize, &mut Pcg64) -> Pose + Sync + Send + 'r,
+) -> impl ParallelIterator<Item = (usize, LibraryEntry)> + 'r {
+    let of_board = move |number: usize| {
         let stream = (u128::from(pass) << 64) + number as u128;
         let mut random = Pcg64::new(u128::from(seed), stream);
         let x_wo = board(number, &mut random);
-        if robot.domain.contains(&x_wo) { grasps_of_board(robot, &x_wo, &mut random) } else { Vec::new() }
+        let entries =
+            if robot.domain.contains(&x_wo) { grasps_of_board(robot, &x_wo, &mut random) } else { Vec::new() };
+        entries.into_iter().map(move |entry| (number, entry))
     };
-    (0..count).into_par_iter().flat_map_iter(of_board).collect()
+    (0..count).into_par_iter().flat_map_iter(of_board)
 }
 
 /// A board turned about the vertical and moved anywhere in the domain at its own height.
