@@ -11,12 +11,12 @@ use super::{
     *,
 };
 use crate::{
-    collision::{CollisionModel, Scene},
-    human::{Human, default_tool},
+    collision::{CollisionModel, PersonPart, Scene},
+    human::{Human, Standing, default_tool, paper_tool},
     model::{
         frames::Pose,
         operation::{Operation, OperationKind},
-        scenario::{ComfortSettings, Hand, Person},
+        scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StandingPlace},
     },
     robot::Robot,
 };
@@ -26,7 +26,12 @@ const BOARD_M: [f64; 3] = [0.5, 0.4, 0.03];
 
 fn worker(hand: Hand, kind: OperationKind) -> Human {
     let person = Person { hand, ..Person::PAPER };
-    Human::new(&person, &default_tool(kind)).unwrap()
+    Human::new(&person, &paper_tool(kind)).unwrap()
+}
+
+/// The metric of the paper.
+fn paper_settings() -> ComfortSettings {
+    ComfortSettings { muscular: MuscularMetric::Paper, ..ComfortSettings::default() }
 }
 
 fn collision() -> CollisionModel {
@@ -37,18 +42,31 @@ fn collision() -> CollisionModel {
 struct Fixture {
     human: Human,
     collision: CollisionModel,
+    settings: ComfortSettings,
     operation: Operation,
     robot_points_w: [Point3<f64>; 2],
     x_wo: Pose,
 }
 
 impl Fixture {
+    /// The person, the tool and the metric of the paper.
     fn new(hand: Hand, operation: Operation) -> Self {
+        Self::of(worker(hand, operation.kind), paper_settings(), operation)
+    }
+
+    /// A person with the default tool and the default metric.
+    fn of_person(person: &Person, operation: Operation) -> Self {
+        let human = Human::new(person, &default_tool(operation.kind)).unwrap();
+        Self::of(human, ComfortSettings::default(), operation)
+    }
+
+    fn of(human: Human, settings: ComfortSettings, operation: Operation) -> Self {
         // The worked face towards +x_W, y_O up.
         let upright = nalgebra::Rotation3::from_basis_unchecked(&[Vector3::y(), Vector3::z(), Vector3::x()]);
         Self {
-            human: worker(hand, operation.kind),
+            human,
             collision: collision(),
+            settings,
             operation,
             robot_points_w: [Point3::new(0.2, 0.3, 0.0), Point3::new(0.2, -0.3, 0.4)],
             x_wo: Isometry3::from_parts(
@@ -62,7 +80,7 @@ impl Fixture {
         ResponseQuery {
             human: &self.human,
             collision: &self.collision,
-            settings: ComfortSettings::default(),
+            settings: self.settings,
             operation: self.operation,
             floor_z_m: FLOOR_Z_M,
             robot_points_w: &self.robot_points_w,
@@ -73,6 +91,11 @@ impl Fixture {
 
 fn cut() -> Operation {
     Operation::cut([-0.12, 0.0], -Vector3::y(), 30.0, BOARD_M[2])
+}
+
+/// To the right as the person sees it, which a natural posture can do on an upright board.
+fn cut_aside() -> Operation {
+    Operation::cut([0.0, 0.0], Vector3::x(), 30.0, BOARD_M[2])
 }
 
 fn drill() -> Operation {
@@ -97,8 +120,7 @@ fn every_response_places_the_tool_at_the_operation_within_all_limits() {
             assert!(reached.rotation.angle_to(&expected.rotation) < 1e-7);
             assert!(fixture.human.arm().within_limits(&response.q_rad));
             assert!(response.muscular.activations.iter().all(|&activation| activation <= 1.0));
-            let parts =
-                fixture.human.capsules_w(&response.x_wb, &response.q_rad).map(crate::collision::PersonPart::from);
+            let parts = fixture.human.capsules_w(&response.x_wb, &response.q_rad).map(PersonPart::from);
             let scene = Scene { person: &parts, ..query.scene };
             assert_eq!(fixture.collision.first_violation_of_person(&scene), None);
             let place = response.x_wb.translation.vector;
@@ -184,7 +206,7 @@ fn the_curve_has_out_of_reach_points_and_one_place_never_beats_all_places() {
     let curve = muscular_curve(&Cut {
         human: &worker(Hand::Right, OperationKind::Cut),
         collision: &collision(),
-        settings: ComfortSettings::default(),
+        settings: paper_settings(),
         board_size_m: BOARD_M,
         radius_m: 0.12,
         force_n: 30.0,
@@ -204,4 +226,83 @@ fn the_curve_has_out_of_reach_points_and_one_place_never_beats_all_places() {
             assert!(point.fixed.is_none());
         }
     }
+}
+
+/// Fails if a response breaks a limit of the posture or of the place.
+fn assert_natural(fixture: &Fixture, response: &Response) {
+    let (human, query) = (&fixture.human, fixture.query());
+    let operation = fixture.operation.rolled(response.roll_rad());
+    let parts = human.capsules_w(&response.x_wb, &response.q_rad).map(PersonPart::from);
+    let scene = Scene { person: &parts, ..query.scene };
+    let tip_w = Point3::from((fixture.x_wo * operation.x_ot).translation.vector);
+    let free_share = fixture.collision.free_share_of_sight(&scene, &(response.x_wb * human.eye_b()), &tip_w);
+    let normal_t = operation.face_normal_t(BOARD_M[2]);
+    for (constraint, figure) in human.posture_figures(&response.q_rad, &normal_t, free_share).iter() {
+        // Degrees: limits of the arm are good to 1e-9 rad.
+        assert!(figure.margin() > -1e-7, "{constraint:?}: {figure:?} {response:?}");
+    }
+    let margins = human.place_margins(&Standing::of(&response.x_wb));
+    // Rounding of the pose.
+    assert!(margins.iter().all(|margin| *margin > -1e-12), "{margins:?} {response:?}");
+}
+
+#[test]
+fn natural_responses_keep_every_limit_and_are_some_of_the_unrestricted_ones() {
+    for (hand, operation) in [(Hand::Right, cut_aside()), (Hand::Left, drill())] {
+        let person = Person { hand, ..Person::default() };
+        let natural = Fixture::of_person(&person, operation);
+        let unrestricted = Fixture::of_person(&Person { posture: PostureLimits::UNRESTRICTED, ..person }, operation);
+        let (query, without) = (natural.query(), unrestricted.query());
+        let (mut count, mut of_grid) = (0, f64::NEG_INFINITY);
+        responses::visit(&query, |_, response| {
+            count += 1;
+            of_grid = of_grid.max(response.objective);
+            assert_natural(&natural, response);
+            assert_eq!(responses::response_to(&without, &response.choice), Some(*response));
+        });
+        assert!(count > 100, "{count}");
+        let mean = mean_response(&query).unwrap();
+        assert_eq!(mean.responses, count);
+        assert!(mean_response(&without).unwrap().responses > 2 * count);
+        let best = best_response(&query).unwrap();
+        assert_natural(&natural, &best);
+        assert!(best.objective >= of_grid);
+        assert!(best_response(&without).unwrap().objective >= of_grid);
+    }
+}
+
+#[test]
+fn responses_at_a_given_place_stand_there() {
+    let operation = cut_aside();
+    let free = Fixture::of_person(&Person::default(), operation);
+    let best = best_response(&free.query()).unwrap();
+    let there = Standing::of(&best.x_wb);
+    let place = StandingPlace::Given {
+        p_wb_m: there.p_wb_m,
+        heading_deg: there.heading_rad.to_degrees(),
+        tolerance_m: 0.06,
+        tolerance_deg: 12.0,
+    };
+    let fixture = Fixture::of_person(&Person { place, ..Person::default() }, operation);
+    let query = fixture.query();
+    let mut places = std::collections::BTreeSet::new();
+    responses::visit(&query, |place, response| {
+        assert_natural(&fixture, response);
+        places.insert(place);
+    });
+    // One step of the grid to each side and of the heading, counted from the given place.
+    assert!(places.len() > 1, "{places:?}");
+    assert!(places.iter().all(|[i, j, k]| i.abs() <= 1 && j.abs() <= 1 && [0, 1, 35].contains(k)), "{places:?}");
+    let found = best_response(&query).unwrap();
+    assert_natural(&fixture, &found);
+    assert!(mean_response(&query).unwrap().responses as usize >= places.len());
+    let near = response_near(&query, &best.x_wb, &best.q_rad).unwrap();
+    assert_natural(&fixture, &near);
+    assert!(near.objective >= best.objective - 1e-9);
+    // Five metres away there is nothing to reach.
+    let away = StandingPlace::Given { p_wb_m: [5.0, 0.0], heading_deg: 180.0, tolerance_m: 0.06, tolerance_deg: 12.0 };
+    let fixture = Fixture::of_person(&Person { place: away, ..Person::default() }, operation);
+    let query = fixture.query();
+    assert!(best_response(&query).is_none() && mean_response(&query).is_none());
+    assert!(response_near(&query, &best.x_wb, &best.q_rad).is_none());
 }
