@@ -86,7 +86,7 @@ fn text(summary: &RecordedSummary, rejudged: Option<&Verdict>) -> String {
         ("trace", summary.verdict.fingerprint.clone()),
     ];
     text.push('\n');
-    text.push_str(&console::aligned(&rows.map(|(name, value)| vec![name.to_owned(), value]), 2));
+    text.push_str(&columns::aligned(&rows.map(|(name, value)| vec![name.to_owned(), value]), 2));
     text.push_str("\nevents\n");
     for (time_s, event) in &summary.events {
         text.push_str(&format!("{time_s:>7.3} s  {event}\n"));

@@ -9,8 +9,8 @@ use rand_pcg::Pcg64;
 
 use super::{
     domain::uniform,
-    library::{GraspingRobot, LibraryEntry, Posture, PostureMap, grasps_for},
-    params::library::{GIVEN_PLACE_BOARDS, NATURAL_PASS},
+    library::{GraspingRobot, LibraryEntry, Posture, PostureMap, grasps_for, resample},
+    params::library::NATURAL_PASS,
 };
 use crate::{
     human::{Human, standing_pose_w},
@@ -20,7 +20,8 @@ use crate::{
     },
 };
 
-/// Collision-free grasps of `count` boards, more of them if the place is given; none if the posture is unrestricted and the place is free.
+/// Collision-free grasps of `count` boards with the height and tilt that natural postures give them, anywhere in the search
+/// domain; none if the posture is unrestricted or the place is given. They serve all tasks of a family.
 pub fn natural_entries(
     scenario: &Scenario,
     human: &Human,
@@ -28,18 +29,38 @@ pub fn natural_entries(
     postures: &PostureMap,
     count: usize,
 ) -> Vec<LibraryEntry> {
-    if !human.posture().is_natural() && !human.place_is_given() {
+    if !human.posture().is_natural() || human.place_is_given() {
         return Vec::new();
     }
-    let stream = [scenario.planner.seed, NATURAL_PASS];
-    let count = if human.place_is_given() { GIVEN_PLACE_BOARDS * count } else { count };
-    let boards = boards(scenario, robot.robot.floor_z_m, postures, count);
-    grasps_for(robot, &boards, !human.place_is_given(), stream)
+    let boards: Vec<_> = boards(scenario, robot, postures, count).into_iter().map(|(x_wo, _)| x_wo).collect();
+    resample(robot, &boards, count, [scenario.planner.seed, NATURAL_PASS])
+}
+
+/// Collision-free grasps of `count` boards where postures of a person in the given place have them; none if the place is free.
+/// They serve one task.
+pub fn entries_for_place(
+    scenario: &Scenario,
+    human: &Human,
+    robot: &GraspingRobot,
+    postures: &PostureMap,
+    count: usize,
+) -> Vec<LibraryEntry> {
+    if !human.place_is_given() {
+        return Vec::new();
+    }
+    let boards = boards(scenario, robot, postures, count);
+    grasps_for(robot, &boards, [scenario.planner.seed, NATURAL_PASS])
 }
 
 /// The most promising postures with poses of the board in them, at random rolls of the tool where it is free and, if the place is given, for
 /// a person who stands there within the tolerances.
-fn boards(scenario: &Scenario, floor_z_m: f64, postures: &PostureMap, count: usize) -> Vec<(Pose, Posture)> {
+fn boards(
+    scenario: &Scenario,
+    robot: &GraspingRobot,
+    postures: &PostureMap,
+    count: usize,
+) -> Vec<(Pose, Posture)> {
+    let floor_z_m = robot.robot.floor_z_m;
     let mut random = Pcg64::new(u128::from(scenario.planner.seed), u128::from(NATURAL_PASS));
     let operation = &scenario.operation;
     let mut board = |x_bt: &Pose| {

@@ -35,8 +35,6 @@ pub mod library {
     /// Grasps of one pattern that are kept of a resampled board.
     pub const RESAMPLED_PER_PATTERN: usize = 2;
 
-    /// Boards for a given place per board for a free one: most are out of the arms' reach.
-    pub const GIVEN_PLACE_BOARDS: usize = 4;
     /// Stream of the random numbers for boards of natural postures: far from those of the passes of warm starts.
     pub const NATURAL_PASS: u64 = 1 << 32;
 
@@ -231,7 +229,7 @@ pub struct SearchBudget {
     pub postures: usize,
     /// The same if they must be natural: about one in eight within the ranges of such postures is one.
     pub natural_postures: usize,
-    /// Boards that are put where natural postures have them.
+    /// Boards that are put where natural postures have them, or those of a person in a given place.
     pub natural_boards: usize,
     /// The best of them that each cell of the map keeps.
     pub postures_per_cell: usize,

@@ -57,9 +57,13 @@ pub fn screen<'e>(
             continue;
         }
         let x_wt = entry.grasp.x_wo * problem.scenario.operation.x_ot;
-        let matching = postures.postures(&x_wt, problem.robot.robot.floor_z_m);
+        // Near the limits of a natural posture another one of the cell hardly ever fits.
+        let matching = match &entry.posture {
+            Some(own) => std::slice::from_ref(own),
+            None => postures.postures(&x_wt, problem.robot.robot.floor_z_m),
+        };
         let before = pairs.len();
-        pairs.extend(entry.posture.iter().chain(matching).filter_map(|posture| {
+        pairs.extend(matching.iter().filter_map(|posture| {
             let x_wb = Alignment::new(problem, &entry.grasp, &posture.x_bt).x_wb;
             let (robot_w, body_b) = (&entry.coarse_points_w, &posture.medium_points_b[..COARSE_POINTS]);
             let pair = || Pair { entry, posture, estimate: estimate(problem, &x_wb, posture, robot_w, body_b) };

@@ -5,8 +5,10 @@ use rand_pcg::Pcg64;
 use super::{
     evaluate::{self, Evaluator, Feasible},
     library::{GraspLibrary, LibraryEntry, PostureMap},
+    natural_boards::entries_for_place,
     params::{SearchBudget, screening::MEAN_RESPONSES},
-    problem, random, refine, screen,
+    problem::{self, Problem},
+    random, refine, screen,
     task_family::TaskFamily,
     warm_starts::WarmStarts,
 };
@@ -41,7 +43,7 @@ pub fn search(
     rank(evaluator, found)
 }
 
-/// Starts from screening the library and the entries for natural postures.
+/// Starts from screening the library, the entries for natural postures and, if the place is given, those for it.
 pub fn screened(
     evaluator: &mut Evaluator<'_>,
     library: &GraspLibrary,
@@ -49,7 +51,10 @@ pub fn screened(
     natural: &[LibraryEntry],
     budget: &SearchBudget,
 ) -> Vec<Feasible> {
-    screen::screen(evaluator, library.entries.iter().chain(natural), library.draws, postures, budget)
+    let Problem { scenario, human, robot, .. } = &evaluator.problem;
+    let of_place = entries_for_place(scenario, human, robot, postures, budget.natural_boards);
+    let entries = library.entries.iter().chain(natural).chain(&of_place);
+    screen::screen(evaluator, entries, library.draws, postures, budget)
 }
 
 /// The posture map of the scenario's task family.

@@ -15,7 +15,7 @@ use super::{
     candidate::{Candidate, WorkPose},
     evaluate::{self, Configuration, Evaluator, Feasible},
     library::{ArmGrasp, BoardGrasp, GraspLibrary, GraspPattern, GraspingRobot, LibraryEntry, PostureMap, resample},
-    natural_boards::natural_entries,
+    natural_boards::{entries_for_place, natural_entries},
     outcome::{PlanError, Rejection},
     params::{
         SearchBudget, WarmStartBudget,
@@ -119,7 +119,10 @@ impl WarmStarts {
         let mut evaluator = Evaluator::new(Problem::new(task, robot)?, SearchStats::unlimited());
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
         if let Some(postures) = &self.postures {
-            starts.extend(screen::screen(&mut evaluator, entries.iter().copied(), 0, postures, budget));
+            let Problem { human, robot, .. } = &evaluator.problem;
+            let of_place = entries_for_place(task, human, robot, postures, budget.natural_boards);
+            let entries = entries.iter().copied().chain(&of_place);
+            starts.extend(screen::screen(&mut evaluator, entries, 0, postures, budget));
         }
         let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds));
         let p_ot_m = task.operation.x_ot.translation.vector.into();

@@ -1,6 +1,6 @@
 //! The strategies for a whole circle, as CSV and as console tables.
 
-use super::{console::aligned, csv_text::csv_text};
+use super::{columns::aligned, csv_text::csv_text};
 use crate::model::{frames::Pose, plan::Plan};
 
 /// A strategy by name, with a plan for every point that it covers.

@@ -3,9 +3,7 @@
 
 use std::path::Path;
 
-use comfy_table::{CellAlignment, Table, presets};
-
-use super::{Outcome, Status, explanation, number_of, posture};
+use super::{Outcome, Status, columns::aligned, explanation, number_of, posture};
 use crate::model::{
     plan::PostureFigures,
     verdict::{Check, CheckKind, Verdict},
@@ -135,15 +133,4 @@ fn highest_torques(verdict: &Verdict) -> Option<String> {
     joints.sort_by(|a, b| b.1.total_cmp(a.1));
     let list: Vec<_> = joints.iter().take(3).map(|(joint, ratio)| format!("{joint} {ratio:.2}")).collect();
     (!list.is_empty()).then(|| list.join(", "))
-}
-
-/// Rows as text with two spaces between columns: the first `left` columns are aligned left, the others right.
-pub(crate) fn aligned(rows: &[Vec<String>], left: usize) -> String {
-    let mut table = Table::new();
-    table.load_preset(presets::NOTHING).add_rows(rows.iter().cloned());
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        column.set_cell_alignment(if index < left { CellAlignment::Left } else { CellAlignment::Right });
-    }
-    format!("{}\n", table.trim_fmt())
 }

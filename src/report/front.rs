@@ -1,7 +1,7 @@
 //! A Pareto front as CSV, plot and console table.
 
 use super::{
-    console::aligned,
+    columns::aligned,
     csv_text::csv_text,
     picture::{circle, document, label, line, number, ticks},
 };

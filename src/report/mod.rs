@@ -4,6 +4,7 @@
 //! changes a verdict, prints, or reads a clock. Durations are shown on the console only, so equal runs write equal files.
 
 pub mod circle;
+pub(crate) mod columns;
 pub mod console;
 pub(crate) mod csv_text;
 pub mod curve;

@@ -1,6 +1,6 @@
 //! A table of several plans of one scenario.
 
-use super::console::aligned;
+use super::columns::aligned;
 use crate::model::{
     grasp::Edge,
     plan::{Comfort, Plan, Stability},

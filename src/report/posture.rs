@@ -1,6 +1,6 @@
 //! How the person stands and sees the work: each figure with its limits.
 
-use super::console::aligned;
+use super::columns::aligned;
 use crate::model::plan::{PostureConstraint, PostureFigure, PostureFigures};
 
 /// The head of the table.

@@ -87,7 +87,7 @@ impl PostureMap {
         for _ in 0..draws {
             let q_h_rad = human.arm().ranges.at_shares([(); 7].map(|()| uniform(&mut random, 0.0, 1.0)));
             let x_bt = human.tool_pose_b(&q_h_rad);
-            if human.work_violation(&x_bt, &load.normal_t).is_some() {
+            if !human.arm().permits_shoulder(&q_h_rad) || human.work_violation(&x_bt, &load.normal_t).is_some() {
                 continue;
             }
             map.has_natural = true;

@@ -33,19 +33,10 @@ pub fn resample(robot: &GraspingRobot, boards: &[Pose], count: usize, stream: [u
     if boards.is_empty() { Vec::new() } else { grasps_of(robot, count, stream, board).collect() }
 }
 
-/// Grasps of boards that postures ask for, each entry with its posture; boards outside the search domain have none. With
-/// `moves` each board is moved as by [`resample`]. The same arguments give the same grasps, whatever the number of threads.
-pub fn grasps_for(
-    robot: &GraspingRobot,
-    boards: &[(Pose, Posture)],
-    moves: bool,
-    stream: [u64; 2],
-) -> Vec<LibraryEntry> {
-    let of_board = |number: usize, random: &mut Pcg64| {
-        let (x_wo, _) = &boards[number];
-        if moves { moved(x_wo, &robot.domain, random) } else { *x_wo }
-    };
-    numbered_grasps_of(robot, boards.len(), stream, of_board)
+/// Grasps of boards where postures have them, each entry with its posture; boards outside the search domain have none. The same
+/// arguments give the same grasps, whatever the number of threads.
+pub fn grasps_for(robot: &GraspingRobot, boards: &[(Pose, Posture)], stream: [u64; 2]) -> Vec<LibraryEntry> {
+    numbered_grasps_of(robot, boards.len(), stream, |number, _| boards[number].0)
         .map(|(number, entry)| LibraryEntry { posture: Some(boards[number].1), ..entry })
         .collect()
 }
