@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use nalgebra::{Isometry3, Point3, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 
 use super::{
     curve::{Cut, POINTS, muscular_curve},
@@ -45,6 +47,7 @@ struct Fixture {
     settings: ComfortSettings,
     operation: Operation,
     robot_points_w: [Point3<f64>; 2],
+    link_poses: Vec<Pose>,
     x_wo: Pose,
 }
 
@@ -69,6 +72,7 @@ impl Fixture {
             settings,
             operation,
             robot_points_w: [Point3::new(0.2, 0.3, 0.0), Point3::new(0.2, -0.3, 0.4)],
+            link_poses: Vec::new(),
             x_wo: Isometry3::from_parts(
                 Vector3::new(0.6, 0.0, 0.2).into(),
                 nalgebra::UnitQuaternion::from_rotation_matrix(&upright),
@@ -84,7 +88,13 @@ impl Fixture {
             operation: self.operation,
             floor_z_m: FLOOR_Z_M,
             robot_points_w: &self.robot_points_w,
-            scene: Scene { link_poses: &[], holding: &[], board_size_m: BOARD_M, x_wo: self.x_wo, person: &[] },
+            scene: Scene {
+                link_poses: &self.link_poses,
+                holding: &[],
+                board_size_m: BOARD_M,
+                x_wo: self.x_wo,
+                person: &[],
+            },
         }
     }
 }
@@ -269,6 +279,30 @@ fn natural_responses_keep_every_limit_and_are_some_of_the_unrestricted_ones() {
         assert!(best.objective >= of_grid);
         assert!(best_response(&without).unwrap().objective >= of_grid);
     }
+}
+
+#[test]
+fn a_robot_in_the_line_of_sight_excludes_responses() {
+    let robot = Robot::load("baxter", Path::new("")).unwrap();
+    let mut generator = Pcg64::seed_from_u64(81);
+    let blind = PostureLimits { line_of_sight: false, ..PostureLimits::NATURAL };
+    let (mut seen, mut hidden) = (0, 0);
+    for _ in 0..10 {
+        let positions: Vec<f64> = robot.joints.iter().map(|_| generator.random_range(-1.0..1.0)).collect();
+        let counts = [PostureLimits::NATURAL, blind].map(|posture| {
+            let mut fixture = Fixture::of_person(&Person { posture, ..Person::default() }, drill());
+            fixture.link_poses = robot.link_poses(&positions);
+            let mut count = 0;
+            responses::visit(&fixture.query(), |_, response| {
+                count += 1;
+                assert_natural(&fixture, response);
+            });
+            count
+        });
+        seen += counts[0];
+        hidden += counts[1] - counts[0];
+    }
+    assert!(seen > 100 && hidden > 100, "{seen} {hidden}");
 }
 
 #[test]
