@@ -17,7 +17,7 @@ use crate::{
         verdict::Verdict,
     },
     record::{self, RecordError, RecordedRun, RecordedSummary},
-    report::console,
+    report::{columns, console},
     scenario,
 };
 
