@@ -11,7 +11,7 @@ use super::{
 use crate::{
     model::{
         operation::OperationKind,
-        plan::{Comfort, PostureFigures},
+        plan::PostureFigures,
         scenario::{MuscularMetric, PlannerKind},
         verdict::{CheckKind, VerdictKind},
     },
@@ -331,9 +331,8 @@ pub fn picture_name(hold: &HoldRow) -> String {
 /// The title of a picture.
 #[must_use]
 pub fn picture_title(hold: &HoldRow) -> String {
-    let scores = hold.comfort().and_then(Comfort::scores).map(|scores| format!(", {scores}")).unwrap_or_default();
     format!(
-        "{}, {} planner: muscular comfort {}, peripersonal comfort {}{scores}",
+        "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
         hold.operation,
         hold.planner,
         figure(hold.muscular(), 1),

@@ -12,7 +12,7 @@ use super::hull::{Point2, convex_hull};
 use crate::{
     human::{BodyPart, Capsule, Human, HumanError, default_tool},
     model::{
-        plan::{HumanPosture, Plan},
+        plan::{Comfort, HumanPosture, Plan},
         scenario::Person,
         tool_part::ToolMaterial,
     },
@@ -25,8 +25,8 @@ const PX_PER_M: f64 = 190.0;
 /// Margin around each view, px.
 const MARGIN_PX: f64 = 24.0;
 
-/// Height of the title above the views, px.
-const TITLE_PX: f64 = 56.0;
+/// Height of the two lines of the title and the views' names above the views, px.
+const TITLE_PX: f64 = 72.0;
 
 /// Length of the arrow of the tool's force, m/N: 15 N are 0.15 m.
 const ARROW_M_PER_N: f64 = 0.01;
@@ -88,7 +88,7 @@ impl Item {
     }
 }
 
-/// The picture of a plan, with a title.
+/// The picture of a plan, with a title and the scores of the posture.
 ///
 /// # Errors
 /// If the plan's person or tool is invalid.
@@ -106,15 +106,17 @@ pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError
         let origin =
             [left_px + MARGIN_PX - bounds[0][0] * PX_PER_M, TITLE_PX + height - MARGIN_PX + bounds[0][1] * PX_PER_M];
         draw(&mut body, view, origin, &scene, plan);
-        let _ = writeln!(body, "<text x=\"{:.0}\" y=\"46\" fill=\"#666666\">{}</text>", left_px + MARGIN_PX, view.name);
+        let _ = writeln!(body, "<text x=\"{:.0}\" y=\"62\" fill=\"#666666\">{}</text>", left_px + MARGIN_PX, view.name);
         left_px += width_px(bounds);
     }
     let height = height + TITLE_PX;
+    let scores = plan.comfort.as_ref().and_then(Comfort::scores).unwrap_or_default();
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
          height=\"{height:.0}\" font-family=\"sans-serif\" font-size=\"13\" stroke-linejoin=\"round\">\n\
          <rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n\
-         <text x=\"{MARGIN_PX}\" y=\"24\" font-size=\"15\" fill=\"#222222\">{title}</text>\n{body}</svg>\n"
+         <text x=\"{MARGIN_PX}\" y=\"22\" font-size=\"14\" fill=\"#222222\">{title}</text>\n\
+         <text x=\"{MARGIN_PX}\" y=\"40\" fill=\"#222222\">{scores}</text>\n{body}</svg>\n"
     ))
 }
 
