@@ -30,8 +30,8 @@ const FRICTION: f64 = 0.6;
 /// Largest relative error of the solver against the closed form: a hundred times its tolerance.
 const SOLVER_TOLERANCE: f64 = 1e-5;
 
-/// Largest residual of the forces on the board at the end of the hold, N. The board still oscillates after a ramp of 0.3 s;
-/// the residual was about 1e-4 N when this was measured.
+/// Largest residual of the forces on the board at the end of the hold, N. The board still oscillates 0.6 s after a ramp of 0.3 s,
+/// by less than a thousandth of the load.
 const BALANCE_N: f64 = 0.01;
 
 /// A description of what works, or of the failure.
@@ -120,7 +120,7 @@ fn solver() -> CheckResult {
 fn physics() -> CheckResult {
     let plan = plan()?;
     let robot = loaded(&plan)?;
-    let settings = SimulationSettings { settle_s: 0.3, ramp_s: 0.3, hold_s: 0.3, release_s: 0.1, ..Default::default() };
+    let settings = SimulationSettings { settle_s: 0.3, ramp_s: 0.3, hold_s: 0.6, release_s: 0.1, ..Default::default() };
     let checked = checked(&plan, &robot)?;
     let simulate =
         || sim::simulate(&checked, &sim::Conditions::new(FRICTION, settings)).map_err(|error| error.to_string());
@@ -133,7 +133,7 @@ fn physics() -> CheckResult {
     }
     let last = last_loaded(&trace).ok_or("found no sample under the full load")?;
     let off_n = imbalance_n(last, plan.object.mass_kg);
-    let message = format!("1 s simulated twice with equal results; residual of the forces on the board {off_n:.4} N");
+    let message = format!("1.3 s simulated twice with equal results; residual of the forces on the board {off_n:.4} N");
     if off_n < BALANCE_N { Ok(message) } else { Err(format!("{message}, expected less than {BALANCE_N} N")) }
 }
 

@@ -23,7 +23,7 @@ use crate::{
 /// ```
 ///
 /// After an intended change of the simulation, copy the new value from the failing test.
-const SHORT_HOLD: &str = "d41bbe0c888ac6747dd2f6ffa7f3b64c0ec6044c8697c663aa41db015fa0a7c4";
+const SHORT_HOLD: &str = "bd97762b241579645a6448ec32c7f7c5fabc503e5c52f9555b4387324b2a46f5";
 
 /// A plan without the durations, which differ between runs.
 fn plan_without_clock(plan: &[u8]) -> Value {

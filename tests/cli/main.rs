@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod natural_results;
 mod process;
 
 mod bad_input;

@@ -68,7 +68,8 @@ fn several_plans_the_front_and_a_circle_keep_them_too() {
 #[test]
 fn every_limit_names_itself_when_it_leaves_nothing() {
     use PostureConstraint as C;
-    let impossible: [(C, fn(&mut PostureLimits)); 6] = [
+    type Change = fn(&mut PostureLimits);
+    let impossible: [(C, Change); 6] = [
         (C::Facing, |limits| limits.facing_deg = 0.0),
         (C::View, |limits| limits.view_deg = 0.1),
         (C::GazeYaw, |limits| limits.gaze_yaw_deg = 0.0),

@@ -1,0 +1,140 @@
+//! The committed results for a person who stands naturally: every limit is kept, every plan holds, the comfort planner is near
+//! the best known, and the program still computes them. `cargo run --release -- reproduce --natural` updates them.
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use benchdog::model::scenario::PostureLimits;
+
+use crate::{
+    common::root,
+    process::{argument, benchdog, stderr},
+};
+
+type Row = BTreeMap<String, String>;
+
+fn rows(folder: &Path, name: &str) -> Vec<Row> {
+    let text = fs::read_to_string(folder.join(name)).unwrap();
+    csv::Reader::from_reader(text.as_bytes()).deserialize().map(Result::unwrap).collect()
+}
+
+fn committed(name: &str) -> Vec<Row> {
+    rows(&root().join("results/natural"), name)
+}
+
+#[test]
+fn every_plan_of_every_planner_keeps_every_limit() {
+    let PostureLimits {
+        facing_deg,
+        view_deg,
+        gaze_yaw_deg,
+        gaze_pitch_deg,
+        eye_distance_m,
+        face_elevation_deg,
+        upper_arm_deg,
+        reach,
+        elbow_deg,
+        limit_margin_deg,
+        deviation_margin_deg,
+        ..
+    } = PostureLimits::NATURAL;
+    let above = |low: f64| [low, f64::INFINITY];
+    let below = |high: f64| [f64::NEG_INFINITY, high];
+    let limits = [
+        ("facing_deg", [-facing_deg, facing_deg]),
+        ("view_deg", below(view_deg)),
+        ("gaze_yaw_deg", [-gaze_yaw_deg, gaze_yaw_deg]),
+        ("gaze_pitch_deg", gaze_pitch_deg),
+        ("eye_distance_m", eye_distance_m),
+        ("line_of_sight", above(1.0)),
+        ("face_elevation_deg", above(face_elevation_deg)),
+        ("upper_arm_deg", below(upper_arm_deg)),
+        ("reach", below(reach)),
+        ("elbow_deg", elbow_deg),
+        ("limit_margin_deg", above(limit_margin_deg)),
+        ("deviation_margin_deg", above(deviation_margin_deg)),
+    ];
+    let postures = committed("postures.csv");
+    // 25 operations, four planners: all found.
+    assert_eq!(postures.len(), 100);
+    for row in postures {
+        for (key, [low, high]) in limits {
+            let value: f64 = row[key].parse().unwrap();
+            // Six decimals are written.
+            let half_digit = 0.5e-6;
+            let kept = low - half_digit <= value && value <= high + half_digit;
+            assert!(kept, "{} {}: {key} {value}", row["operation"], row["planner"]);
+        }
+    }
+}
+
+#[test]
+fn every_plan_holds_in_simulation() {
+    let physics = committed("physics.csv");
+    assert_eq!(physics.len(), 100);
+    for row in physics {
+        assert_eq!(row["verdict"], "holds", "{} {}", row["operation"], row["planner"]);
+    }
+}
+
+/// The best known objectives, found with the budget `exhaustive` and other seeds. The operations of a pair are equal up to half a
+/// turn of the board.
+const BEST_KNOWN: [(&str, &str, f64); 13] = [
+    ("cut-01", "cut-09", 86.733),
+    ("cut-02", "cut-10", 89.802),
+    ("cut-03", "cut-11", 89.419),
+    ("cut-04", "cut-12", 88.369),
+    ("cut-05", "cut-13", 89.670),
+    ("cut-06", "cut-14", 91.539),
+    ("cut-07", "cut-15", 86.033),
+    ("cut-08", "cut-16", 85.534),
+    ("drill-1", "drill-9", 96.832),
+    ("drill-2", "drill-8", 96.677),
+    ("drill-3", "drill-7", 96.256),
+    ("drill-4", "drill-6", 96.066),
+    ("drill-5", "drill-5", 95.695),
+];
+
+#[test]
+fn every_comfort_plan_is_near_the_best_known() {
+    let plans = committed("plans.csv");
+    for (one, other, best_known) in BEST_KNOWN {
+        for operation in [one, other] {
+            let row = plans.iter().find(|row| row["operation"] == operation && row["planner"] == "comfort").unwrap();
+            let share = row["objective"].parse::<f64>().unwrap() / best_known;
+            assert!((0.99..1.002).contains(&share), "{operation}: {share} of the best known");
+        }
+    }
+}
+
+#[test]
+fn each_planner_is_best_at_its_own_comfort() {
+    let plans = committed("plans.csv");
+    for task in ["cut", "drill"] {
+        let mean = |planner: &str, column: &str| {
+            let of = plans.iter().filter(|row| row["operation"].starts_with(task) && row["planner"] == planner);
+            let values: Vec<f64> = of.map(|row| row[column].parse().unwrap()).collect();
+            values.iter().sum::<f64>() / values.len() as f64
+        };
+        for other in ["comfort", "peripersonal", "random"] {
+            assert!(mean("muscular", "muscular") > mean(other, "muscular"), "{task} {other}");
+        }
+        for other in ["comfort", "muscular", "random"] {
+            assert!(mean("peripersonal", "peripersonal_m") > mean(other, "peripersonal_m"), "{task} {other}");
+        }
+        for other in ["muscular", "peripersonal", "random"] {
+            assert!(mean("comfort", "objective") > mean(other, "objective"), "{task} {other}");
+        }
+    }
+}
+
+#[test]
+fn the_program_still_computes_them() {
+    let out = tempfile::tempdir().unwrap();
+    let arguments = ["reproduce", "--natural", "--quick", "--filter", "drill-5", "--out", argument(out.path())];
+    let output = benchdog(root(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for name in ["plans.csv", "postures.csv", "physics.csv"] {
+        let of_operation = committed(name).into_iter().filter(|row| row["operation"] == "drill-5").collect::<Vec<_>>();
+        assert_eq!(rows(out.path(), name), of_operation, "`cargo run --release -- reproduce --natural` updates {name}");
+    }
+}
