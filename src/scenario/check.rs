@@ -41,6 +41,11 @@ impl<'a> Checker<'a> {
         Self { prefix, ..*self }
     }
 
+    /// True for the values below a key.
+    pub fn is_nested(&self) -> bool {
+        !self.prefix.is_empty()
+    }
+
     fn error(&self, key: &str, kind: InputErrorKind) -> InputError {
         let key = format!("{}{key}", self.prefix);
         InputError { file: self.path.to_owned(), line: (self.line_of)(self.text, &key), key: Some(key), kind }

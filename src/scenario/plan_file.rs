@@ -75,7 +75,8 @@ fn check_plan(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), Inp
         None => (&default, default_tool(plan.operation.kind)),
     };
     if let Some(posture) = &plan.human {
-        resolve::check_person(check, &posture.person(rules))?;
+        // The rules are checked with the scenario that they are part of.
+        resolve::check_person(check, &posture.person(&default))?;
     }
     let Err(flaws) = CheckedPlan::new(robot, plan, rules, &tool) else { return Ok(()) };
     // Without a scenario the shoulder may be of either kind; whoever uses the plan knows which.

@@ -156,21 +156,26 @@ pub fn check_person(check: &Checker<'_>, person: &Person) -> Result<(), InputErr
 }
 
 fn check_posture_limits(check: &Checker<'_>, limits: &PostureLimits) -> Result<(), InputError> {
-    let range = |key: &str, [low, high]: [f64; 2], [least, most]: [f64; 2], unit: &str| {
-        check.within(&format!("{key}[0]"), low, least, most, unit)?;
-        check.within(&format!("{key}[1]"), high, low, most, unit)
+    // In the scenario of a plan the limits are in an object of their own.
+    let key = |name: &str| if check.is_nested() { format!("human.posture.{name}") } else { format!("human.{name}") };
+    let within = |name: &str, found: f64, [least, most]: [f64; 2], unit: &str| {
+        check.within(&key(name), found, least, most, unit)
     };
-    check.within("human.facing_deg", limits.facing_deg, 0.0, 180.0, "degrees")?;
-    check.within("human.view_deg", limits.view_deg, 0.0, 180.0, "degrees")?;
-    check.within("human.gaze_yaw_deg", limits.gaze_yaw_deg, 0.0, 180.0, "degrees")?;
-    range("human.gaze_pitch_deg", limits.gaze_pitch_deg, [-90.0, 90.0], "degrees")?;
-    range("human.eye_distance_m", limits.eye_distance_m, [0.0, 5.0], "m")?;
-    check.within("human.face_elevation_deg", limits.face_elevation_deg, -90.0, 90.0, "degrees")?;
-    check.within("human.upper_arm_deg", limits.upper_arm_deg, 1.0, 180.0, "degrees")?;
-    check.within("human.reach", limits.reach, 0.2, 1.0, "a share of the straight arm")?;
-    range("human.elbow_deg", limits.elbow_deg, [0.0, 180.0], "degrees")?;
-    check.within("human.limit_margin_deg", limits.limit_margin_deg, 0.0, 60.0, "degrees")?;
-    check.within("human.deviation_margin_deg", limits.deviation_margin_deg, 0.0, 25.0, "degrees")
+    let range = |name: &str, [low, high]: [f64; 2], [least, most]: [f64; 2], unit: &str| {
+        within(&format!("{name}[0]"), low, [least, most], unit)?;
+        within(&format!("{name}[1]"), high, [low, most], unit)
+    };
+    within("facing_deg", limits.facing_deg, [0.0, 180.0], "degrees")?;
+    within("view_deg", limits.view_deg, [0.0, 180.0], "degrees")?;
+    within("gaze_yaw_deg", limits.gaze_yaw_deg, [0.0, 180.0], "degrees")?;
+    range("gaze_pitch_deg", limits.gaze_pitch_deg, [-90.0, 90.0], "degrees")?;
+    range("eye_distance_m", limits.eye_distance_m, [0.0, 5.0], "m")?;
+    within("face_elevation_deg", limits.face_elevation_deg, [-90.0, 90.0], "degrees")?;
+    within("upper_arm_deg", limits.upper_arm_deg, [1.0, 180.0], "degrees")?;
+    within("reach", limits.reach, [0.2, 1.0], "a share of the straight arm")?;
+    range("elbow_deg", limits.elbow_deg, [0.0, 180.0], "degrees")?;
+    within("limit_margin_deg", limits.limit_margin_deg, [0.0, 60.0], "degrees")?;
+    within("deviation_margin_deg", limits.deviation_margin_deg, [0.0, 25.0], "degrees")
 }
 
 /// The tool of a file: a shipped one by its name, one with figures, or that of the operation.

@@ -345,6 +345,74 @@ fn a_trunk_that_leans_too_far() {
     );
 }
 
+/// A limit that is out of range, also in the scenario of a plan.
+#[test]
+fn invalid_limits_of_a_posture() {
+    for (keys, message) in [
+        ("facing_deg = -1.0", "bad.toml:13: human.facing_deg: found -1, expected a number from 0 to 180 (degrees)"),
+        (
+            "elbow_deg = [90.0, 60.0]",
+            "bad.toml:13: human.elbow_deg[1]: found 60, expected a number from 90 to 180 (degrees)",
+        ),
+        (
+            "reach = 0.3",
+            "bad.toml:12: human: the person's elbow_deg, reach, upper_arm_deg, limit_margin_deg and deviation_margin_deg \
+             leave a joint of the arm no range, expected wider limits",
+        ),
+    ] {
+        assert_scenario_refused("[grip]", &format!("[human]\n{keys}\n\n[grip]"), message);
+    }
+    let spoilt = text_of_both("quickstart/plan.json").replace("\"facing_deg\": 30.0,", "\"facing_deg\": 300.0,");
+    let (output, _) = benchdog_on("bad.json", &spoilt, &["simulate", "bad.json"]);
+    let line = 1 + spoilt.lines().position(|line| line.contains("\"facing_deg\": 300.0")).unwrap();
+    let message = format!(
+        "bad.json:{line}: scenario.human.posture.facing_deg: found 300, expected a number from 0 to 180 (degrees)"
+    );
+    assert_refused(&output, &message);
+}
+
+#[test]
+fn a_place_that_is_incomplete_or_not_asked_for() {
+    for (keys, message) in [
+        (
+            "place = \"given\"\ny_m = 0.0\nheading_deg = 180.0",
+            "bad.toml:12: human.x_m: found nothing, expected a position in m, since human.place = \"given\"",
+        ),
+        ("x_m = 1.0", "bad.toml:13: human.x_m: found a value, expected none: it belongs to human.place = \"given\""),
+        (
+            "place = \"given\"\nx_m = 1.0\ny_m = 0.0\nheading_deg = 180.0\nplace_tolerance_m = 0.0",
+            "bad.toml:17: human.place_tolerance_m: found 0, expected a number from 0.001 to 10 (m)",
+        ),
+    ] {
+        assert_scenario_refused("[grip]", &format!("[human]\n{keys}\n\n[grip]"), message);
+    }
+}
+
+#[test]
+fn a_tool_without_a_known_name_or_all_figures() {
+    for (keys, message) in [
+        (
+            "name = \"saw\"",
+            "bad.toml:13: tool.name: found \"saw\", expected \"drill\", \"knife\", \"knife-thumb-side\"",
+        ),
+        (
+            "name = \"knife\"\nmass_kg = 0.2",
+            "bad.toml:14: tool.mass_kg: found a value, expected none: it belongs to a tool without a name",
+        ),
+    ] {
+        assert_scenario_refused("[grip]", &format!("[tool]\n{keys}\n\n[grip]"), message);
+    }
+}
+
+#[test]
+fn a_score_out_of_range() {
+    assert_scenario_refused(
+        "[grip]",
+        "[limits]\nrula = 9\n\n[grip]",
+        "bad.toml:13: limits.rula: found 9, expected a number from 1 to 7 (a score)",
+    );
+}
+
 #[test]
 fn a_saturation_at_no_distance() {
     assert_scenario_refused(
