@@ -55,6 +55,9 @@ fn simulated(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Judgemen
     if let Some(contact) = checked.first_contact() {
         return Err(format!("bodies touch before the load is applied: {contact}").into());
     }
+    if let Some(reason) = checked.why_not_so(&scenario.limits) {
+        return Err(format!("the person would not work so: {reason}").into());
+    }
     let trace = sim::simulate(&checked, &Conditions::of(scenario))?;
     Ok(judge(&trace, &scenario.limits))
 }

@@ -218,6 +218,15 @@ pub enum Flaw {
         /// The limit.
         limit: f64,
     },
+    /// A figure of the posture that differs from the recomputed one.
+    OtherPosture {
+        /// The figure.
+        constraint: PostureConstraint,
+        /// As the plan states it.
+        stated: f64,
+        /// As it is recomputed.
+        computed: f64,
+    },
     /// A stated figure that differs from the recomputed one.
     Figure {
         /// The figure's key.
@@ -252,7 +261,9 @@ impl Flaw {
             Self::Tool { .. } | Self::PersonShoulder { .. } => "human.q_rad".into(),
             Self::Contact(_) => "object.x_wo".into(),
             Self::Strength { .. } => "comfort.activations".into(),
-            Self::Posture { constraint, .. } => format!("human.posture.{}", constraint.key()),
+            Self::Posture { constraint, .. } | Self::OtherPosture { constraint, .. } => {
+                format!("human.posture.{}", constraint.key())
+            }
             Self::Place { .. } => "human.x_wb".into(),
             Self::NoResponse => "comfort.average".into(),
             Self::NoEquilibrium | Self::ContactModel(_) => "stability".into(),
@@ -322,7 +333,7 @@ impl Flaw {
             Self::ContactModel(error) => error.clone(),
             Self::Missing { .. } => "nothing".into(),
             Self::Limit { found, .. } => found.to_string(),
-            Self::Figure { stated, .. } => stated.to_string(),
+            Self::OtherPosture { stated, .. } | Self::Figure { stated, .. } => stated.to_string(),
         }
     }
 
@@ -386,7 +397,9 @@ impl Flaw {
             Self::NoEquilibrium | Self::ContactModel(_) => "a stable grasp".into(),
             Self::Missing { .. } => "a value to verify".into(),
             Self::Limit { limit, .. } => format!("the limit {limit}"),
-            Self::Figure { computed, .. } => format!("{computed}, as recomputed"),
+            Self::OtherPosture { computed, .. } | Self::Figure { computed, .. } => {
+                format!("{computed}, as recomputed")
+            }
         }
     }
 }

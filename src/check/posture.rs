@@ -31,6 +31,15 @@ impl CheckedPlan<'_> {
         Some(human.posture_figures(&posture.q_rad, &normal_t, free_share))
     }
 
+    /// Why the person would not stand so, not see the work, or not stand there, as a reason in words: each flaw after its name.
+    /// `None` if every limit of posture, place and scores is kept.
+    #[must_use]
+    pub fn why_not_so(&self, limits: &Limits) -> Option<String> {
+        let flaws = self.posture_flaws().into_iter().chain(self.score_flaws(limits));
+        let named: Vec<_> = flaws.map(|flaw| format!("{}: {flaw}", flaw.verdict_name().unwrap_or_default())).collect();
+        (!named.is_empty()).then(|| named.join("; "))
+    }
+
     /// The scores of the person's posture that exceed their limits.
     #[must_use]
     pub fn score_flaws(&self, limits: &Limits) -> Vec<Flaw> {

@@ -88,6 +88,10 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, C
     if let Some(contact) = checked.first_contact() {
         return Ok(Margin { reason: Some(contact), ..empty });
     }
+    if let Some(reason) = checked.why_not_so(&scenario.limits) {
+        let (ended_by, met) = (VerdictKind::Infeasible, expected == VerdictKind::Infeasible);
+        return Ok(Margin { reason: Some(reason), ended_by, met, ..empty });
+    }
     let guess = empty.predicted.as_ref().map_or(1.0, |predicted| predicted.compliant);
     let FailingLoad { holds_at, fails_at, judgement, simulations } = simulated(checked, scenario, guess)?;
     let failed = judgement.first_failure.as_ref().map(|failure| failure.check);

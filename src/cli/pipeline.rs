@@ -64,11 +64,7 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
         let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, contact);
         return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
     }
-    let mut flaws = checked.posture_flaws();
-    flaws.extend(checked.score_flaws(&scenario.limits));
-    if !flaws.is_empty() {
-        let named = flaws.iter().map(|flaw| format!("{}: {flaw}", flaw.verdict_name().unwrap_or_default()));
-        let reason = named.collect::<Vec<_>>().join("; ");
+    if let Some(reason) = checked.why_not_so(&scenario.limits) {
         let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, reason);
         return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
     }

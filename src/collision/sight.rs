@@ -46,7 +46,7 @@ impl CollisionModel {
         for part in scene.person {
             if let Some(exempt_m) = exempt_m(part.name) {
                 let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
-                meet(&capsule, &Pose::identity(), length_m - exempt_m);
+                meet(&capsule, &Pose::identity(), (length_m - exempt_m).max(0.0));
             }
         }
         for (link, x_wl) in self.links.iter().zip(scene.link_poses) {

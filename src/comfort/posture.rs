@@ -13,8 +13,8 @@ use crate::{
 };
 
 /// The comfort of one posture of the person (docs/method.md#4-muscular-comfort, docs/method.md#5-peripersonal-comfort).
-/// `wrench_w` is the operation's about the tool tip, W axes. The RULA score is left out, since it is only reported:
-/// [`Human::rula`] computes it for plans.
+/// `wrench_w` is the operation's about the tool tip, W axes. The scores are left out, since they are not optimised:
+/// [`Human::rula`] and [`Human::reba`] compute them for plans.
 #[must_use]
 pub fn posture_comfort(
     human: &Human,

@@ -12,10 +12,10 @@
 //! alpha_i = |tau_i| / tau_max,i(q_i),   C = 1 / (sum alpha_i^2 + eps),   dC = -C^2 sum 2 alpha_i d alpha_i
 //! ```
 //!
-//! `k > i` are the weights beyond joint i. Of the intrinsic metric the shoulder's part is that of [`super::intrinsic`] along each
-//! joint, by the derivatives of the whole moment about the shoulder. The derivatives are undefined where a joint's torque changes sign, where a
-//! joint changes between its two strengths, and at the ends of the strengths' ranges. There they are those of the
-//! strength that [`super::muscular`] uses.
+//! `k > i` are the weights beyond joint i. Of the intrinsic metric the shoulder's part is that of `human::intrinsic`
+//! along each joint, by the derivatives of the whole moment about the shoulder. The derivatives are undefined where a joint's
+//! torque changes sign, where a joint changes between its two strengths, and at the ends of the strengths' ranges. There they
+//! are those of the strength that [`super::muscular`] uses.
 
 use nalgebra::{Point3, Vector3};
 

@@ -116,6 +116,8 @@ impl Shoulder<'_> {
             let [flexion, abduction] = self.hanging(strength, &u, &du);
             return [flexion, abduction, axial];
         }
+        // Straight up, where all strengths are constant, e_r may be any direction.
+        let s = s.max(f64::MIN_POSITIVE);
         let ds = (u.x * du.x + u.y * du.y) / s;
         let e_r = Vector3::new(u.y, -u.x, 0.0) / s;
         let de_r = (Vector3::new(du.y, -du.x, 0.0) - e_r * ds) / s;

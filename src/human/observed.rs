@@ -17,6 +17,9 @@ use serde::Deserialize;
 use super::{Human, ranges::ArmAngles, ranges::twist_rad};
 use crate::model::{GRAVITY_W, wrench::Wrench};
 
+/// Rounding of the elbow's place, m: an arm that is abducted is not behind the trunk.
+const ROUNDING_M: f64 = 1e-9;
+
 /// Thresholds that both scores leave to the observer, degrees.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -73,7 +76,7 @@ impl Human {
         let (down_deg, turn_deg) = (-gaze.pitch_rad.to_degrees(), gaze.yaw_rad.to_degrees().abs());
         Observed {
             upper_arm_deg: upper_arm.angle(&-Vector3::z()).to_degrees(),
-            is_arm_behind: upper_arm.x < 0.0,
+            is_arm_behind: upper_arm.x < -ROUNDING_M,
             is_arm_abducted: abduction_deg > observer.abducted_deg,
             is_arm_turned: twist_rad(&frames.r_bu).to_degrees().abs() > observer.turned_deg,
             elbow_deg,

@@ -8,6 +8,9 @@ use nalgebra::Vector3;
 use super::Human;
 use crate::model::{frames::Pose, scenario::StandingPlace};
 
+/// Rounding of a standing pose, m and rad: the grid of responses has points at the ends of the tolerances.
+const ROUNDING: f64 = 1e-9;
+
 /// Margins of a standing pose in a given place: along x_W and y_W, m, and of the heading, rad, two each; none if the place is
 /// free.
 pub type PlaceMargins<T> = ArrayVec<T, 6>;
@@ -64,7 +67,7 @@ impl Human {
     /// True if the person may stand there.
     #[must_use]
     pub fn may_stand(&self, standing: &Standing) -> bool {
-        self.place_margins(standing).iter().all(|&margin| margin >= 0.0)
+        self.place_margins(standing).iter().all(|&margin| margin >= -ROUNDING)
     }
 
     /// True if the scenario says where the person stands.

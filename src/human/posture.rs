@@ -27,7 +27,7 @@ use crate::model::{
 /// Number of margins of the work: two of each range, one of each other limit.
 const WORK_MARGINS: usize = 10;
 
-/// How far the work is inside the limits of a natural posture, in the order of [`CONSTRAINTS`]; none if it is unrestricted.
+/// How far the work is inside the limits of a natural posture, in the order of `CONSTRAINTS`; none if it is unrestricted.
 pub type WorkMargins<T> = ArrayVec<T, WORK_MARGINS>;
 
 /// The constraint of each margin.

@@ -59,7 +59,8 @@ pub fn twist_rad(r_vu: &Matrix3<f64>) -> f64 {
 pub fn twist_slope(r_vu: &Matrix3<f64>, axis_v: &Vector3<f64>) -> f64 {
     let [x, y] = [0, 1].map(|column| axis_v.cross(&r_vu.column(column)));
     let (sin, cos) = (r_vu.m21 - r_vu.m12, r_vu.m11 + r_vu.m22);
-    (cos * (x.y - y.x) - sin * (x.x + y.y)) / (sin * sin + cos * cos)
+    // Straight up the twist has no value.
+    (cos * (x.y - y.x) - sin * (x.x + y.y)) / (sin * sin + cos * cos).max(f64::MIN_POSITIVE)
 }
 
 /// The shoulder's angles for an upper arm at this elevation, in this direction (from x_V towards y_V) and with this twist, rad.

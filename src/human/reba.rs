@@ -19,7 +19,7 @@
 //! | coupling 0 | good: a tool with a handle |
 //! | activity 0 | one operation of a few seconds: nothing is held for a minute or repeated |
 //!
-//! [`super::observed`] defines the angles. Without shocks the load has no addition.
+//! `human::observed` defines the angles. Without shocks the load has no addition.
 
 use std::sync::LazyLock;
 

@@ -21,7 +21,7 @@
 //! | force 0, 1, 3 | tool's weight and tool's force together under 2 kg, up to 10 kg, more: intermittent |
 //! | muscle use 0 | one operation of a few seconds, neither static nor repeated |
 //!
-//! [`super::observed`] defines the angles.
+//! `human::observed` defines the angles.
 
 use std::sync::LazyLock;
 

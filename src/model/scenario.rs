@@ -387,14 +387,15 @@ pub struct ComfortSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Optima {
-    /// Regularised muscular comfort `1 / (||alpha||^2 + 0.01)`.
+    /// Muscular comfort, `comfort.muscular_regularised` of a plan.
     pub muscular_regularised: f64,
     /// Peripersonal comfort, m.
     pub peripersonal_m: f64,
 }
 
 impl Optima {
-    /// Used if the optima are not known: the upper bound of regularised muscular comfort, and 1 m.
+    /// Used if the optima are not known: the upper bound of the regularised muscular comfort as printed (that of the intrinsic one
+    /// is 57), and 1 m.
     const FALLBACK: Self = Self { muscular_regularised: 100.0, peripersonal_m: 1.0 };
 }
 

@@ -52,8 +52,8 @@ pub fn entries_for_place(
     grasps_for(robot, &boards, [scenario.planner.seed, NATURAL_PASS])
 }
 
-/// The most promising postures with poses of the board in them, at random rolls of the tool where it is free and, if the place is given, for
-/// a person who stands there within the tolerances.
+/// The most promising postures with poses of the board in them: at random rolls of the tool where the roll is free and, if the
+/// place is given, for a person who stands there within the tolerances.
 fn boards(scenario: &Scenario, robot: &GraspingRobot, postures: &PostureMap, count: usize) -> Vec<(Pose, Posture)> {
     let floor_z_m = robot.robot.floor_z_m;
     let mut random = Pcg64::new(u128::from(scenario.planner.seed), u128::from(NATURAL_PASS));

@@ -70,7 +70,7 @@ impl std::fmt::Display for UnnaturalHolds {
         }
         let mut limits: Vec<_> = self.broken.iter().map(|(constraint, count)| (constraint.key(), *count)).collect();
         if self.elsewhere > 0 {
-            limits.push(("human.place", self.elsewhere));
+            limits.push(("place", self.elsewhere));
         }
         limits.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
         write!(f, "of {} holds that a person without limits of posture and place could work on", self.candidates)?;

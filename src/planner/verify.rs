@@ -73,6 +73,16 @@ fn verify_comfort(
         ("comfort.peripersonal_m", stated.peripersonal_m, found.peripersonal_m),
         ("comfort.objective", stated.objective, found.objective),
     ];
+    if let (Some(stated), Some(found)) = (stated.muscular_intrinsic, found.muscular_intrinsic) {
+        figures.push(("comfort.muscular_intrinsic", stated, found));
+    }
+    if let (Some(stated), Some(found)) = (stated.shoulder, found.shoulder) {
+        figures.extend([
+            ("comfort.shoulder.raising_nm", stated.raising_nm, found.raising_nm),
+            ("comfort.shoulder.horizontal_nm", stated.horizontal_nm, found.horizontal_nm),
+            ("comfort.shoulder.axial_nm", stated.axial_nm, found.axial_nm),
+        ]);
+    }
     if let (Some(stated), Some(found)) = (stated.average, found.average) {
         let MeanComfort { muscular_regularised, peripersonal_m, .. } = found;
         figures.push(("comfort.average.muscular_regularised", stated.muscular_regularised, muscular_regularised));
@@ -111,13 +121,15 @@ fn scores(Comfort { rula, reba, .. }: &Comfort) -> [(&'static str, Option<u8>); 
 }
 
 /// Figures of the posture that the plan states otherwise.
-fn other_posture(checked: &CheckedPlan<'_>, person: &CheckedPerson<'_>) -> Option<Flaw> {
-    let (stated, found) = (person.posture.posture?, checked.posture()?);
-    stated.iter().zip(found.iter()).find_map(|((constraint, stated), (_, found))| {
+fn other_posture(checked: &CheckedPlan<'_>, person: &CheckedPerson<'_>) -> Vec<Flaw> {
+    let (Some(stated), Some(found)) = (person.posture.posture, checked.posture()) else { return Vec::new() };
+    let pairs = stated.iter().zip(found.iter());
+    let other = pairs.filter_map(|((constraint, stated), (_, found))| {
         let scale = stated.value.abs().max(found.value.abs()).max(1.0);
         let agree = agrees(stated.value, found.value, FIGURE_TOLERANCE * scale);
-        (!agree).then(|| Flaw::Figure { key: constraint.key(), stated: stated.value, computed: found.value })
-    })
+        (!agree).then_some(Flaw::OtherPosture { constraint, stated: stated.value, computed: found.value })
+    });
+    other.collect()
 }
 
 /// The mean comfort over the person's responses to the plan's grasp.

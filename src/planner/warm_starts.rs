@@ -90,6 +90,7 @@ impl WarmStarts {
         budget: &WarmStartBudget,
         seed: u64,
     ) -> Result<(), PlanError> {
+        let of_place = self.entries_for_place(tasks, library, budget.later.natural_boards)?;
         for pass in 0..budget.passes {
             let resampled;
             let (entries, natural, task_budget) = if pass == 0 {
@@ -101,11 +102,29 @@ impl WarmStarts {
             };
             let entries: Vec<_> = entries.iter().chain(natural).collect();
             // Each task uses the solutions of the pass before, so their order does not matter.
-            let solve = |task: &Scenario| self.solve_task(task, &library.robot, &entries, task_budget);
-            let found: Result<Vec<_>, PlanError> = tasks.par_iter().map(solve).collect();
+            let solve = |(task, of_place): (&Scenario, &Vec<LibraryEntry>)| {
+                self.solve_task(task, &library.robot, &entries, of_place, task_budget)
+            };
+            let found: Result<Vec<_>, PlanError> = tasks.par_iter().zip(&of_place).map(solve).collect();
             self.solutions = found?.concat();
         }
         Ok(())
+    }
+
+    /// The entries of each task for a person in the given place; empty if the place is free.
+    fn entries_for_place(
+        &self,
+        tasks: &[Scenario],
+        library: &GraspLibrary,
+        count: usize,
+    ) -> Result<Vec<Vec<LibraryEntry>>, PlanError> {
+        let of_task = |task: &Scenario| {
+            let human = Human::new(&task.human, &task.tool)?;
+            let postures = self.postures.as_ref();
+            Ok(postures
+                .map_or_else(Vec::new, |postures| entries_for_place(task, &human, &library.robot, postures, count)))
+        };
+        tasks.iter().map(of_task).collect()
     }
 
     /// Solves one task from the solutions so far and the given entries.
@@ -114,14 +133,13 @@ impl WarmStarts {
         task: &Scenario,
         robot: &GraspingRobot,
         entries: &[&LibraryEntry],
+        of_place: &[LibraryEntry],
         budget: &SearchBudget,
     ) -> Result<Vec<Solution>, PlanError> {
         let mut evaluator = Evaluator::new(Problem::new(task, robot)?, SearchStats::unlimited());
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
         if let Some(postures) = &self.postures {
-            let Problem { human, robot, .. } = &evaluator.problem;
-            let of_place = entries_for_place(task, human, robot, postures, budget.natural_boards);
-            let entries = entries.iter().copied().chain(&of_place);
+            let entries = entries.iter().copied().chain(of_place);
             starts.extend(screen::screen(&mut evaluator, entries, 0, postures, budget));
         }
         let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds));

@@ -149,10 +149,18 @@ pub fn check_person(check: &Checker<'_>, person: &Person) -> Result<(), InputErr
     check.within("human.lean_deg", person.lean_deg, 0.0, MAX_LEAN_DEG, "degrees")?;
     check_posture_limits(check, &person.posture)?;
     let StandingPlace::Given { p_wb_m, heading_deg, tolerance_m, tolerance_deg } = person.place else { return Ok(()) };
-    check.finite("human.x_m", &p_wb_m)?;
-    check.within("human.heading_deg", heading_deg, -360.0, 360.0, "degrees")?;
-    check.within("human.place_tolerance_m", tolerance_m, 0.001, 10.0, "m")?;
-    check.within("human.heading_tolerance_deg", tolerance_deg, 0.1, 180.0, "degrees")
+    // In the scenario of a plan the place is an object of its own.
+    let keys = if check.is_nested() {
+        ["place.p_wb_m[0]", "place.p_wb_m[1]", "place.heading_deg", "place.tolerance_m", "place.tolerance_deg"]
+    } else {
+        ["x_m", "y_m", "heading_deg", "place_tolerance_m", "heading_tolerance_deg"]
+    };
+    let [x, y, heading, tolerance, of_heading] = keys.map(|key| format!("human.{key}"));
+    check.finite(&x, &p_wb_m[..1])?;
+    check.finite(&y, &p_wb_m[1..])?;
+    check.within(&heading, heading_deg, -360.0, 360.0, "degrees")?;
+    check.within(&tolerance, tolerance_m, 0.001, 10.0, "m")?;
+    check.within(&of_heading, tolerance_deg, 0.1, 180.0, "degrees")
 }
 
 fn check_posture_limits(check: &Checker<'_>, limits: &PostureLimits) -> Result<(), InputError> {

@@ -42,6 +42,18 @@ fn a_margin_below_one_is_exit_code_1() {
     assert!(text.contains("FAIL") && text.contains("then deflects (deflection "), "{text}");
 }
 
+/// A person who does not see the work is no margin of the load.
+#[test]
+fn a_plan_whose_person_does_not_see_the_work_has_no_margin() {
+    let plan = "scenarios/plans/looks-down.json";
+    let (text, code) = printed(&["margin", plan]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("not_visible: human.posture.view_deg: found 91"), "{text}");
+    assert!(text.contains("not_visible: human.posture.face_elevation_deg: found -51.964"), "{text}");
+    let (text, code) = printed(&["margin", plan, "--scenario", "scenarios/fails-not-visible.toml"]);
+    assert_eq!(code, Some(0), "{text}");
+}
+
 #[test]
 fn a_margin_says_what_larger_limits_and_uncertainty_change() {
     let folder = tempfile::tempdir().unwrap();

@@ -117,6 +117,15 @@ fn a_person_who_stands_somewhere_gets_a_plan_for_that_place() {
         p_wb_m[0] += 0.5;
         assert!(flaws(&plan, &scenario).iter().any(|flaw| flaw.starts_with("human.x_wb: found place")));
     }
+    // A circle, from one place: its plans are for that place too.
+    let mut scenario = natural("cut-05");
+    scenario.planner.budget = Budget::Fast;
+    scenario.human.place =
+        StandingPlace::Given { p_wb_m: [1.10, -0.30], heading_deg: 170.0, tolerance_m: 0.05, tolerance_deg: 5.0 };
+    let circle = found(PLANNER.search(&scenario).circle().unwrap());
+    let plans: Vec<_> = circle.separate.iter().chain(&circle.continuous.hold).flatten().collect();
+    assert!(plans.len() > 8, "{}", plans.len());
+    plans.into_iter().for_each(|plan| verified(plan, plan.scenario.as_ref().unwrap()));
     // Nobody drills from the far end of the room.
     let mut scenario = fast("quickstart");
     scenario.human.place =
@@ -124,7 +133,7 @@ fn a_person_who_stands_somewhere_gets_a_plan_for_that_place() {
     let why = infeasible(&scenario);
     let unnatural = why.unnatural.as_ref().unwrap();
     assert_eq!(unnatural.elsewhere, unnatural.candidates);
-    assert!(why.to_string().contains("100 % break human.place"), "{why}");
+    assert!(why.to_string().contains("100 % break place"), "{why}");
 }
 
 #[test]

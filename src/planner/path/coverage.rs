@@ -12,7 +12,7 @@ use super::super::{
     candidate::{Candidate, Placement, WorkPose},
     evaluate::{self, Evaluator},
     library::{BoardGrasp, GraspLibrary, LibraryEntry, Posture, PostureMap},
-    natural_boards::natural_entries,
+    natural_boards::{entries_for_place, natural_entries},
     outcome::PlanError,
     params::{SearchBudget, path::RESPONSE_STARTS},
     problem::{self, Problem},
@@ -21,7 +21,7 @@ use super::super::{
 };
 use crate::{
     comfort::{self, Response},
-    human::peripersonal_m,
+    human::{Standing, peripersonal_m},
     model::{frames::Pose, plan::Plan, scenario::Scenario},
 };
 
@@ -66,11 +66,16 @@ impl<'a> PathProblem<'a> {
         Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, last_evaluation: 0, observer }))
     }
 
-    /// Grasps of the boards that natural postures ask for.
+    /// Grasps of the boards that natural postures, or those of a person in the given place, ask for.
     pub fn natural_entries(&self) -> Vec<LibraryEntry> {
         let Some(Evaluator { problem, .. }) = self.evaluators.first() else { return Vec::new() };
         let count = self.budget.natural_boards;
-        natural_entries(problem.scenario, &problem.human, problem.robot, &self.postures, count)
+        let mut entries = natural_entries(problem.scenario, &problem.human, problem.robot, &self.postures, count);
+        let share = count / self.evaluators.len();
+        for Evaluator { problem: Problem { scenario, human, robot, .. }, .. } in &self.evaluators {
+            entries.extend(entries_for_place(scenario, human, robot, &self.postures, share));
+        }
+        entries
     }
 
     /// Begins a search: the scenario's limit of evaluations applies to each one.
@@ -112,7 +117,9 @@ impl<'a> PathProblem<'a> {
             let objective = settings.weight_muscular * posture.muscular + settings.weight_peripersonal * distance_m;
             Estimate { posture: *posture, x_wb, objective }
         };
-        let mut estimates: Vec<_> = self.postures.postures(&x_wt, floor_z_m).iter().map(estimate).collect();
+        let may_stand = |estimate: &Estimate| problem.human.may_stand(&Standing::of(&estimate.x_wb));
+        let mut estimates: Vec<_> =
+            self.postures.postures(&x_wt, floor_z_m).iter().map(estimate).filter(may_stand).collect();
         estimates.sort_by(|a, b| b.objective.total_cmp(&a.objective));
         estimates
     }
