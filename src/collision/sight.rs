@@ -44,9 +44,9 @@ impl CollisionModel {
         };
         meet(&Piece::cuboid(scene.board_size_m), &scene.x_wo, before_tip_m);
         for part in scene.person {
-            if let Some(exempt_m) = exempt_m(part.name) {
+            if let Some(exempt_m) = exempt_m(part.name).filter(|exempt_m| *exempt_m < length_m) {
                 let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
-                meet(&capsule, &Pose::identity(), (length_m - exempt_m).max(0.0));
+                meet(&capsule, &Pose::identity(), length_m - exempt_m);
             }
         }
         for (link, x_wl) in self.links.iter().zip(scene.link_poses) {
