@@ -20,17 +20,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 /// docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
 /// docs/method.md#810-default-limits, for a cut.
-const LIMITS: Limits = Limits {
-    slip_mm: 1.0,
-    slip_deg: 2.0,
-    deflection_mm: 15.0,
-    creep_mm_s: 0.1,
-    torque_ratio: 1.0,
-    load_factor: 1.0,
-    rula: None,
-    rula_arm: None,
-    reba: None,
-};
+const LIMITS: Limits = Limits::CUT;
 
 fn checked<'a>(robot: &'a Robot, plan: &'a Plan) -> CheckedPlan<'a> {
     CheckedPlan::new(robot, plan, &Person::default(), &default_tool(plan.operation.kind))

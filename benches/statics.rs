@@ -15,17 +15,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 /// Friction of pad and board, docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
 /// docs/method.md#810-default-limits.
-const LIMITS: Limits = Limits {
-    slip_mm: 1.0,
-    slip_deg: 2.0,
-    deflection_mm: 15.0,
-    creep_mm_s: 0.1,
-    torque_ratio: 1.0,
-    load_factor: 1.0,
-    rula: None,
-    rula_arm: None,
-    reba: None,
-};
+const LIMITS: Limits = Limits::CUT;
 
 /// The load factor of the equilibria.
 const LOAD_FACTOR: f64 = 0.5;

@@ -1,5 +1,7 @@
 //! A plan that fits its robot, person and tool.
 
+use std::sync::OnceLock;
+
 use nalgebra::Vector3;
 
 use super::{
@@ -25,6 +27,8 @@ pub struct CheckedPlan<'a> {
     person: Option<CheckedPerson<'a>>,
     link_poses: Vec<Pose>,
     holding: Vec<usize>,
+    /// Made when it is needed.
+    collision: OnceLock<CollisionModel>,
 }
 
 /// The person of a plan.
@@ -70,6 +74,7 @@ impl<'a> CheckedPlan<'a> {
                 plan,
                 arms,
                 person,
+                collision: OnceLock::new(),
             }),
         }
     }
@@ -124,12 +129,18 @@ impl<'a> CheckedPlan<'a> {
         human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from).to_vec()
     }
 
+    /// The collision model of the robot.
+    #[must_use]
+    pub fn collision(&self) -> &CollisionModel {
+        self.collision.get_or_init(|| CollisionModel::new(self.robot))
+    }
+
     /// The first two bodies that touch, or are closer to the person than docs/method.md#35-clearances allows.
     #[must_use]
     pub fn first_contact(&self) -> Option<String> {
         let person = self.person_parts();
         let scene = Scene { person: &person, ..self.scene() };
-        CollisionModel::new(self.robot).first_violation(&scene).map(|violation| violation.describe(self.robot))
+        self.collision().first_violation(&scene).map(|violation| violation.describe(self.robot))
     }
 
     /// Flaws by the tolerances of the planner's own plans: the grippers, the tool, where the person stands, and all joint

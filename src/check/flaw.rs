@@ -5,7 +5,7 @@ use std::fmt;
 use super::tolerances::{GIVEN, ON_BOARD_M, PoseTolerance};
 use crate::{
     human::{HumanError, Standing},
-    model::plan::{PostureConstraint, PostureFigure},
+    model::plan::{ExceededScore, PostureConstraint, PostureFigure},
 };
 
 /// One fault of a plan: its key, what was found and what was expected.
@@ -183,14 +183,7 @@ pub enum Flaw {
         figure: PostureFigure,
     },
     /// A score of the person's posture beyond the scenario's limit.
-    Score {
-        /// The score's key.
-        key: &'static str,
-        /// The score.
-        found: u8,
-        /// The limit.
-        limit: u8,
-    },
+    Score(ExceededScore),
     /// The person stands elsewhere than the scenario says.
     Place {
         /// Where the plan puts them.
@@ -265,11 +258,10 @@ impl Flaw {
                 format!("human.posture.{}", constraint.key())
             }
             Self::Place { .. } => "human.x_wb".into(),
+            Self::Score(exceeded) => exceeded.score.key().into(),
             Self::NoResponse => "comfort.average".into(),
             Self::NoEquilibrium | Self::ContactModel(_) => "stability".into(),
-            Self::Score { key, .. } | Self::Missing { key } | Self::Limit { key, .. } | Self::Figure { key, .. } => {
-                (*key).into()
-            }
+            Self::Missing { key } | Self::Limit { key, .. } | Self::Figure { key, .. } => (*key).into(),
         }
     }
 
@@ -279,7 +271,7 @@ impl Flaw {
     pub fn verdict_name(&self) -> Option<&'static str> {
         match self {
             Self::Posture { constraint, .. } if constraint.is_of_sight() => Some("not_visible"),
-            Self::Posture { .. } | Self::Score { .. } => Some("not_natural"),
+            Self::Posture { .. } | Self::Score(_) => Some("not_natural"),
             Self::Place { .. } => Some("not_there"),
             _ => None,
         }
@@ -326,7 +318,7 @@ impl Flaw {
             Self::Contact(contact) => contact.clone(),
             Self::Strength { found } => format!("an activation of {found}"),
             Self::Posture { constraint, figure } => format!("{:.3}, {}", figure.value, constraint.broken()),
-            Self::Score { found, .. } => found.to_string(),
+            Self::Score(exceeded) => exceeded.found.to_string(),
             Self::Place { found, .. } => describe(found),
             Self::NoResponse => "no response on the grid".into(),
             Self::NoEquilibrium => "a grasp that does not resist the load".into(),
@@ -385,13 +377,8 @@ impl Flaw {
             Self::Standing { tolerance, .. } => format!("a person who stands upright on the floor within {tolerance}"),
             Self::Contact(_) => "bodies that keep their clearances".into(),
             Self::Strength { .. } => "at most 1".into(),
-            Self::Posture { figure: PostureFigure { min, max, .. }, .. } => match (min, max) {
-                (Some(min), Some(max)) => format!("{min} to {max}"),
-                (Some(min), None) => format!("at least {min}"),
-                (None, Some(max)) => format!("at most {max}"),
-                (None, None) => "any value".into(),
-            },
-            Self::Score { limit, .. } => format!("at most {limit}"),
+            Self::Posture { figure, .. } => figure.limits_in_words().unwrap_or_else(|| "any value".into()),
+            Self::Score(exceeded) => format!("at most {}", exceeded.limit),
             Self::Place { expected, .. } => format!("the scenario's {}", describe(expected)),
             Self::NoResponse => "at least one response".into(),
             Self::NoEquilibrium | Self::ContactModel(_) => "a stable grasp".into(),

@@ -9,10 +9,10 @@ use super::{
     tolerances::{POSTURE_DEG, POSTURE_M},
 };
 use crate::{
-    collision::{CollisionModel, Scene},
+    collision::Scene,
     human::Standing,
     model::{
-        plan::{PostureConstraint, PostureFigures},
+        plan::{PostureConstraint, PostureFigures, exceeded_scores},
         scenario::Limits,
     },
 };
@@ -26,7 +26,7 @@ impl CheckedPlan<'_> {
         let scene = Scene { person: &parts, ..self.scene() };
         let tip_w = plan.object.x_wo * Point3::from(plan.operation.x_ot.translation.vector);
         let eye_w = posture.x_wb * human.eye_b();
-        let free_share = CollisionModel::new(self.robot()).free_share_of_sight(&scene, &eye_w, &tip_w);
+        let free_share = self.collision().free_share_of_sight(&scene, &eye_w, &tip_w);
         let normal_t = plan.operation.face_normal_t(plan.object.size_m[2]);
         Some(human.posture_figures(&posture.q_rad, &normal_t, free_share))
     }
@@ -46,16 +46,8 @@ impl CheckedPlan<'_> {
         let Some(CheckedPerson { posture, human }) = self.person() else { return Vec::new() };
         let wrench_w = self.plan().operation.wrench_w(&self.plan().object.x_wo);
         let (rula, reba) = (human.rula(&posture.q_rad, &wrench_w), human.reba(&posture.q_rad, &wrench_w));
-        let scores = [
-            ("comfort.rula.score", rula.score, limits.rula),
-            ("comfort.rula.arm_and_wrist", rula.arm_and_wrist, limits.rula_arm),
-            ("comfort.reba.score", reba.score, limits.reba),
-        ];
-        let exceeded = scores.into_iter().filter_map(|(key, found, limit)| {
-            let limit = limit.filter(|limit| found > *limit)?;
-            Some(Flaw::Score { key, found, limit })
-        });
-        exceeded.collect()
+        let exceeded = exceeded_scores(Some(rula), Some(reba), limits);
+        exceeded.map(Flaw::Score).collect()
     }
 
     /// The limits of posture and place that the person does not keep, but for rounding of written numbers.

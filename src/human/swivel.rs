@@ -404,17 +404,22 @@ mod tests {
         assert!(found > 1_000, "{found}");
     }
 
+    /// In even rounds the tool pose of a posture, in odd ones any.
+    fn reached_or_random_pose(round: usize, arm: &Arm, generator: &mut rand_pcg::Pcg64) -> Pose {
+        if round.is_multiple_of(2) {
+            arm.tool_pose_b(&random_shares(arm, generator))
+        } else {
+            random_pose(arm, generator)
+        }
+    }
+
     #[test]
     fn intervals_agree_with_a_scan_of_the_circle() {
         for arm in arms() {
             let mut generator = generator(3);
             let mut inside = 0;
             for round in 0..1_000 {
-                let x_bt = if round % 2 == 0 {
-                    arm.tool_pose_b(&random_shares(&arm, &mut generator))
-                } else {
-                    random_pose(&arm, &mut generator)
-                };
+                let x_bt = reached_or_random_pose(round, &arm, &mut generator);
                 let Some(circle) = arm.swivel_circle(&x_bt) else { continue };
                 let intervals = circle.intervals();
                 for swivel_rad in (-180..180).map(|degree| f64::from(degree).to_radians()) {
@@ -555,11 +560,7 @@ mod tests {
             let free = without_limits(&arm);
             let (mut inside, mut outside) = (0, 0);
             for round in 0..1_000 {
-                let x_bt = if round % 2 == 0 {
-                    arm.tool_pose_b(&random_shares(&arm, &mut generator))
-                } else {
-                    random_pose(&arm, &mut generator)
-                };
+                let x_bt = reached_or_random_pose(round, &arm, &mut generator);
                 let Some(circle) = arm.swivel_circle(&x_bt) else { continue };
                 let (intervals, free) = (circle.intervals(), free.swivel_circle(&x_bt).unwrap());
                 for swivel_rad in (0..120).map(|_| generator.random_range(-PI..PI)) {
@@ -587,11 +588,7 @@ mod tests {
         for arm in arms() {
             let (mut generator, mut most) = (generator(8), 0);
             for round in 0..10_000 {
-                let x_bt = if round % 2 == 0 {
-                    arm.tool_pose_b(&random_shares(&arm, &mut generator))
-                } else {
-                    random_pose(&arm, &mut generator)
-                };
+                let x_bt = reached_or_random_pose(round, &arm, &mut generator);
                 // More breaks or intervals than room for them would be a panic.
                 most = most.max(arm.swivel_circle(&x_bt).map_or(0, |circle| circle.intervals().len()));
             }

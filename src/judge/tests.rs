@@ -25,17 +25,7 @@ fn crooked() -> Pose {
 }
 
 fn limits() -> Limits {
-    Limits {
-        slip_mm: 1.0,
-        slip_deg: 2.0,
-        deflection_mm: 5.0,
-        creep_mm_s: 0.1,
-        torque_ratio: 1.0,
-        load_factor: 1.0,
-        rula: None,
-        rula_arm: None,
-        reba: None,
-    }
+    Limits::USUAL
 }
 
 fn phase(index: usize) -> Phase {

@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     frames::{Pose, PoseRecord, pose},
+    omitted::is_default,
     operation::Operation,
-    scenario::{Hand, Person, PlannerKind, Scenario, Sex, is_default},
+    scenario::{Hand, Limits, Person, PlannerKind, Scenario, Sex},
 };
 
 /// A grasp of a board by a robot's arms. `human`, `comfort`, `stability`, `planner`, `scenario` and `benchdog` are optional.
@@ -139,6 +140,17 @@ pub struct PostureFigure {
 }
 
 impl PostureFigure {
+    /// The limits in words, such as `at most 60`; `None` without limits.
+    #[must_use]
+    pub fn limits_in_words(&self) -> Option<String> {
+        match (self.min, self.max) {
+            (Some(min), Some(max)) => Some(format!("{min} to {max}")),
+            (Some(min), None) => Some(format!("at least {min}")),
+            (None, Some(max)) => Some(format!("at most {max}")),
+            (None, None) => None,
+        }
+    }
+
     /// The distance from the nearer limit, negative beyond it; infinite without limits.
     #[must_use]
     pub fn margin(&self) -> f64 {
@@ -348,6 +360,57 @@ impl Comfort {
         let (rula, reba) = (self.rula?, self.reba?);
         Some(format!("RULA {} (arm and wrist {}), REBA {}", rula.score, rula.arm_and_wrist, reba.score))
     }
+}
+
+/// A score of a posture that has a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PostureScore {
+    /// The RULA score.
+    Rula,
+    /// The RULA score of arm and wrist.
+    RulaArm,
+    /// The REBA score.
+    Reba,
+}
+
+impl PostureScore {
+    /// The score's key in a plan.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Rula => "comfort.rula.score",
+            Self::RulaArm => "comfort.rula.arm_and_wrist",
+            Self::Reba => "comfort.reba.score",
+        }
+    }
+}
+
+/// A score that exceeds its limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExceededScore {
+    /// Which score.
+    pub score: PostureScore,
+    /// Its value.
+    pub found: u8,
+    /// Its limit.
+    pub limit: u8,
+}
+
+/// The scores that exceed their limits; one that is not known exceeds none.
+pub fn exceeded_scores(
+    rula: Option<RulaScore>,
+    reba: Option<RebaScore>,
+    limits: &Limits,
+) -> impl Iterator<Item = ExceededScore> + use<> {
+    let scores = [
+        (PostureScore::Rula, rula.map(|rula| rula.score), limits.rula),
+        (PostureScore::RulaArm, rula.map(|rula| rula.arm_and_wrist), limits.rula_arm),
+        (PostureScore::Reba, reba.map(|reba| reba.score), limits.reba),
+    ];
+    scores.into_iter().filter_map(|(score, found, limit)| {
+        let (found, limit) = (found?, limit?);
+        (found > limit).then_some(ExceededScore { score, found, limit })
+    })
 }
 
 /// The moment that the working arm exerts about the shoulder (`docs/method.md#414-intrinsic-metric`). For a left-handed person

@@ -4,7 +4,7 @@ use super::{
     candidate::{Candidate, Placement},
     evaluate::{self, Configuration, Evaluator, Feasible},
     outcome::Rejection,
-    scores::{beyond_limits, scored},
+    scores::{self, scored},
     verify::verify,
 };
 use crate::{
@@ -84,8 +84,8 @@ pub fn accepted(evaluator: &mut Evaluator<'_>, plan: Plan) -> Option<Plan> {
 /// Why a finished plan is rejected.
 fn rejection(evaluator: &Evaluator<'_>, plan: &Plan) -> Option<Rejection> {
     let problem = &evaluator.problem;
-    let score = plan.comfort.and_then(|comfort| beyond_limits(&comfort, &problem.scenario.limits).next());
-    score.map(|score| score.why).or_else(|| {
+    let by_scores = plan.comfort.and_then(|comfort| scores::rejection(&comfort, &problem.scenario.limits));
+    by_scores.or_else(|| {
         let flaws = verify(plan, problem.scenario, &problem.robot.robot);
         (!flaws.is_empty()).then_some(Rejection::Verification)
     })

@@ -15,7 +15,7 @@ use super::{
     outcome::Rejection,
     params::screening::RANDOM_DRAWS,
     problem::Problem,
-    scores::{beyond_limits, scored},
+    scores::{self, scored},
 };
 use crate::{
     comfort,
@@ -106,5 +106,5 @@ fn with_response(
 fn test_scores(problem: &Problem<'_>, candidate: &Candidate, comfort: &Comfort) -> Result<(), Rejection> {
     let wrench_w = problem.scenario.operation.wrench_w(&candidate.x_wo(problem));
     let comfort = scored(&problem.human, &candidate.work.q_h_rad, &wrench_w, *comfort);
-    beyond_limits(&comfort, &problem.scenario.limits).next().map_or(Ok(()), |score| Err(score.why))
+    scores::rejection(&comfort, &problem.scenario.limits).map_or(Ok(()), Err)
 }

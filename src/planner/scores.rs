@@ -6,18 +6,12 @@
 use super::outcome::Rejection;
 use crate::{
     human::{ArmAngles, Human},
-    model::{plan::Comfort, scenario::Limits, wrench::Wrench},
+    model::{
+        plan::{Comfort, PostureScore, exceeded_scores},
+        scenario::Limits,
+        wrench::Wrench,
+    },
 };
-
-/// A score that exceeds its limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Exceeded {
-    pub why: Rejection,
-    /// The score's key in a plan.
-    pub key: &'static str,
-    pub found: u8,
-    pub limit: u8,
-}
 
 /// A comfort with the RULA and REBA scores of its posture. `wrench_w` is the operation's about the tool tip, W axes.
 pub fn scored(human: &Human, q_rad: &ArmAngles, wrench_w: &Wrench, comfort: Comfort) -> Comfort {
@@ -25,17 +19,12 @@ pub fn scored(human: &Human, q_rad: &ArmAngles, wrench_w: &Wrench, comfort: Comf
     Comfort { rula: Some(rula), reba: Some(reba), ..comfort }
 }
 
-/// The scores that exceed their limits.
-pub fn beyond_limits(comfort: &Comfort, limits: &Limits) -> impl Iterator<Item = Exceeded> {
-    let Comfort { rula, reba, .. } = *comfort;
-    let scores = [
-        (Rejection::Rula, "comfort.rula.score", rula.map(|rula| rula.score), limits.rula),
-        (Rejection::RulaArm, "comfort.rula.arm_and_wrist", rula.map(|rula| rula.arm_and_wrist), limits.rula_arm),
-        (Rejection::Reba, "comfort.reba.score", reba.map(|reba| reba.score), limits.reba),
-    ];
-    scores.into_iter().filter_map(|(why, key, found, limit)| {
-        let (found, limit) = (found?, limit?);
-        (found > limit).then_some(Exceeded { why, key, found, limit })
+/// Why a posture's scores reject a plan: the first that exceeds its limit.
+pub fn rejection(comfort: &Comfort, limits: &Limits) -> Option<Rejection> {
+    exceeded_scores(comfort.rula, comfort.reba, limits).next().map(|exceeded| match exceeded.score {
+        PostureScore::Rula => Rejection::Rula,
+        PostureScore::RulaArm => Rejection::RulaArm,
+        PostureScore::Reba => Rejection::Reba,
     })
 }
 
@@ -46,7 +35,7 @@ mod tests {
         human::default_tool,
         model::{
             operation::OperationKind,
-            plan::{RebaScore, RulaScore},
+            plan::{ExceededScore, RebaScore, RulaScore},
             scenario::Person,
         },
     };
@@ -64,17 +53,7 @@ mod tests {
         rula: None,
         reba: None,
     };
-    const NO_LIMITS: Limits = Limits {
-        slip_mm: 1.0,
-        slip_deg: 2.0,
-        deflection_mm: 5.0,
-        creep_mm_s: 0.1,
-        torque_ratio: 1.0,
-        load_factor: 1.0,
-        rula: None,
-        rula_arm: None,
-        reba: None,
-    };
+    const NO_LIMITS: Limits = Limits::USUAL;
 
     fn comfort() -> Comfort {
         Comfort {
@@ -84,8 +63,12 @@ mod tests {
         }
     }
 
+    fn exceeded(comfort: &Comfort, limits: &Limits) -> impl Iterator<Item = ExceededScore> + use<> {
+        exceeded_scores(comfort.rula, comfort.reba, limits)
+    }
+
     fn reasons(limits: &Limits) -> Vec<&'static str> {
-        beyond_limits(&comfort(), limits).map(|score| score.why.name()).collect()
+        rejection(&comfort(), limits).map(Rejection::name).into_iter().collect()
     }
 
     #[test]
@@ -97,7 +80,7 @@ mod tests {
         assert_eq!(reasons(&Limits { reba: Some(5), ..NO_LIMITS }), ["REBA score"]);
         let all = Limits { rula: Some(1), rula_arm: Some(1), reba: Some(1), ..NO_LIMITS };
         let found: Vec<_> =
-            beyond_limits(&comfort(), &all).map(|score| (score.key, score.found, score.limit)).collect();
+            exceeded(&comfort(), &all).map(|score| (score.score.key(), score.found, score.limit)).collect();
         let expected =
             [("comfort.rula.score", 4, 1), ("comfort.rula.arm_and_wrist", 3, 1), ("comfort.reba.score", 6, 1)];
         assert_eq!(found, expected);
@@ -106,11 +89,11 @@ mod tests {
     #[test]
     fn a_comfort_without_scores_keeps_every_limit_until_it_has_them() {
         let strictest = Limits { rula: Some(1), rula_arm: Some(1), reba: Some(1), ..NO_LIMITS };
-        assert_eq!(beyond_limits(&NO_COMFORT, &strictest).next(), None);
+        assert_eq!(exceeded(&NO_COMFORT, &strictest).next(), None);
         // The arm is raised above 90 degrees and abducted.
         let human = Human::new(&Person::default(), &default_tool(OperationKind::Drill)).unwrap();
         let raised_rad = [100.0, 40.0, 0.0, 20.0, 60.0, 30.0, 20.0].map(f64::to_radians);
         let comfort = scored(&human, &raised_rad, &Wrench::default(), NO_COMFORT);
-        assert_eq!(beyond_limits(&comfort, &strictest).count(), 3);
+        assert_eq!(exceeded(&comfort, &strictest).count(), 3);
     }
 }

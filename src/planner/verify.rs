@@ -7,7 +7,6 @@
 use super::scores::scored;
 use crate::{
     check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
-    collision::CollisionModel,
     comfort,
     human::Human,
     model::{
@@ -141,7 +140,7 @@ fn mean_response(
 ) -> Option<MeanComfort> {
     comfort::mean_response(&comfort::ResponseQuery {
         human,
-        collision: &CollisionModel::new(checked.robot()),
+        collision: checked.collision(),
         settings: scenario.comfort,
         operation: checked.plan().operation,
         floor_z_m: checked.robot().floor_z_m,

@@ -17,12 +17,7 @@ pub fn table(figures: &PostureFigures) -> String {
 /// The cells of one figure.
 pub(super) fn row(constraint: PostureConstraint, figure: &PostureFigure) -> [String; 5] {
     let digits = if constraint.unit() == "deg" { 1 } else { 3 };
-    let limit = match (figure.min, figure.max) {
-        (Some(min), Some(max)) => format!("{min} to {max}"),
-        (Some(min), None) => format!("at least {min}"),
-        (None, Some(max)) => format!("at most {max}"),
-        (None, None) => "-".to_owned(),
-    };
+    let limit = figure.limits_in_words().unwrap_or_else(|| "-".to_owned());
     let margin = figure.margin();
     let margin = if margin.is_finite() { format!("{margin:.digits$}") } else { "-".to_owned() };
     [constraint.key().to_owned(), constraint.unit().to_owned(), format!("{:.digits$}", figure.value), limit, margin]

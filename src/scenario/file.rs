@@ -14,7 +14,7 @@ use crate::model::{
     load::Uncertainty,
     operation::OperationKind,
     scenario::{
-        ComfortSettings, Expectation, Grip, Hand, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
+        ComfortSettings, Expectation, Grip, Hand, Limits, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
         ShoulderKind, SimulationSettings,
     },
 };
@@ -300,17 +300,9 @@ pub struct LimitsSection {
 impl Default for LimitsSection {
     /// The default limits (`docs/method.md#810-default-limits`).
     fn default() -> Self {
-        Self {
-            slip_mm: 1.0,
-            slip_deg: 2.0,
-            deflection_mm: None,
-            creep_mm_s: 0.1,
-            torque_ratio: 1.0,
-            load_factor: 1.0,
-            rula: None,
-            rula_arm: None,
-            reba: None,
-        }
+        let Limits { slip_mm, slip_deg, creep_mm_s, torque_ratio, load_factor, rula, rula_arm, reba, .. } =
+            Limits::USUAL;
+        Self { slip_mm, slip_deg, deflection_mm: None, creep_mm_s, torque_ratio, load_factor, rula, rula_arm, reba }
     }
 }
 

@@ -312,11 +312,10 @@ fn simulation(check: &Checker<'_>, settings: &SimulationSettings) -> Result<(), 
 /// The limits of a file. The default deflection depends on the kind of operation
 /// (`docs/method.md#810-default-limits`).
 fn limits_with_defaults(section: &LimitsSection, kind: OperationKind) -> Limits {
-    let default_mm = if kind == OperationKind::Cut { 15.0 } else { 5.0 };
     Limits {
         slip_mm: section.slip_mm,
         slip_deg: section.slip_deg,
-        deflection_mm: section.deflection_mm.unwrap_or(default_mm),
+        deflection_mm: section.deflection_mm.unwrap_or(Limits::of(kind).deflection_mm),
         creep_mm_s: section.creep_mm_s,
         torque_ratio: section.torque_ratio,
         load_factor: section.load_factor,

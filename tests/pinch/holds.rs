@@ -34,17 +34,7 @@ pub const SETTINGS: SimulationSettings =
 /// docs/method.md#810-default-limits.
 pub fn limits(kind: OperationKind) -> Limits {
     let deflection_mm = if kind == OperationKind::Drill { 5.0 } else { 15.0 };
-    Limits {
-        slip_mm: 1.0,
-        slip_deg: 2.0,
-        deflection_mm,
-        creep_mm_s: 0.1,
-        torque_ratio: 1.0,
-        load_factor: 1.0,
-        rula: None,
-        rula_arm: None,
-        reba: None,
-    }
+    Limits { deflection_mm, ..Limits::USUAL }
 }
 
 fn judged(robot: &Robot, plan: &Plan, conditions: &Conditions) -> Judgement {

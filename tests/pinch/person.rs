@@ -28,17 +28,7 @@ const FRICTION: f64 = 0.6;
 const SETTINGS: SimulationSettings =
     SimulationSettings { settle_s: 0.3, ramp_s: 0.5, hold_s: 0.3, release_s: 0.0, timestep_s: 0.002 };
 
-const LIMITS: Limits = Limits {
-    slip_mm: 1.0,
-    slip_deg: 2.0,
-    deflection_mm: 15.0,
-    creep_mm_s: 0.1,
-    torque_ratio: 1.0,
-    load_factor: 1.0,
-    rula: None,
-    rula_arm: None,
-    reba: None,
-};
+const LIMITS: Limits = Limits::CUT;
 
 const PERSON: Person = Person::PAPER;
 

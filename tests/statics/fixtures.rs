@@ -118,17 +118,7 @@ pub fn solved(hold: &ContactModel) -> LoadFactor {
 
 /// docs/method.md#810-default-limits.
 pub fn limits() -> Limits {
-    Limits {
-        slip_mm: 1.0,
-        slip_deg: 2.0,
-        deflection_mm: 15.0,
-        creep_mm_s: 0.1,
-        torque_ratio: 1.0,
-        load_factor: 1.0,
-        rula: None,
-        rula_arm: None,
-        reba: None,
-    }
+    Limits::CUT
 }
 
 /// The same contact model in another frame O', `p_o' = x * p_o`.
