@@ -52,7 +52,8 @@ fn phase_events(trace: &Trace, samples: &[Sample]) -> Vec<Event> {
             kind: EventKind::Phase,
             what: String::new(),
             text: match sample.phase {
-                Phase::Settle => "settle: the board's weight alone".to_owned(),
+                Phase::Grip => "grip: the grippers close on the supported board".to_owned(),
+                Phase::Settle => "settle: the arms carry the board".to_owned(),
                 Phase::Ramp => format!("ramp: the load increases; the tool tip sagged {:.2} mm", sag_mm(trace, sample)),
                 Phase::Hold => format!("hold: the full load, factor {:.2}", sample.load_factor),
                 Phase::Release => "release: no load".to_owned(),

@@ -382,7 +382,7 @@ impl Default for Grip {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SimulationSettings {
-    /// Duration of the settle phase, s: gravity only.
+    /// Duration before the load, s: the grippers close, in at most a tenth of it, then the arms carry the board.
     pub settle_s: f64,
     /// Duration of the ramp, s: the load grows from zero to the full wrench.
     pub ramp_s: f64,

@@ -6,7 +6,9 @@ use super::{frames::Pose, wrench::Wrench};
 /// A phase of the simulation (`docs/method.md#74-phases`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Phase {
-    /// Gravity only. The state at its end is the reference state.
+    /// The board is supported from outside while the grippers close. At its end the board is handed over to the arms.
+    Grip,
+    /// The arms carry the board. The state at its end is the reference state of the load.
     Settle,
     /// The load grows.
     Ramp,
@@ -20,6 +22,7 @@ impl Phase {
     /// The name in tables and recordings.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Grip => "grip",
             Self::Settle => "settle",
             Self::Ramp => "ramp",
             Self::Hold => "hold",

@@ -35,8 +35,8 @@ const ARCHETYPE: &str = "benchdog.Trace";
 /// The column of the person's distance; its rows are empty if the plan has no person.
 const PERSON_DISTANCE: &str = "person_distance_m";
 
-/// The phases in order of time. A phase is stored as its index.
-const PHASES: [Phase; 4] = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release];
+/// A phase is stored as its index; later versions append.
+const PHASES: [Phase; 5] = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Grip];
 
 /// Data of the trace that does not depend on time.
 #[derive(Serialize, Deserialize)]

@@ -8,24 +8,29 @@ use super::{
     body_chain::{BodyChain, ChainLink},
     conditions::Conditions,
     error::SimError,
-    gripper::SimGripper,
+    feed_forward::FeedForward,
+    gripper::{SimGripper, drive_inertia_kg},
+    hand_over::HandOver,
     pad::PadContact,
     pad_shape::{GraspingHand, PadLoading},
     servo::Servo,
     world::contact_softness_s2,
 };
 use crate::{
+    check::CheckedArm,
     model::{
         plan::{ArmHold, PlacedObject},
         trace::ArmSample,
     },
-    robot::{Arm, Chain, Robot},
+    robot::{Arm, Robot},
 };
 
 /// A joint with its servo and the rest angle of its spring in this step.
 struct DrivenJoint {
     servo: Servo,
     place: ChainLink,
+    /// Torque that the board's weight adds to the feed-forward, N m.
+    board_nm: f64,
     rest_rad: f64,
     /// State of the joint before this step.
     before: JointState,
@@ -50,12 +55,13 @@ impl SimArm {
     pub fn new(
         world: &mut PhysicsWorld,
         robot: &Robot,
-        arm_index: usize,
-        hold: &ArmHold,
+        checked: &CheckedArm<'_>,
+        feed_forward: FeedForward,
         object: &PlacedObject,
         conditions: &Conditions,
     ) -> Result<Self, SimError> {
-        let arm = &robot.arms[arm_index];
+        let &CheckedArm { index, hold, .. } = checked;
+        let arm = &robot.arms[index];
         let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
         let merged = ArmBodies::new(robot, arm);
         let chain = BodyChain::insert(world, robot, &merged.bodies)?;
@@ -73,9 +79,9 @@ impl SimArm {
         placed.for_each(|(link, position)| positions[link.dof] = *position);
         let multibody = fingers[0].joint;
         let engine = set_joint_positions(world, multibody, &positions)?;
-        gripper.close(engine, grip_force_n, finger_m, object.mass_kg);
-        let weight_nm = weight_torque_nm(robot, arm_index, &hold.q_rad, object.size_m[2]);
-        let joints = driven_joints(arm, hold, &arm_joints, &weight_nm, conditions.uncertainty.joint_stiffness_scale);
+        gripper.close(engine, grip_force_n, finger_m, drive_inertia_kg(object));
+        let joint_stiffness_scale = conditions.uncertainty.joint_stiffness_scale;
+        let joints = driven_joints(arm, hold, &arm_joints, &feed_forward, joint_stiffness_scale);
         for DrivenJoint { place, servo, .. } in &joints {
             engine.damping_mut()[place.dof] = servo.damping_nm_s_rad;
         }
@@ -83,15 +89,17 @@ impl SimArm {
         Ok(Self { multibody, joints, bodies, gripper })
     }
 
-    /// Sets the rest angle of every servo from the state before a step.
-    pub fn drive(&mut self, world: &mut PhysicsWorld, timestep_s: f64) {
+    /// Sets the rest angle of every servo, and the forces of the fingers, from the state before a step.
+    pub fn drive(&mut self, world: &mut PhysicsWorld, timestep_s: f64, hand_over: &HandOver) {
         let Some((multibody, _)) = world.multibody_joints.get_mut(self.multibody) else { return };
         for joint in &mut self.joints {
             let (q_rad, velocity_rad_s) = (joint.place.position(multibody), joint.place.velocity(multibody));
+            joint.servo.board_nm = joint.board_nm * hand_over.carried_share();
             joint.before = JointState { position: q_rad, velocity: velocity_rad_s };
             joint.rest_rad = joint.servo.rest_rad(q_rad, velocity_rad_s, timestep_s);
             joint.place.set_spring(multibody, joint.servo.stiffness_nm_rad, joint.rest_rad);
         }
+        self.gripper.push(multibody, hand_over.grip_share());
         self.gripper.store_state(multibody);
     }
 
@@ -106,7 +114,7 @@ impl SimArm {
     pub fn work_j(&self, world: &PhysicsWorld) -> f64 {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return f64::NAN };
         let servos = self.joints.iter().map(|joint| {
-            let DrivenJoint { servo, place, rest_rad, before } = joint;
+            let DrivenJoint { servo, place, rest_rad, before, .. } = joint;
             let after = JointState { position: place.position(multibody), velocity: place.velocity(multibody) };
             drive_work_j(servo.stiffness_nm_rad, servo.damping_nm_s_rad, *rest_rad, [*before, after])
         });
@@ -154,7 +162,7 @@ fn driven_joints(
     arm: &Arm,
     hold: &ArmHold,
     places: &[ChainLink],
-    weight_nm: &[f64],
+    feed_forward: &FeedForward,
     stiffness_scale: f64,
 ) -> Vec<DrivenJoint> {
     places
@@ -163,22 +171,15 @@ fn driven_joints(
         .map(|(k, &place)| {
             let servo = Servo {
                 commanded_rad: hold.q_rad[k],
-                feed_forward_nm: weight_nm[k],
+                arm_nm: feed_forward.arm_nm[k],
+                board_nm: 0.0,
                 stiffness_nm_rad: arm.stiffness_nm_rad[k] * stiffness_scale,
                 damping_nm_s_rad: arm.damping_nm_s_rad[k],
                 effort_nm: arm.effort_nm[k],
             };
             let before = JointState { position: servo.commanded_rad, velocity: 0.0 };
-            DrivenJoint { servo, place, rest_rad: servo.rest_rad(servo.commanded_rad, 0.0, 0.0), before }
+            let rest_rad = servo.rest_rad(servo.commanded_rad, 0.0, 0.0);
+            DrivenJoint { servo, place, board_nm: feed_forward.board_nm[k], rest_rad, before }
         })
         .collect()
-}
-
-/// Joint torques that hold the arm's own weight by the robot's model, N m.
-pub(super) fn weight_torque_nm(robot: &Robot, arm_index: usize, q_rad: &[f64], gap_m: f64) -> Vec<f64> {
-    if q_rad.is_empty() {
-        return Vec::new();
-    }
-    let travel_m = robot.arms[arm_index].gripper.travel_for_gap_m(0, gap_m);
-    Chain::new(robot, arm_index, travel_m).gravity_torque_nm(q_rad).as_slice().to_vec()
 }

@@ -26,9 +26,14 @@ pub(super) fn drive_work_j(stiffness: f64, damping: f64, rest: f64, states: [Joi
     (before + after) / 2.0 * (states[1].position - states[0].position)
 }
 
+/// Weight of a body, N. The board's is not its inertia times gravity, see `world::inertial_mass_kg`.
+pub(super) fn weight_n(body: &RigidBody) -> Vector3<f64> {
+    GRAVITY_W * (body.mass() * body.gravity_scale())
+}
+
 /// Kinetic and gravitational energy of a body, J.
 pub(super) fn mechanical_energy_j(body: &RigidBody) -> f64 {
-    body.kinetic_energy() - body.mass() * GRAVITY_W.dot(&convert::from_engine_vector(body.center_of_mass()))
+    body.kinetic_energy() - weight_n(body).dot(&convert::from_engine_vector(body.center_of_mass()))
 }
 
 /// State of the board and energy of the scene before a step.
@@ -84,6 +89,6 @@ impl Balance {
         let body = &world.bodies[self.board];
         let change_n = (convert::from_engine_vector(body.linvel()) - self.velocity_m_s)
             * (body.mass() / world.integration_parameters.dt);
-        (change_n - pads_w_n - self.tool_w.force_n - GRAVITY_W * body.mass()).norm()
+        (change_n - pads_w_n - self.tool_w.force_n - weight_n(body)).norm()
     }
 }

@@ -9,9 +9,10 @@ use super::{
     body_chain::{BodyChain, ChainLink},
     convert,
     pad::{PadContact, SimPad},
+    world::inertial_mass_kg,
 };
 use crate::{
-    model::frames::Pose,
+    model::{frames::Pose, plan::PlacedObject},
     robot::{Arm, Finger, Gripper, Robot},
 };
 
@@ -28,6 +29,8 @@ struct SimFinger {
     finger: Finger,
     /// Limits of the joint position, m.
     limits_m: [f64; 2],
+    /// The planned position, m.
+    planned_m: f64,
     /// Rest position of the spring that pushes it, m.
     rest_m: f64,
     /// State of the joint before this step.
@@ -40,9 +43,19 @@ impl SimFinger {
     }
 }
 
+/// Share of the board's inertia that the drive of each finger adds to it, see [`SimGripper::close`].
+const DRIVE_SHARE: f64 = 0.3;
+
+/// The inertia that the drive adds to each finger on a board, kg, see [`SimGripper::close`].
+pub(super) fn drive_inertia_kg(object: &PlacedObject) -> f64 {
+    DRIVE_SHARE * inertial_mass_kg(object)
+}
+
 /// A gripper of the scene.
 pub(super) struct SimGripper {
     fingers: [SimFinger; 2],
+    /// The force that closes each finger, N.
+    force_n: f64,
     /// The pad on the +y_G side first.
     pub pads: [SimPad; 2],
     /// The body that contains G.
@@ -75,6 +88,7 @@ impl SimGripper {
                     place,
                     finger,
                     limits_m: [joint.lower, joint.upper],
+                    planned_m: 0.0,
                     rest_m: 0.0,
                     before: JointState::default(),
                 },
@@ -84,6 +98,7 @@ impl SimGripper {
         let [(first, first_pad), (second, second_pad)] = parts;
         Self {
             fingers: [first, second],
+            force_n: 0.0,
             pads: [first_pad, second_pad],
             hand: chain.body(placement.body),
             x_bc: placement.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
@@ -95,13 +110,13 @@ impl SimGripper {
         [0, 1].map(|k| gripper.fingers[k].joint_position_m(gripper.travel_for_gap_m(k, gap_m)))
     }
 
-    /// Couples the fingers, so that both open by the same travel, and pushes each towards the other with `force_n`,
-    /// which is exact at `positions_m`.
+    /// Couples the fingers at `positions_m`, so that both open by the same travel, and prepares the drives that push each
+    /// towards the other with `force_n`, see [`SimGripper::push`].
     ///
     /// A geared drive adds its own inertia to each finger; its value is not known, and no state of rest depends on it.
     /// The engine's iterative contact solver converges if the masses on both sides of a contact are similar: measured,
-    /// a bare finger of 30 g shakes a board of more than 0.3 kg out of its grip, and a drive of 0.3 to 20 times the
-    /// board's mass holds every board still. So the caller passes the board's mass.
+    /// a bare finger of 30 g shakes a board of more than 0.3 kg out of its grip, and with drives heavier than the board a
+    /// light hand shakes. With 0.3 times the board's inertia every board is held still by every hand that was tried.
     pub fn close(&mut self, multibody: &mut Multibody, force_n: f64, positions_m: [f64; 2], drive_inertia_kg: f64) {
         let [first, second] = &self.fingers;
         let coeff = first.finger.opening_sign * second.finger.opening_sign;
@@ -117,11 +132,19 @@ impl SimGripper {
         });
         // The coupling applies the first finger's limits to the second.
         first.place.set_limits(multibody, first.limits_m);
-        for (SimFinger { place, finger, rest_m, .. }, position_m) in self.fingers.iter_mut().zip(positions_m) {
-            *rest_m = position_m - finger.opening_sign * force_n / PUSH_STIFFNESS_N_M;
-            place.set_spring(multibody, PUSH_STIFFNESS_N_M, *rest_m);
+        self.force_n = force_n;
+        for (SimFinger { place, planned_m, .. }, position_m) in self.fingers.iter_mut().zip(positions_m) {
+            *planned_m = position_m;
             multibody.damping_mut()[place.dof] = FINGER_DAMPING_N_S_M;
             multibody.armature_mut()[place.dof] = drive_inertia_kg;
+        }
+    }
+
+    /// Pushes each finger towards the other with a share of the grip force, which is exact at the planned position.
+    pub fn push(&mut self, multibody: &mut Multibody, share: f64) {
+        for SimFinger { place, finger, planned_m, rest_m, .. } in &mut self.fingers {
+            *rest_m = *planned_m - finger.opening_sign * share * self.force_n / PUSH_STIFFNESS_N_M;
+            place.set_spring(multibody, PUSH_STIFFNESS_N_M, *rest_m);
         }
     }
 

@@ -22,11 +22,11 @@ use nalgebra::{Translation3, Vector3};
 use quick_xml::Writer;
 
 use super::{
-    arm::weight_torque_nm,
     bodies::{ArmBodies, MovingBody},
     conditions::Conditions,
     error::SimError,
-    gripper::FINGER_DAMPING_N_S_M,
+    feed_forward::{FeedForward, feed_forward},
+    gripper::{FINGER_DAMPING_N_S_M, drive_inertia_kg},
     pad::x_gp,
     pad_shape::{GraspingHand, PadLoading, PadPart, Solid, pad_parts},
     tool_load::ToolLoad,
@@ -56,7 +56,7 @@ struct ExportedArm<'a> {
     arm: &'a Arm,
     hold: &'a ArmHold,
     bodies: ArmBodies,
-    weight_nm: Vec<f64>,
+    feed_forward: FeedForward,
     finger_m: [f64; 2],
     loading: PadLoading,
 }
@@ -72,17 +72,17 @@ pub fn mjcf(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<String
     let arms: Vec<_> = checked
         .arms()
         .iter()
-        .map(|&CheckedArm { index, hold, .. }| {
+        .zip(feed_forward(checked, conditions.friction))
+        .map(|(&CheckedArm { index, hold, .. }, feed_forward)| {
             let arm = &robot.arms[index];
             let gap_m = plan.object.size_m[2];
             let finger_m =
                 [0, 1].map(|k| arm.gripper.fingers[k].joint_position_m(arm.gripper.travel_for_gap_m(k, gap_m)));
-            let weight_nm = weight_torque_nm(robot, index, &hold.q_rad, gap_m);
             let bodies = ArmBodies::new(robot, arm);
             let hand = GraspingHand { arm, bodies: &bodies, x_og: hold.x_og };
             let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
             let loading = PadLoading::new(&hand, &plan.object, grip_force_n, SOFTNESS_S2);
-            ExportedArm { arm, hold, bodies, weight_nm, finger_m, loading }
+            ExportedArm { arm, hold, bodies, feed_forward, finger_m, loading }
         })
         .collect();
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
@@ -110,7 +110,7 @@ fn document(
         let mut positions = Vec::new();
         xml.create_element("worldbody").write_inner_content(|xml| {
             for arm in arms {
-                children(xml, robot, arm, plan.object.mass_kg, None, &mut positions)?;
+                children(xml, robot, arm, drive_inertia_kg(&plan.object), None, &mut positions)?;
             }
             board(xml, &plan.object, &plan.operation.x_ot)
         })?;
@@ -157,7 +157,7 @@ fn children(
     xml: &mut Xml,
     robot: &Robot,
     arm: &ExportedArm<'_>,
-    board_kg: f64,
+    drive_kg: f64,
     parent: Option<usize>,
     positions: &mut Vec<f64>,
 ) -> io::Result<()> {
@@ -174,7 +174,7 @@ fn children(
                 Some(finger) => arm.finger_m[finger],
             });
             let kind = if joint.kind == JointKind::Prismatic { "slide" } else { "hinge" };
-            let [damping, armature] = if place < arm_joints { [0.0, 0.0] } else { [FINGER_DAMPING_N_S_M, board_kg] };
+            let [damping, armature] = if place < arm_joints { [0.0, 0.0] } else { [FINGER_DAMPING_N_S_M, drive_kg] };
             let attributes = [
                 ("name", joint.name.clone()),
                 ("type", kind.into()),
@@ -186,7 +186,7 @@ fn children(
             if let Some(k) = place.checked_sub(arm_joints) {
                 pads(xml, robot, arm, k, body)?;
             }
-            children(xml, robot, arm, board_kg, Some(index), positions)
+            children(xml, robot, arm, drive_kg, Some(index), positions)
         })?;
     }
     Ok(())
@@ -309,7 +309,7 @@ fn actuators(
             ("forcerange", numbers(&[-effort, effort])),
         ];
         empty(xml, "general", &attributes)?;
-        controls.push(arm.hold.q_rad[k] + arm.weight_nm[k] / stiffness);
+        controls.push(arm.hold.q_rad[k] + (arm.feed_forward.arm_nm[k] + arm.feed_forward.board_nm[k]) / stiffness);
     }
     for finger in &arm.arm.gripper.fingers {
         let name = robot.joints[finger.joint].name.clone();

@@ -3,7 +3,7 @@
 
 use nalgebra::{Isometry3, Point3};
 
-use super::bodies::ArmBodies;
+use super::{bodies::ArmBodies, gripper::drive_inertia_kg, world::inertial_mass_kg};
 use crate::{
     model::{frames::Pose, plan::PlacedObject},
     robot::{Arm, Pad},
@@ -47,7 +47,7 @@ pub(super) struct PadLoading {
     force_n: f64,
     /// Mass of a finger with its drive, kg.
     finger_kg: f64,
-    /// Mass of the board, kg.
+    /// Inertia of the board as a mass, kg.
     board_kg: f64,
     /// Sides of the board, m.
     board_m: [f64; 3],
@@ -64,9 +64,8 @@ impl PadLoading {
         let finger = &bodies.bodies[bodies.body_of_joint[arm.joints.len()]];
         Self {
             force_n,
-            // The drive has the inertia of the board, see `SimGripper::close`.
-            finger_kg: finger.mass.mass_kg + object.mass_kg,
-            board_kg: object.mass_kg,
+            finger_kg: finger.mass.mass_kg + drive_inertia_kg(object),
+            board_kg: inertial_mass_kg(object),
             board_m: object.size_m,
             x_oc: *x_og * Isometry3::from(arm.gripper.grasp_point_g()),
             softness_s2,

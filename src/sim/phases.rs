@@ -3,10 +3,22 @@
 use super::error::SimError;
 use crate::model::{scenario::SimulationSettings, trace::Phase};
 
-/// The ramp of the load over the steps of a simulation: 0 while settling, linear in the ramp, 1 in the hold, 0 after
-/// the release.
+/// Time in which the grippers close, s, at most a tenth of the time before the load. Grippers that close at once knock
+/// light boards and small pads: faces penetrate by up to 0.6 mm in the first 20 ms. With 50 ms they do not penetrate
+/// deeper than under the grip force at rest.
+const GRIP_S: f64 = 0.05;
+
+/// The number of steps in which the grippers close.
+pub(super) fn grip_steps(settings: &SimulationSettings) -> usize {
+    (GRIP_S.min(settings.settle_s / 10.0) / settings.timestep_s).round() as usize
+}
+
+/// The ramp of the load over the steps of a simulation: 0 while the grippers close and the board settles, linear in the
+/// ramp, 1 in the hold, 0 after the release.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PhaseSchedule {
+    /// The steps in which the grippers close, part of `settle`.
+    grip: usize,
     settle: usize,
     ramp: usize,
     hold: usize,
@@ -34,6 +46,7 @@ impl PhaseSchedule {
             }
         };
         let profile = Self {
+            grip: grip_steps(settings),
             settle: steps("settle_s", settle_s)?,
             ramp: steps("ramp_s", ramp_s)?,
             hold: steps("hold_s", hold_s)?,
@@ -64,7 +77,9 @@ impl PhaseSchedule {
     /// The phase and the multiple of the operation's wrench in a step. Steps count from 1; 0 is the initial state.
     pub fn at(&self, step: usize) -> (Phase, f64) {
         let ramp_end = self.settle + self.ramp;
-        if step <= self.settle {
+        if step <= self.grip && self.grip > 0 {
+            (Phase::Grip, 0.0)
+        } else if step <= self.settle {
             (Phase::Settle, 0.0)
         } else if step <= ramp_end {
             (Phase::Ramp, (step - self.settle) as f64 / self.ramp as f64)
@@ -89,6 +104,8 @@ mod tests {
     fn the_load_increases_linearly_to_one_and_is_released() {
         let profile = profile(0.5, 1.0);
         assert_eq!(profile.steps(), 1500);
+        assert_eq!(profile.at(25), (Phase::Grip, 0.0));
+        assert_eq!(profile.at(26), (Phase::Settle, 0.0));
         assert_eq!(profile.at(250), (Phase::Settle, 0.0));
         assert_eq!(profile.at(500), (Phase::Ramp, 0.5));
         assert_eq!(profile.at(750), (Phase::Ramp, 1.0));

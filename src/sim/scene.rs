@@ -5,18 +5,19 @@ use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 
 use super::{
     arm::SimArm,
-    balance::{Balance, mechanical_energy_j},
+    balance::{Balance, mechanical_energy_j, weight_n},
     conditions::Conditions,
     convert,
     error::SimError,
+    feed_forward::feed_forward,
+    hand_over::HandOver,
     pad::BoardHandles,
     tool_load::{ToolState, wrench_w},
-    world::{board_groups, new_world},
+    world::{board_groups, inertial_mass_kg, new_world},
 };
 use crate::{
-    check::{CheckedArm, CheckedPlan},
+    check::CheckedPlan,
     model::{
-        GRAVITY_W,
         frames::Pose,
         load::ForceFrame,
         plan::{PlacedObject, Plan},
@@ -28,11 +29,6 @@ use crate::{
 /// A joint speed that no servo reaches, rad/s: beyond it the engine's state is invalid. (A dropped board may reach any
 /// speed under a constant load.)
 const LOST_RAD_S: f64 = 100.0;
-
-/// Time over which the board's weight is applied to the arms, s, at most half of the settling. If the weight is applied
-/// at once, the arms overshoot by a fifth, and hands that slide in the swing keep an offset: under a tenth of the load
-/// some then turn less than hands that were loaded slowly. With 0.1 to 0.25 s the difference vanishes.
-const HAND_OVER_S: f64 = 0.15;
 
 /// A board held by arms, advanced step by step. [`simulate`](super::simulate) applies a plan's load; tests apply their
 /// own.
@@ -52,8 +48,8 @@ pub struct SimScene {
     tool: ToolState,
     /// The tool's wrench in the last step, about the tool point, world axes.
     tool_wrench_w: Wrench,
-    /// The steps so far, and those of the hand-over.
-    steps: [usize; 2],
+    /// The closing of the grippers and the hand-over of the board.
+    hand_over: HandOver,
     /// Balance of momentum and energy.
     balance: Balance,
 }
@@ -67,15 +63,14 @@ impl SimScene {
         let plan = checked.plan();
         conditions.check()?;
         let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
-        let mut world = new_world(conditions.settings.timestep_s, stiffness_scale, plan.object.mass_kg);
+        let mut world = new_world(conditions.settings.timestep_s, stiffness_scale);
         let board = insert_board(&mut world, &plan.object, conditions.real_friction());
         let mut arms = Vec::with_capacity(checked.arms().len());
-        for CheckedArm { index, hold, .. } in checked.arms() {
-            arms.push(SimArm::new(&mut world, checked.robot(), *index, hold, &plan.object, conditions)?);
+        for (arm, feed_forward) in checked.arms().iter().zip(feed_forward(checked, conditions.friction)) {
+            arms.push(SimArm::new(&mut world, checked.robot(), arm, feed_forward, &plan.object, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;
-        let hand_over_s = HAND_OVER_S.min(conditions.settings.settle_s / 2.0);
         Ok(Self {
             balance: Balance::new(&world, board.body, energy_j),
             world,
@@ -85,7 +80,7 @@ impl SimScene {
             p_ot_m,
             frame: conditions.load.frame,
             x_wo_planned: plan.object.x_wo,
-            steps: [0, (hand_over_s / conditions.settings.timestep_s).round() as usize],
+            hand_over: HandOver::new(&conditions.settings),
             tool: ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m },
             tool_wrench_w: Wrench::default(),
         })
@@ -100,8 +95,9 @@ impl SimScene {
     /// One time step under a state of the tool.
     pub(super) fn step_under(&mut self, tool: ToolState) {
         let timestep_s = self.world.integration_parameters.dt;
+        self.hand_over.advance();
         for arm in &mut self.arms {
-            arm.drive(&mut self.world, timestep_s);
+            arm.drive(&mut self.world, timestep_s, &self.hand_over);
         }
         self.tool = tool;
         self.push_board();
@@ -118,10 +114,9 @@ impl SimScene {
         let tip_w = x_wo * Point3::from(self.tool.p_ot_m);
         let body = &self.world.bodies[self.board.body];
         let com_w = body.center_of_mass();
-        let support = Wrench::from_force(GRAVITY_W * (-body.mass() * self.supported_share()));
+        let support = Wrench::from_force(weight_n(body) * (self.hand_over.carried_share() - 1.0));
         let outer_w = self.tool_wrench_w + support.about(&(convert::from_engine_vector(com_w) - tip_w.coords));
         self.balance.begin_step(&self.world, &outer_w, &tip_w.coords);
-        self.steps[0] += 1;
         let body = &mut self.world.bodies[self.board.body];
         body.reset_forces(false);
         body.reset_torques(false);
@@ -132,12 +127,6 @@ impl SimScene {
         );
         body.add_torque(convert::to_engine_vector(&self.tool_wrench_w.moment_nm), false);
         body.add_force_at_point(convert::to_engine_vector(&support.force_n), com_w, false);
-    }
-
-    /// The share of the board's weight that is supported from outside in this step of the hand-over.
-    fn supported_share(&self) -> f64 {
-        let [step, hand_over] = self.steps;
-        if step >= hand_over { 0.0 } else { 1.0 - step as f64 / hand_over as f64 }
     }
 
     /// X_WO.
@@ -190,16 +179,20 @@ fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: BoardHandles) -> f64 {
     arms.iter().map(|arm| arm.energy_j(world)).sum::<f64>() + mechanical_energy_j(&world.bodies[board.body])
 }
 
-/// Inserts the board as a free body of uniform density.
+/// Inserts the board as a free body of uniform density, with the inertia of [`inertial_mass_kg`].
 fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) -> BoardHandles {
     let [hx, hy, hz] = object.size_m.map(|side| side / 2.0);
     // A sleeping board would not react to the load.
     let body = RigidBodyBuilder::dynamic().pose(convert::to_engine_pose(&object.x_wo)).can_sleep(false);
     let body = world.bodies.insert(body);
     let collider =
-        ColliderBuilder::cuboid(hx, hy, hz).mass(object.mass_kg).friction(friction).collision_groups(board_groups());
+        ColliderBuilder::cuboid(hx, hy, hz)
+        .mass(inertial_mass_kg(object))
+        .friction(friction)
+        .collision_groups(board_groups());
     let collider = world.colliders.insert_with_parent(collider, body, &mut world.bodies);
     world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
+    world.bodies[body].set_gravity_scale(object.mass_kg / inertial_mass_kg(object), false);
     BoardHandles { body, collider }
 }
 
@@ -217,7 +210,7 @@ pub fn blank_sample(plan: &Plan) -> Sample {
     });
     Sample {
         time_s: 0.0,
-        phase: Phase::Settle,
+        phase: Phase::Grip,
         load_factor: 0.0,
         tool_wrench_w: Wrench::default(),
         x_wo: plan.object.x_wo,

@@ -6,8 +6,10 @@
 pub(super) struct Servo {
     /// The commanded angle, rad.
     pub commanded_rad: f64,
-    /// Gravity torque of the arm at the commanded angle, N m.
-    pub feed_forward_nm: f64,
+    /// Torque that holds the arm's own weight at the commanded angle, N m.
+    pub arm_nm: f64,
+    /// Torque that holds its share of the board's weight, N m; 0 before the hand-over.
+    pub board_nm: f64,
     /// Stiffness K, N m/rad.
     pub stiffness_nm_rad: f64,
     /// Damping D, N m s/rad.
@@ -17,9 +19,14 @@ pub(super) struct Servo {
 }
 
 impl Servo {
+    /// The torque that is fed forward, N m.
+    fn feed_forward_nm(&self) -> f64 {
+        self.arm_nm + self.board_nm
+    }
+
     /// The demanded torque, without the limit: `tau_ff + K (q_commanded - q) - D q'`, N m.
     pub fn demanded_nm(&self, q_rad: f64, velocity_rad_s: f64) -> f64 {
-        self.feed_forward_nm + self.stiffness_nm_rad * (self.commanded_rad - q_rad)
+        self.feed_forward_nm() + self.stiffness_nm_rad * (self.commanded_rad - q_rad)
             - self.damping_nm_s_rad * velocity_rad_s
     }
 
@@ -34,7 +41,7 @@ impl Servo {
         let next_rad = q_rad + velocity_rad_s * timestep_s;
         let demanded_nm = self.demanded_nm(next_rad, velocity_rad_s);
         let excess_nm = demanded_nm - demanded_nm.clamp(-self.effort_nm, self.effort_nm);
-        self.commanded_rad + (self.feed_forward_nm - excess_nm) / self.stiffness_nm_rad
+        self.commanded_rad + (self.feed_forward_nm() - excess_nm) / self.stiffness_nm_rad
     }
 }
 
@@ -44,7 +51,8 @@ mod tests {
 
     const SERVO: Servo = Servo {
         commanded_rad: 0.3,
-        feed_forward_nm: 12.0,
+        arm_nm: 10.0,
+        board_nm: 2.0,
         stiffness_nm_rad: 843.0,
         damping_nm_s_rad: 30.0,
         effort_nm: 50.0,

@@ -78,7 +78,7 @@ impl<'a> ToolLoad<'a> {
         let still =
             ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m: self.operation.x_ot.translation.vector };
         let state = match phase {
-            Phase::Settle | Phase::Release => still,
+            Phase::Grip | Phase::Settle | Phase::Release => still,
             Phase::Ramp | Phase::Hold => self.acting(ramp, loaded_s, held_s),
         };
         (phase, state)

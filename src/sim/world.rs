@@ -5,47 +5,61 @@ use rapier3d_f64::prelude::{
 };
 
 use super::convert;
-use crate::model::GRAVITY_W;
+use crate::model::{GRAVITY_W, plan::PlacedObject};
 
-/// Substeps of the engine's solver per step.
-const SUBSTEPS: usize = 4;
+/// Substeps of the engine's solver per step. Every substep computes the mass matrices of the arms anew, which costs more
+/// than its sweeps.
+const SUBSTEPS: usize = 2;
 
-/// Stabilisation sweeps over all contacts at the end of a substep. With six, no board of 0.03 to 2 kg oscillates
-/// between its hands at time steps of 0.5, 1 and 2 ms; with five, boards of 0.1 kg do.
-const STABILISATION_SWEEPS: usize = 6;
+/// Sweeps over all contacts in a substep, before positions change.
+const SWEEPS: usize = 6;
+
+/// Stabilisation sweeps over all contacts at the end of a substep.
+const STABILISATION_SWEEPS: usize = 4;
 
 /// Stiffness of the contacts as a frequency, Hz: the same for all time steps up to 2 ms, so that results do not depend
-/// on them. Measured: with 1500, pads that tilt yield by 2 % more under small loads; with 2500, slip of more than 0.01
-/// mm differs between time steps of 2 and 0.5 ms by up to 10 %, with 3000 by 15 %.
-const CONTACT_FREQUENCY_HZ: f64 = 2000.0;
-
-/// Mass of the lightest board that contacts of that frequency hold, kg. Lighter boards, between arms a hundred times as
-/// heavy, would oscillate: their frequency decreases with the square root of the mass.
-const NOMINAL_BOARD_KG: f64 = 0.1;
+/// on them. With 500, small pads that tilt yield by a tenth more; with 1400 and more, the slip of hands that slide differs
+/// between time steps of 2 and 0.5 ms by more than 3 %.
+const CONTACT_FREQUENCY_HZ: f64 = 1000.0;
 
 /// The largest number of periods of a contact in a substep, reached at a time step of 2 ms. Longer steps get softer
-/// contacts; otherwise they would oscillate too.
+/// contacts; otherwise they would oscillate.
 const MAX_OSCILLATIONS: f64 = 1.0;
 
 /// Damping of the contacts, as a multiple of the critical one.
-const CONTACT_DAMPING_RATIO: f64 = 10.0;
+const CONTACT_DAMPING_RATIO: f64 = 1.0;
+
+/// The least inertia of a board in the engine, as a mass, kg. The engine scales a contact's stiffness with the effective
+/// mass of the two bodies, and its sweeps converge slowly if one is much lighter than the other. With its own inertia
+/// alone, a strip of 79 g and boards of 30 g rang between their hands, and their pads were up to ten times as soft as
+/// those on a board of 1 kg. See [`inertial_mass_kg`].
+const LEAST_INERTIA_KG: f64 = 0.5;
+
+/// The mass with which a board resists acceleration, kg: its own, or that of a heavier board of its shape. Its weight is
+/// always its own.
+///
+/// The state of rest does not depend on inertia. Between two arms whose effective mass is several kilograms each, the
+/// difference changes the frequency of their swing by a few per cent at most.
+pub(super) fn inertial_mass_kg(object: &PlacedObject) -> f64 {
+    object.mass_kg.max(LEAST_INERTIA_KG)
+}
 
 /// Distance below which points of a pad and a board count as contacts, m. The points of a pad's recessed face are
 /// farther away until they carry load: as contacts they would cost a third of the sweeps and make light boards
 /// oscillate.
 const PREDICTION_M: f64 = 1e-6;
 
-/// An empty world under gravity, for a board of this mass and contacts stiffer than the default by a factor.
-pub(super) fn new_world(timestep_s: f64, contact_stiffness_scale: f64, board_kg: f64) -> PhysicsWorld {
+/// An empty world under gravity, with contacts stiffer than the default by a factor.
+pub(super) fn new_world(timestep_s: f64, contact_stiffness_scale: f64) -> PhysicsWorld {
     // A spring's frequency is proportional to the square root of its stiffness.
-    let frequency_hz = contact_frequency_hz(timestep_s / SUBSTEPS as f64, board_kg) * contact_stiffness_scale.sqrt();
+    let frequency_hz = contact_frequency_hz(timestep_s / SUBSTEPS as f64) * contact_stiffness_scale.sqrt();
     let softness = SpringCoefficients::new(frequency_hz, CONTACT_DAMPING_RATIO);
     PhysicsWorld {
         gravity: convert::to_engine_vector(&GRAVITY_W),
         integration_parameters: IntegrationParameters {
             dt: timestep_s,
             num_solver_iterations: SUBSTEPS,
-            num_internal_pgs_iterations: 1,
+            num_internal_pgs_iterations: SWEEPS,
             num_internal_stabilization_iterations: STABILISATION_SWEEPS,
             contact_softness: softness,
             static_contact_softness: softness,
@@ -69,9 +83,8 @@ pub(super) fn substep_s(world: &PhysicsWorld) -> f64 {
 }
 
 /// Stiffness of the contacts as a frequency, Hz.
-fn contact_frequency_hz(substep_s: f64, board_kg: f64) -> f64 {
-    let of_board_hz = CONTACT_FREQUENCY_HZ * (board_kg / NOMINAL_BOARD_KG).sqrt().min(1.0);
-    of_board_hz.min(MAX_OSCILLATIONS / substep_s)
+fn contact_frequency_hz(substep_s: f64) -> f64 {
+    CONTACT_FREQUENCY_HZ.min(MAX_OSCILLATIONS / substep_s)
 }
 
 /// Softness of the contacts, `1 / omega^2` with `omega` their angular frequency, s^2: two bodies of the effective mass

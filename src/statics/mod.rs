@@ -47,6 +47,7 @@
 //! Wrenches are those of the hands on the object unless noted, about O's origin in O axes. A twist is a small
 //! displacement: the translation of O's origin (m) and the rotation vector (rad), in O axes.
 
+mod carrying;
 mod certificate;
 mod compliant_load;
 mod contact_model;
