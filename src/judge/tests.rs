@@ -74,6 +74,7 @@ fn still() -> Trace {
         self_check: StepCheck::default(),
         arms: vec![arm_sample.clone(); 2],
         person_distance_m: None,
+        robot_clearance_m: None,
     };
     Trace {
         arms: vec![arm("left"), arm("right")],
@@ -81,6 +82,7 @@ fn still() -> Trace {
         samples: (0..SETTLE + RAMP + HOLD + RELEASE).map(sample).collect(),
         broke_down: None,
         person_touch: None,
+        robot_touch: None,
     }
 }
 

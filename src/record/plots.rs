@@ -113,6 +113,7 @@ fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
         | CheckKind::ContactLost
         | CheckKind::Drop
         | CheckKind::PersonOverlap
+        | CheckKind::Clearance
         | CheckKind::Penetration
         | CheckKind::EnergyCreated
         | CheckKind::ForceResidual

@@ -46,7 +46,7 @@ fn part(p0: [f64; 3], p1: [f64; 3], radius_m: f64) -> PersonPart {
 }
 
 fn scene<'a>(link_poses: &'a [Pose], holding: &'a [usize], x_wo: Pose, person: &'a [PersonPart]) -> Scene<'a> {
-    Scene { link_poses, holding, board_size_m: BOARD_SIZE_M, x_wo, person }
+    Scene { link_poses, holding, board_size_m: BOARD_SIZE_M, x_wo, person, clearance_m: 0.0 }
 }
 
 #[test]
