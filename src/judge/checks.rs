@@ -105,7 +105,7 @@ pub(super) fn findings(
         hand(CheckKind::Drop, DROP_MM, |hand| &hand.slip_mm),
     ]);
     findings.extend(person_overlap(trace, judged));
-    findings.extend(clearance(trace, judged));
+    findings.extend(clearance(trace, measures.clearance_mm.get(..count)));
     findings
 }
 
@@ -157,9 +157,8 @@ fn person_overlap(trace: &Trace, judged: &[Sample]) -> Option<Finding> {
 }
 
 /// The least distance of the robot from itself and from the board; `None` if it was not measured.
-fn clearance(trace: &Trace, judged: &[Sample]) -> Option<Finding> {
-    let (kind, limit_mm) = (CheckKind::Clearance, CLEARANCE_LIMIT_MM);
-    let distances_mm: Vec<f64> = judged.iter().map(|s| s.robot_clearance_m.map(|m| 1e3 * m)).collect::<Option<_>>()?;
+fn clearance(trace: &Trace, distances_mm: Option<&[f64]>) -> Option<Finding> {
+    let (kind, limit_mm, distances_mm) = (CheckKind::Clearance, CLEARANCE_LIMIT_MM, distances_mm?);
     let least_mm = distances_mm.iter().copied().reduce(f64::min)?;
     let crossing = distances_mm.iter().position(|&mm| is_crossed(kind, mm, limit_mm)).map(|sample| Crossing {
         sample,

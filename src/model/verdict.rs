@@ -184,12 +184,6 @@ impl CheckKind {
         self == Self::Clearance
     }
 
-    /// The sign of the limit with the value: `<=`, or `>=` if it is the least permitted value.
-    #[must_use]
-    pub fn sign(self) -> &'static str {
-        if self.is_least() { ">=" } else { "<=" }
-    }
-
     /// What is left of the limit, negative if it is violated: `limit - value`, or `value - limit` if it is the least permitted
     /// value.
     #[must_use]
@@ -238,6 +232,15 @@ pub struct Check {
     pub unit: String,
     /// True if the margin is not negative.
     pub passed: bool,
+}
+
+impl Check {
+    /// The limit in a table, with three digits: `5.000`, or `>= 0.000` if it is the least permitted value.
+    #[must_use]
+    pub fn limit_text(&self) -> String {
+        let sign = if self.name.is_least() { ">= " } else { "" };
+        format!("{sign}{:.3}", self.limit)
+    }
 }
 
 /// The first time that a limit was exceeded.

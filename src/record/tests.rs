@@ -230,6 +230,7 @@ fn measures(trace: &Trace) -> Measures {
             })
             .collect(),
         deflection_mm: of(&|s| 6.0 * s.load_factor),
+        clearance_mm: of(&|s| 1e3 * s.robot_clearance_m.unwrap()),
         joints: (0..2)
             .flat_map(|arm| trace.arms[arm].joints.iter().enumerate().map(move |name| joint(name, arm)))
             .collect(),

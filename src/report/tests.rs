@@ -63,6 +63,7 @@ fn outcomes() -> Vec<Outcome> {
         predicted_load_factor,
         posture: None,
         scores: predicted_load_factor.map(|_| "RULA 3 (arm and wrist 4), REBA 5".into()),
+        clearance: None,
         measures: None,
         recording: None,
     };
