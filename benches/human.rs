@@ -65,7 +65,14 @@ fn line_of_sight(criterion: &mut Criterion) {
     let person = human.capsules_w(&x_wb, &Q_RAD).map(PersonPart::from);
     let [eye_w, tip_w] = human.line_of_sight_w(&x_wb, &Q_RAD);
     let x_wo = Pose::translation(tip_w.x - 0.2, tip_w.y, tip_w.z - 0.2);
-    let scene = Scene { link_poses: &link_poses, holding: &[], board_size_m: [0.03, 0.5, 0.4], x_wo, person: &person };
+    let scene = Scene {
+        link_poses: &link_poses,
+        holding: &[],
+        board_size_m: [0.03, 0.5, 0.4],
+        x_wo,
+        person: &person,
+        clearance_m: 0.0,
+    };
     assert_eq!(model.free_share_of_sight(&scene, &eye_w, &tip_w), 1.0);
     criterion.bench_function("line of sight", |bencher| {
         bencher.iter(|| model.free_share_of_sight(black_box(&scene), &eye_w, &tip_w));

@@ -215,7 +215,8 @@ fn time_collisions(criterion: &mut Criterion) {
         .collect();
     let link_poses = robot.link_poses(&robot.positions(&states));
     let (board_size_m, x_wo) = (plan.object.size_m, plan.object.x_wo);
-    let scene = Scene { link_poses: &link_poses, holding: &holding, board_size_m, x_wo, person: &person };
+    let scene =
+        Scene { link_poses: &link_poses, holding: &holding, board_size_m, x_wo, person: &person, clearance_m: 0.0 };
     let model = CollisionModel::new(&robot);
     assert_eq!(model.first_violation(&scene), None);
     let mut group = criterion.benchmark_group("collision");

@@ -52,8 +52,8 @@ fn run(path: &Path) -> Result<(), Box<dyn Error>> {
 /// Simulates a plan and judges the trace.
 fn simulated(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Result<Judgement, Box<dyn Error>> {
     let checked = CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool)?;
-    if let Some(contact) = checked.first_contact() {
-        return Err(format!("bodies touch before the load is applied: {contact}").into());
+    if let Some(contact) = checked.first_contact(0.0) {
+        return Err(format!("bodies touch before the load is applied: {}", contact.reason).into());
     }
     if let Some(reason) = checked.why_not_so(&scenario.limits) {
         return Err(format!("the person would not work so: {reason}").into());

@@ -15,6 +15,7 @@ use crate::{
         frames::Pose,
         plan::{ArmHold, HumanPosture, Plan},
         scenario::{Person, Tool},
+        verdict::VerdictKind,
     },
     robot::{Chain, Robot},
 };
@@ -29,6 +30,15 @@ pub struct CheckedPlan<'a> {
     holding: Vec<usize>,
     /// Made when it is needed.
     collision: OnceLock<CollisionModel>,
+}
+
+/// Two bodies that are closer than they may be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// `touches` if one is the person or the tool, otherwise `collides`.
+    pub verdict: VerdictKind,
+    /// The bodies and their distance in words.
+    pub reason: String,
 }
 
 /// The person of a plan.
@@ -119,6 +129,7 @@ impl<'a> CheckedPlan<'a> {
             board_size_m: object.size_m,
             x_wo: object.x_wo,
             person: &[],
+            clearance_m: 0.0,
         }
     }
 
@@ -135,12 +146,15 @@ impl<'a> CheckedPlan<'a> {
         self.collision.get_or_init(|| CollisionModel::new(self.robot))
     }
 
-    /// The first two bodies that touch, or are closer to the person than docs/method.md#35-clearances allows.
+    /// The first two bodies that are closer than docs/method.md#35-clearances allows, `clearance_m` being that of the robot from
+    /// itself and from the board.
     #[must_use]
-    pub fn first_contact(&self) -> Option<String> {
+    pub fn first_contact(&self, clearance_m: f64) -> Option<Contact> {
         let person = self.person_parts();
-        let scene = Scene { person: &person, ..self.scene() };
-        self.collision().first_violation(&scene).map(|violation| violation.describe(self.robot))
+        let scene = Scene { person: &person, clearance_m, ..self.scene() };
+        let found = self.collision().first_violation(&scene)?;
+        let verdict = if found.is_of_person() { VerdictKind::Touches } else { VerdictKind::Collides };
+        Some(Contact { verdict, reason: found.describe(self.robot) })
     }
 
     /// Flaws by the tolerances of the planner's own plans: the grippers, the tool, where the person stands, and all joint

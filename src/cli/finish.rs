@@ -171,6 +171,7 @@ pub fn write_run(
         wall_s: None,
         outcome: Outcome::Judged {
             measures: run.simulated.map(|(_, judgement)| Box::new(judgement.measures)),
+            clearance: run.plan.as_ref().and_then(|plan| plan.clearance.as_ref()).map(ToString::to_string),
             scores: run.plan.as_ref().and_then(|plan| plan.comfort?.scores()),
             predicted_load_factor: run.plan.and_then(|plan| plan.stability).map(|s| s.compliant_load_factor),
             verdict: Box::new(run.verdict),

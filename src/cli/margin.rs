@@ -85,8 +85,9 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, C
         expected,
         met: expected == VerdictKind::Touches,
     };
-    if let Some(contact) = checked.first_contact() {
-        return Ok(Margin { reason: Some(contact), ..empty });
+    if let Some(contact) = checked.first_contact(0.0) {
+        let (ended_by, met) = (contact.verdict, expected == contact.verdict);
+        return Ok(Margin { reason: Some(contact.reason), ended_by, met, ..empty });
     }
     if let Some(reason) = checked.why_not_so(&scenario.limits) {
         let (ended_by, met) = (VerdictKind::Infeasible, expected == VerdictKind::Infeasible);

@@ -51,8 +51,8 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
     run_plan(scenario, &loaded.robot, plan)
 }
 
-/// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. A plan with a collision in the
-/// planned pose is not simulated; its verdict is `touches`. Nor is one whose person would not stand or see so; its verdict is
+/// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. A plan whose
+/// bodies meet in the planned pose is not simulated; its verdict is `collides`, or `touches` if one is the person. Nor is one whose person would not stand or see so; its verdict is
 /// `infeasible`.
 ///
 /// # Errors
@@ -60,8 +60,8 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
 pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
     let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
     let posture = checked.posture();
-    if let Some(contact) = checked.first_contact() {
-        let verdict = verdict_without_simulation(scenario, VerdictKind::Touches, contact);
+    if let Some(contact) = checked.first_contact(0.0) {
+        let verdict = verdict_without_simulation(scenario, contact.verdict, contact.reason);
         return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
     }
     if let Some(reason) = checked.why_not_so(&scenario.limits) {

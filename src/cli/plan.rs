@@ -59,7 +59,10 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
         Outcome::Found(plan) => {
             let text = report::json::plan(&plan);
             let posture = plan.human.and_then(|human| human.posture);
-            let table = posture.map(|figures| report::posture::table(&figures)).unwrap_or_default();
+            let mut table = posture.map(|figures| report::posture::table(&figures)).unwrap_or_default();
+            if let Some(clearance) = &plan.clearance {
+                table.push_str(&format!("clearance of the robot: {clearance}\n"));
+            }
             match output {
                 Some(path) => {
                     report::file::write_whole(path, text.as_bytes())?;

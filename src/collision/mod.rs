@@ -5,7 +5,9 @@
 
 mod clearances;
 mod near_pairs;
+mod nearest;
 mod person_clearance;
+mod self_pairs;
 mod shapes;
 mod sight;
 
@@ -14,7 +16,9 @@ use parry3d_f64::glamx::DVec3;
 
 use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
 pub use near_pairs::{BodyRef, NearPair};
-pub use person_clearance::{Nearest, PersonClearance};
+pub use nearest::Nearest;
+pub use person_clearance::PersonClearance;
+use self_pairs::{SelfPair, self_pairs};
 use shapes::{Measure, Piece, Placed, place_all, point_w, sphere_about};
 
 /// Poses of robot, board and person, in W.
@@ -30,6 +34,8 @@ pub struct Scene<'a> {
     pub x_wo: Pose,
     /// The person and the tool.
     pub person: &'a [PersonPart],
+    /// Required distance of the robot from itself and from the board, m; at 0 they must only not touch.
+    pub clearance_m: f64,
 }
 
 /// A capsule of the person's body or the tool, with its required clearances.
@@ -83,6 +89,12 @@ pub struct Violation {
 }
 
 impl Violation {
+    /// True if one of the bodies is the person or the tool.
+    #[must_use]
+    pub fn is_of_person(&self) -> bool {
+        self.bodies.iter().any(|body| matches!(body, Body::Person(_)))
+    }
+
     /// Message: `left_wrist is 12 mm from the person's Head, expected more than 50 mm`.
     pub fn describe(&self, robot: &Robot) -> String {
         let [one, other] = self.bodies.map(|body| body.describe(robot));
@@ -98,7 +110,7 @@ impl Violation {
 #[derive(Clone)]
 pub struct CollisionModel {
     links: Vec<LinkShapes>,
-    self_pairs: Vec<[usize; 2]>,
+    self_pairs: Vec<SelfPair>,
     /// For each arm the links of its fingers, which may touch the board.
     fingers: Vec<Vec<usize>>,
 }
@@ -141,14 +153,16 @@ struct PlacedLink<'a> {
 }
 
 impl PlacedLink<'_> {
-    /// True if a primitive of this link overlaps one of another.
-    fn hits(&self, other: &Self) -> bool {
-        let reach_m = self.radius_m + other.radius_m;
+    /// Distance to another link if it is at most `required_m`, m.
+    fn too_close_to(&self, other: &Self, required_m: f64) -> Option<f64> {
+        let reach_m = self.radius_m + other.radius_m + required_m;
         if (self.centre_w - other.centre_w).length_squared() > reach_m * reach_m {
-            return false;
+            return None;
         }
-        let mut near = self.pieces.iter().filter(|piece| piece.meets_sphere(other.centre_w, other.radius_m));
-        near.any(|piece| other.pieces.iter().any(|other| piece.closer_than(other, 0.0)))
+        let near = self.pieces.iter().filter(|piece| piece.meets_sphere(other.centre_w, other.radius_m + required_m));
+        let pairs = near.flat_map(|piece| other.pieces.iter().map(move |other| (piece, other)));
+        let close = pairs.filter(|(piece, other)| piece.closer_than(other, required_m));
+        close.map(|(piece, other)| piece.distance_m(other)).min_by(f64::total_cmp)
     }
 
     /// Distance to another body if it is less than `required_m`, m.
@@ -173,12 +187,7 @@ impl CollisionModel {
                 LinkShapes { pieces, centre_l, radius_m }
             })
             .collect();
-        let groups = rigid_groups(robot);
-        let self_pairs = (0..links.len())
-            .flat_map(|a| (a + 1..links.len()).map(move |b| [a, b]))
-            .filter(|&[a, b]| !links[a].pieces.is_empty() && !links[b].pieces.is_empty() && groups[a] != groups[b])
-            .filter(|pair| !robot.allowed_collisions.contains(pair))
-            .collect();
+        let self_pairs = self_pairs(robot, &links);
         Self { links, self_pairs, fingers: robot.arms.iter().map(|arm| fingers(robot, &arm.gripper)).collect() }
     }
 
@@ -194,7 +203,7 @@ impl CollisionModel {
         let links = self.placed_links(scene.link_poses, &placed);
         let board = Piece::cuboid(scene.board_size_m);
         let board = board.placed(&scene.x_wo);
-        self.robot_self(&links)
+        self.robot_self(scene, &links)
             .or_else(|| self.robot_board(scene, &links, &board))
             .or_else(|| scene.person.iter().find_map(|part| person(&links, &board, part)))
     }
@@ -231,11 +240,16 @@ impl CollisionModel {
         let board = Piece::cuboid(scene.board_size_m);
         let board = board.placed(&scene.x_wo);
         let mut margin_m = f64::INFINITY;
-        for &[a, b] in &self.self_pairs {
-            margin_m = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], margin_m, measure);
+        for pair in &self.self_pairs {
+            let ([a, b], clearance_m) = (pair.links, pair.required_m(scene));
+            let bound_m = margin_m + clearance_m;
+            let nearest = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], bound_m, measure);
+            margin_m = nearest - clearance_m;
         }
         for link in (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
-            margin_m = self.links[link].distance_to_within(&poses[link], &board, margin_m, measure);
+            let bound_m = margin_m + scene.clearance_m;
+            let nearest = self.links[link].distance_to_within(&poses[link], &board, bound_m, measure);
+            margin_m = nearest - scene.clearance_m;
         }
         for part in scene.person {
             let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
@@ -292,15 +306,19 @@ impl CollisionModel {
         self.links.iter().zip(poses).map(place).collect()
     }
 
-    fn robot_self(&self, links: &[PlacedLink<'_>]) -> Option<Violation> {
-        let [a, b] = *self.self_pairs.iter().find(|&&[a, b]| links[a].hits(&links[b]))?;
-        Some(Violation { bodies: [Body::Link(a), Body::Link(b)], required_m: 0.0, distance_m: 0.0 })
+    fn robot_self(&self, scene: &Scene<'_>, links: &[PlacedLink<'_>]) -> Option<Violation> {
+        self.self_pairs.iter().find_map(|pair| {
+            let ([a, b], required_m) = (pair.links, pair.required_m(scene));
+            let distance_m = links[a].too_close_to(&links[b], required_m)?;
+            Some(Violation { bodies: [Body::Link(a), Body::Link(b)], required_m, distance_m })
+        })
     }
 
     fn robot_board(&self, scene: &Scene<'_>, links: &[PlacedLink<'_>], board: &Placed<'_>) -> Option<Violation> {
         (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
-            let distance_m = links[link].too_close(board, 0.0)?;
-            Some(Violation { bodies: [Body::Link(link), Body::Board], required_m: 0.0, distance_m })
+            let required_m = scene.clearance_m;
+            let distance_m = links[link].too_close(board, required_m)?;
+            Some(Violation { bodies: [Body::Link(link), Body::Board], required_m, distance_m })
         })
     }
 }
@@ -321,17 +339,6 @@ fn person(links: &[PlacedLink<'_>], board: &Placed<'_>, part: &PersonPart) -> Op
         let distance_m = link.too_close(&capsule, required_m)?;
         Some(violation(Body::Link(index), required_m, distance_m))
     })
-}
-
-/// For every link the first link of its rigid group. Links joined by fixed joints do not move relative to each other.
-fn rigid_groups(robot: &Robot) -> Vec<usize> {
-    let mut groups: Vec<usize> = (0..robot.links.len()).collect();
-    for joint in &robot.joints {
-        if joint.kind == crate::robot::JointKind::Fixed {
-            groups[joint.child_link] = groups[joint.parent_link];
-        }
-    }
-    groups
 }
 
 /// The links that move with a gripper's fingers.

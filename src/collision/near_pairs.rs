@@ -55,14 +55,15 @@ impl CollisionModel {
         let capsules: Vec<_> =
             scene.person.iter().map(|part| Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m)).collect();
         let mut found = Vec::new();
-        for &[a, b] in &self.self_pairs {
+        for pair in &self.self_pairs {
+            let ([a, b], required_m) = (pair.links, pair.required_m(scene));
             let centres_m = (self.centre_w(scene, a) - self.centre_w(scene, b)).norm();
-            if centres_m <= self.links[a].radius_m + self.links[b].radius_m + within_m {
-                pairs(&links[a], &links[b], 0.0, within_m, &mut found);
+            if centres_m <= self.links[a].radius_m + self.links[b].radius_m + required_m + within_m {
+                pairs(&links[a], &links[b], required_m, within_m, &mut found);
             }
         }
         for link in (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
-            pairs(&links[link], &board, 0.0, within_m, &mut found);
+            pairs(&links[link], &board, scene.clearance_m, within_m, &mut found);
         }
         for (index, (part, capsule)) in scene.person.iter().zip(&capsules).enumerate() {
             let body = PlacedBody { body: BodyRef::Person(index), pieces: vec![capsule.placed(&Pose::identity())] };

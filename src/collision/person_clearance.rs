@@ -3,7 +3,7 @@
 //! Only pairs with a required distance above zero in a plan are measured. Tool, working hand and forearm touch the board by
 //! design and follow it with the few millimetres that the grasp deflects, so they are ignored; so is the tool near the robot.
 
-use super::{Body, CollisionModel, PersonPart, point_w, shapes::Piece};
+use super::{Body, CollisionModel, Nearest, PersonPart, nearest::Search, point_w, shapes::Piece};
 use crate::{human::BodyPart, model::frames::Pose};
 
 /// A person who stands still, with the tool, and the board.
@@ -22,15 +22,6 @@ struct StandingPart {
     keeps_off_board: bool,
     /// True if a plan requires a distance to the robot.
     keeps_off_robot: bool,
-}
-
-/// The nearest pair of a part of the person and another body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
-    /// A link or the board, then a part of the person.
-    pub bodies: [Body; 2],
-    /// Distance, m; the penetration depth as a negative number.
-    pub distance_m: f64,
 }
 
 impl PersonClearance {
@@ -61,36 +52,21 @@ impl CollisionModel {
         let board = person.board.placed(x_wo);
         let centres_w: Vec<_> =
             self.links.iter().zip(link_poses).map(|(link, x_wl)| point_w(x_wl, &link.centre_l)).collect();
-        let mut found = Search { nearest: None, bound_m: within_m };
+        let mut found = Search::within(within_m);
         for part in &person.parts {
             let capsule = part.capsule.placed(&Pose::identity());
             let name = Body::Person(part.name);
             if part.keeps_off_board {
-                found.offer([Body::Board, name], capsule.signed_distance_within(&board, found.bound_m));
+                found.offer([Body::Board, name], capsule.signed_distance_within(&board, found.bound_m()));
             }
             let links = self.links.iter().zip(link_poses).enumerate();
             for (index, (link, x_wl)) in links.filter(|_| part.keeps_off_robot) {
-                if !link.pieces.is_empty() && capsule.meets_sphere(centres_w[index], link.radius_m + found.bound_m) {
-                    let distance_m = link.signed_distance_within(x_wl, &capsule, found.bound_m);
+                if !link.pieces.is_empty() && capsule.meets_sphere(centres_w[index], link.radius_m + found.bound_m()) {
+                    let distance_m = link.signed_distance_within(x_wl, &capsule, found.bound_m());
                     found.offer([Body::Link(index), name], distance_m);
                 }
             }
         }
-        found.nearest
-    }
-}
-
-/// The nearest pair so far, and the upper bound for nearer ones.
-struct Search {
-    nearest: Option<Nearest>,
-    bound_m: f64,
-}
-
-impl Search {
-    fn offer(&mut self, bodies: [Body; 2], distance_m: f64) {
-        if distance_m < self.bound_m {
-            self.bound_m = distance_m;
-            self.nearest = Some(Nearest { bodies, distance_m });
-        }
+        found.nearest()
     }
 }

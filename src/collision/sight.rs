@@ -87,7 +87,7 @@ mod tests {
 
     /// Without a robot, a board far from the line unless `x_wo` says otherwise.
     fn scene<'a>(x_wo: Pose, person: &'a [PersonPart]) -> Scene<'a> {
-        Scene { link_poses: &[], holding: &[], board_size_m: BOARD_M, x_wo, person }
+        Scene { link_poses: &[], holding: &[], board_size_m: BOARD_M, x_wo, person, clearance_m: 0.0 }
     }
 
     fn far_away() -> Pose {

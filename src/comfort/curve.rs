@@ -109,7 +109,14 @@ pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
             operation: Operation::cut_on_circle(cut.radius_m, angle_rad(point), cut.force_n, cut.board_size_m[2]),
             floor_z_m: cut.floor_z_m,
             robot_points_w: &[],
-            scene: Scene { link_poses: &[], holding: &[], board_size_m: cut.board_size_m, x_wo, person: &[] },
+            scene: Scene {
+                link_poses: &[],
+                holding: &[],
+                board_size_m: cut.board_size_m,
+                x_wo,
+                person: &[],
+                clearance_m: 0.0,
+            },
         };
         responses::visit(&query, |place, response| {
             let (_, spans) = by_place.entry(place).or_insert((response.x_wb, [None; POINTS]));

@@ -94,6 +94,7 @@ impl Fixture {
                 board_size_m: BOARD_M,
                 x_wo: self.x_wo,
                 person: &[],
+                clearance_m: 0.0,
             },
         }
     }

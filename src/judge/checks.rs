@@ -23,17 +23,21 @@ const CONTACT_LOST_LIMIT_MS: f64 = 0.0;
 /// Limit of the overlap of robot and board with the person, mm (docs/method.md#87-person-overlap).
 const PERSON_OVERLAP_LIMIT_MM: f64 = 0.0;
 
+/// The least permitted distance of the robot from itself and from the board, mm (docs/method.md#811-clearance).
+const CLEARANCE_LIMIT_MM: f64 = 0.0;
+
 /// Slip above which the board counts as dropped, mm (docs/method.md#86-contact).
 const DROP_MM: f64 = 50.0;
 
 /// The order of checks that are crossed at the same sample; the first one determines the verdict: loss of the board,
 /// then the contacts, then consequences.
-const PRECEDENCE: [CheckKind; 9] = [
+const PRECEDENCE: [CheckKind; 10] = [
     CheckKind::Drop,
     CheckKind::ContactLost,
     CheckKind::PadOpen,
     CheckKind::Slip,
     CheckKind::SlipRotation,
+    CheckKind::Clearance,
     CheckKind::TorqueRatio,
     CheckKind::Deflection,
     CheckKind::PersonOverlap,
@@ -101,6 +105,7 @@ pub(super) fn findings(
         hand(CheckKind::Drop, DROP_MM, |hand| &hand.slip_mm),
     ]);
     findings.extend(person_overlap(trace, judged));
+    findings.extend(clearance(trace, measures.clearance_mm.get(..count)));
     findings
 }
 
@@ -138,11 +143,28 @@ fn contact_lost_series(judged: &[Sample]) -> Series {
 fn person_overlap(trace: &Trace, judged: &[Sample]) -> Option<Finding> {
     let overlaps_mm: Vec<f64> = judged.iter().map(|s| s.person_distance_m.map(|m| -1e3 * m)).collect::<Option<_>>()?;
     let deepest = overlaps_mm.iter().copied().reduce(f64::max)?;
-    let crossing = overlaps_mm.iter().position(|&mm| is_crossed(mm, PERSON_OVERLAP_LIMIT_MM)).map(|sample| Crossing {
-        sample,
-        what: trace.person_touch.as_ref().map_or(String::new(), |touch| format!("{} and {}", touch.body, touch.part)),
-    });
+    let crossing = overlaps_mm
+        .iter()
+        .position(|&mm| is_crossed(CheckKind::PersonOverlap, mm, PERSON_OVERLAP_LIMIT_MM))
+        .map(|sample| Crossing {
+            sample,
+            what: trace
+                .person_touch
+                .as_ref()
+                .map_or(String::new(), |touch| format!("{} and {}", touch.body, touch.part)),
+        });
     Some(Finding { check: check(CheckKind::PersonOverlap, deepest, PERSON_OVERLAP_LIMIT_MM), crossing })
+}
+
+/// The least distance of the robot from itself and from the board; `None` if it was not measured.
+fn clearance(trace: &Trace, distances_mm: Option<&[f64]>) -> Option<Finding> {
+    let (kind, limit_mm, distances_mm) = (CheckKind::Clearance, CLEARANCE_LIMIT_MM, distances_mm?);
+    let least_mm = distances_mm.iter().copied().reduce(f64::min)?;
+    let crossing = distances_mm.iter().position(|&mm| is_crossed(kind, mm, limit_mm)).map(|sample| Crossing {
+        sample,
+        what: trace.robot_touch.as_ref().map_or(String::new(), |bodies| bodies.join(" and ")),
+    });
+    Some(Finding { check: check(kind, least_mm, limit_mm), crossing })
 }
 
 /// The time for which a condition has been true at each sample, ms; 0 where it is false. A sample's forces are those of
@@ -168,7 +190,7 @@ fn sampled(kind: CheckKind, limit: f64, series: Vec<Series>) -> Finding {
     let crossing = series
         .into_iter()
         .filter_map(|series| {
-            let sample = series.values.iter().position(|&value| is_crossed(value, limit))?;
+            let sample = series.values.iter().position(|&value| is_crossed(kind, value, limit))?;
             Some(Crossing { sample, what: series.what })
         })
         .min_by_key(|crossing| crossing.sample);
@@ -187,7 +209,7 @@ fn creep(trace: &Trace, judged: &[Sample], limit: f64) -> Option<Finding> {
     }
     let rates_mm_s = (0..trace.arms.len()).map(|arm| 1e3 * slope(half, |s| s.arms[arm].x_oc.translation.vector).norm());
     let (arm, worst) = rates_mm_s.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let crossing = is_crossed(worst, limit)
+    let crossing = is_crossed(CheckKind::Creep, worst, limit)
         .then(|| Crossing { sample: judged.len() - 1, what: format!("{} hand", trace.arms[arm].name) });
     Some(Finding { check: check(CheckKind::Creep, worst, limit), crossing })
 }
@@ -207,8 +229,8 @@ fn slope(samples: &[Sample], value: impl Fn(&Sample) -> Vector3<f64>) -> Vector3
 }
 
 /// A value equal to its limit does not cross it; NaN does.
-fn is_crossed(value: f64, limit: f64) -> bool {
-    value.partial_cmp(&limit).is_none_or(Ordering::is_gt)
+fn is_crossed(kind: CheckKind, value: f64, limit: f64) -> bool {
+    kind.margin(value, limit).partial_cmp(&0.0).is_none_or(Ordering::is_lt)
 }
 
 pub(super) fn check(kind: CheckKind, value: f64, limit: f64) -> Check {
@@ -216,8 +238,8 @@ pub(super) fn check(kind: CheckKind, value: f64, limit: f64) -> Check {
         name: kind,
         value,
         limit,
-        margin: limit - value,
+        margin: kind.margin(value, limit),
         unit: kind.unit().to_owned(),
-        passed: !is_crossed(value, limit),
+        passed: !is_crossed(kind, value, limit),
     }
 }

@@ -81,6 +81,7 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
         CheckKind::ContactLost => "no pad has touched the board for more than",
         CheckKind::Drop => "has dropped the board: it slid by more than",
         CheckKind::PersonOverlap => "overlap by more than",
+        CheckKind::Clearance => "are closer to each other than",
         CheckKind::Penetration | CheckKind::EnergyCreated | CheckKind::ForceResidual | CheckKind::CouplingDrift => {
             "the simulation violates the laws of mechanics by more than"
         }

@@ -9,8 +9,8 @@ use crate::model::{
 };
 
 /// SHA-256 of the trace's numbers, in lowercase hexadecimal: the little-endian bits of every f64 in the order of the
-/// fields, the phase as a number (0 to 3), the person's distance if the plan has a person, and the tool point if it has
-/// moved. Names are not part of it, nor are the self-checks, which follow from the rest. Equal fingerprints mean
+/// fields, the phase as a number (0 to 3), the person's distance if the plan has a person, the robot's clearance if it
+/// was measured, and the tool point if it has moved. Names are not part of it, nor are the self-checks, which follow from the rest. Equal fingerprints mean
 /// simulations that agree bit for bit.
 #[must_use]
 pub fn fingerprint(trace: &Trace) -> String {
@@ -58,6 +58,7 @@ fn visit_sample(sample: &Sample, visit: &mut impl FnMut(f64)) {
         visit_arm(arm, visit);
     }
     visit_all(sample.person_distance_m.as_slice(), visit);
+    visit_all(sample.robot_clearance_m.as_slice(), visit);
 }
 
 fn visit_arm(arm: &ArmSample, visit: &mut impl FnMut(f64)) {

@@ -11,7 +11,8 @@ use crate::model::{
 ///
 /// - slip of a hand: `|p_OC(t) - p_OC(ref)|` and the angle of `R_OC(ref)' R_OC(t)`, C at the centre between its pads;
 /// - deflection: `|X_WO(t) p_OT - X_WO(ref) p_OT|`, T the tool point at that time;
-/// - torque ratio of a joint: `|tau_demanded| / tau_max`.
+/// - torque ratio of a joint: `|tau_demanded| / tau_max`;
+/// - clearance: the distance of the robot from itself and from the board.
 pub(super) fn measures(trace: &Trace, samples: &[Sample]) -> Measures {
     let deflection_mm = |sample: &Sample| {
         let p_ot = nalgebra::Point3::from(sample.p_ot_m);
@@ -22,8 +23,14 @@ pub(super) fn measures(trace: &Trace, samples: &[Sample]) -> Measures {
         load_factor: samples.iter().map(|sample| sample.load_factor).collect(),
         hands: (0..trace.arms.len()).map(|arm| hand_measures(trace, samples, arm)).collect(),
         deflection_mm: samples.iter().map(deflection_mm).collect(),
+        clearance_mm: clearance_mm(samples).unwrap_or_default(),
         joints: (0..trace.arms.len()).flat_map(|arm| joint_measures(trace, samples, arm)).collect(),
     }
+}
+
+/// The distance of the robot from itself and from the board, mm; `None` if it was not measured.
+fn clearance_mm(samples: &[Sample]) -> Option<Vec<f64>> {
+    samples.iter().map(|sample| sample.robot_clearance_m.map(|distance_m| 1e3 * distance_m)).collect()
 }
 
 fn hand_measures(trace: &Trace, samples: &[Sample], arm: usize) -> HandMeasures {

@@ -32,7 +32,7 @@ use crate::model::{
 /// The reference is the last sample of settling (docs/method.md#81-reference-state); a board lost before that drops.
 /// The samples from there to the end of the load are judged, those of the release are not. A value equal to its limit
 /// passes. The earliest crossing determines the verdict; of several at the same sample the loss of the board comes
-/// first, then the contacts (pad, slip, rotation), then torque, deflection, the person and creep.
+/// first, then the contacts (pad, slip, rotation), then the clearance, torque, deflection, the person and creep.
 ///
 /// A trace that breaks down is judged up to its last valid sample. If a limit was crossed before, it determines the
 /// verdict. Otherwise there is no verdict, as the effect of the rest of the load is unknown.

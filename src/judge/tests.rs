@@ -74,6 +74,7 @@ fn still() -> Trace {
         self_check: StepCheck::default(),
         arms: vec![arm_sample.clone(); 2],
         person_distance_m: None,
+        robot_clearance_m: None,
     };
     Trace {
         arms: vec![arm("left"), arm("right")],
@@ -81,6 +82,7 @@ fn still() -> Trace {
         samples: (0..SETTLE + RAMP + HOLD + RELEASE).map(sample).collect(),
         broke_down: None,
         person_touch: None,
+        robot_touch: None,
     }
 }
 
@@ -161,6 +163,43 @@ fn a_person_who_is_reached_is_touched() {
     let clear = judge(&beside_a_person(at, 0.032), &limits());
     assert_eq!((clear.verdict, value(&clear, CheckKind::PersonOverlap)), (VerdictKind::Holds, -32.0));
     assert!(judge(&still(), &limits()).checks.iter().all(|check| check.name != CheckKind::PersonOverlap));
+}
+
+/// A trace without motion whose robot has this distance from itself from a sample on.
+fn near_itself(from: usize, distance_m: f64) -> Trace {
+    let mut trace = still();
+    for (index, sample) in trace.samples.iter_mut().enumerate() {
+        sample.robot_clearance_m = Some(if index < from { 0.005 } else { distance_m });
+    }
+    let touch = ["left_wrist".to_owned(), "the board".to_owned()];
+    Trace { robot_touch: (distance_m < 0.0).then_some(touch), ..trace }
+}
+
+#[test]
+fn a_robot_that_meets_itself_collides() {
+    let at = SETTLE + 60;
+    let collided = judge(&near_itself(at, -0.002), &limits());
+    assert_eq!(collided.verdict, VerdictKind::Collides);
+    assert_eq!(collided.first_failure.unwrap().time_s, at as f64 * STEP_S);
+    let check = collided.checks.iter().find(|check| check.name == CheckKind::Clearance).unwrap();
+    assert_eq!((check.value, check.limit, check.margin, check.passed), (-2.0, 0.0, -2.0, false));
+    assert_eq!(check.limit_text(), ">= 0.000");
+    let expected = "left_wrist and the board are closer to each other than 0 mm at load factor 0.61";
+    assert!(collided.events.iter().any(|event| event.text == expected), "{:?}", collided.events);
+
+    // Of two distances the smaller one counts, and contact without penetration passes.
+    for (distance_m, value_mm) in [(0.0, 0.0), (0.003, 3.0), (0.032, 5.0)] {
+        let apart = judge(&near_itself(at, distance_m), &limits());
+        assert_eq!((apart.verdict, value(&apart, CheckKind::Clearance)), (VerdictKind::Holds, value_mm));
+        let check = apart.checks.iter().find(|check| check.name == CheckKind::Clearance).unwrap();
+        assert_eq!((check.margin, check.passed), (value_mm, true));
+    }
+    // It comes after the contacts and before torque.
+    let mut both = near_itself(at, -0.002);
+    both.samples[at].arms[1].torque_demanded_nm[1] = -15.1;
+    assert_eq!(outcome(&both), (VerdictKind::Collides, Some(at)));
+    slide(&mut both.samples[at], 1, 1.1);
+    assert_eq!(outcome(&both), (VerdictKind::Slips, Some(at)));
 }
 
 #[test]

@@ -14,6 +14,8 @@ pub struct Measures {
     pub hands: Vec<HandMeasures>,
     /// Displacement in W of the board's tool point, mm.
     pub deflection_mm: Vec<f64>,
+    /// Distance of the robot from itself and from the board, mm; empty if it was not measured.
+    pub clearance_mm: Vec<f64>,
     /// Torque ratio of each joint.
     pub joints: Vec<JointMeasures>,
 }

@@ -14,7 +14,8 @@ use super::{
     scenario::{Hand, Limits, Person, PlannerKind, Scenario, Sex},
 };
 
-/// A grasp of a board by a robot's arms. `human`, `comfort`, `stability`, `planner`, `scenario` and `benchdog` are optional.
+/// A grasp of a board by a robot's arms. `human`, `comfort`, `stability`, `clearance`,
+/// `planner`, `scenario` and `benchdog` are optional.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
@@ -39,6 +40,9 @@ pub struct Plan {
     /// The predicted stability.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,
+    /// The least distance of the robot from itself and from the board.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<Clearance>,
     /// How the plan was found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub planner: Option<PlannerRecord>,
@@ -480,6 +484,43 @@ pub struct Stability {
     pub joint_torque_nm: BTreeMap<String, Vec<f64>>,
     /// Displacement of the tool point in the compliant equilibrium at load factor 1, mm.
     pub predicted_deflection_mm: f64,
+}
+
+/// The least distance of the robot from itself and from the board (`docs/method.md#35-clearances`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Clearance {
+    /// In the planned pose.
+    pub planned: LeastDistance,
+    /// In the pose that the compliant equilibrium predicts at load factor 1; only if the planner's stability is compliant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loaded: Option<LeastDistance>,
+}
+
+/// The nearest two bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LeastDistance {
+    /// Their distance, mm; the penetration depth as a negative number.
+    pub distance_mm: f64,
+    /// Two links, or a link and `the board`.
+    pub between: [String; 2],
+}
+
+impl std::fmt::Display for LeastDistance {
+    /// `5.00 mm between left_wrist and the board`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [one, other] = &self.between;
+        write!(f, "{:.2} mm between {one} and {other}", self.distance_mm)
+    }
+}
+
+impl std::fmt::Display for Clearance {
+    /// `5.00 mm between left_wrist and the board, under the load 4.80 mm between ...`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.planned)?;
+        self.loaded.as_ref().map_or(Ok(()), |loaded| write!(f, ", under the load {loaded}"))
+    }
 }
 
 /// How a plan was found, and at what cost.

@@ -425,6 +425,10 @@ pub struct Limits {
     pub torque_ratio: f64,
     /// Smallest predicted load factor of a plan; the planner requires 1.1 times this value of the compliant load factor.
     pub load_factor: f64,
+    /// Least distance of the robot from itself and from the board that the planner keeps, mm. At 0 they must only not touch in
+    /// the planned pose.
+    #[serde(default = "usual_clearance_mm")]
+    pub clearance_mm: f64,
     /// Largest RULA score of the person's posture; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rula: Option<u8>,
@@ -445,6 +449,7 @@ impl Limits {
         creep_mm_s: 0.1,
         torque_ratio: 1.0,
         load_factor: 1.0,
+        clearance_mm: 5.0,
         rula: None,
         rula_arm: None,
         reba: None,
@@ -453,11 +458,22 @@ impl Limits {
     /// The default limits of a cut, whose tool point may deflect more.
     pub const CUT: Self = Self { deflection_mm: 15.0, ..Self::USUAL };
 
+    /// [`Limits::clearance_mm`] in m.
+    #[must_use]
+    pub fn clearance_m(&self) -> f64 {
+        self.clearance_mm * 1e-3
+    }
+
     /// The default limits of a kind of operation.
     #[must_use]
     pub fn of(kind: OperationKind) -> Self {
         if kind == OperationKind::Cut { Self::CUT } else { Self::USUAL }
     }
+}
+
+/// The clearance of files that do not have one.
+fn usual_clearance_mm() -> f64 {
+    Limits::USUAL.clearance_mm
 }
 
 /// The expected result of a scenario.

@@ -49,6 +49,8 @@ pub struct Trace {
     pub broke_down: Option<String>,
     /// The first overlap of the robot or the board with the person. `None` if there was none or the plan has no person.
     pub person_touch: Option<PersonTouch>,
+    /// The names of the first two bodies of robot and board that overlapped; `None` if there was no overlap.
+    pub robot_touch: Option<[String; 2]>,
 }
 
 /// An overlap with the person.
@@ -98,6 +100,10 @@ pub struct Sample {
     /// working hand and forearm are not compared with the board. It is measured every 10 ms, and in every step while it
     /// is below 1 cm; other samples repeat the last value. `None` if the plan has no person.
     pub person_distance_m: Option<f64>,
+    /// Least distance of the robot from itself and from the board, m, without the pairs that may touch; negative for an
+    /// overlap: its depth. It is measured every 10 ms, and in every step while it is below 4 mm; other samples repeat the last
+    /// value. `None` if no two bodies can meet, or if an older recording does not contain it.
+    pub robot_clearance_m: Option<f64>,
 }
 
 /// Deviations of one step from the laws of mechanics (`docs/method.md#75-self-checks`).

@@ -25,9 +25,10 @@ pub enum VerdictKind {
     Deflects,
     /// A hand kept slipping under constant load.
     Creeps,
-    /// In the planned pose, bodies overlap or violate a clearance to the person; or robot or board touched the person during
-    /// the simulation.
+    /// In the planned pose, robot or board violate a clearance to the person; or they touched the person during the simulation.
     Touches,
+    /// In the planned pose or during the simulation, the robot touches itself, or the board other than with its fingers.
+    Collides,
     /// No feasible plan was found.
     Infeasible,
     /// The simulation is not valid: it broke down or failed a self-check.
@@ -47,6 +48,7 @@ impl VerdictKind {
             Self::Deflects => "deflects",
             Self::Creeps => "creeps",
             Self::Touches => "touches",
+            Self::Collides => "collides",
             Self::Infeasible => "infeasible",
             Self::NoVerdict => "no_verdict",
         }
@@ -124,6 +126,8 @@ pub enum CheckKind {
     /// Deepest overlap of robot or board with the person, who does not move, mm; without an overlap, the negative of the
     /// least distance. Not made if the plan has no person.
     PersonOverlap,
+    /// Least distance of the robot from itself and from the board, mm; negative if they overlap. The only limit from below.
+    Clearance,
     /// Self-check: deepest penetration of pad and board, mm.
     Penetration,
     /// Self-check: largest increase of the energy that contacts and integration added, J.
@@ -147,6 +151,7 @@ impl CheckKind {
             Self::ContactLost => "contact_lost",
             Self::Drop => "drop",
             Self::PersonOverlap => "person_overlap",
+            Self::Clearance => "clearance",
             Self::Penetration => "penetration",
             Self::EnergyCreated => "energy_created",
             Self::ForceResidual => "force_residual",
@@ -161,6 +166,7 @@ impl CheckKind {
             | Self::Deflection
             | Self::Drop
             | Self::PersonOverlap
+            | Self::Clearance
             | Self::Penetration
             | Self::CouplingDrift => "mm",
             Self::SlipRotation => "deg",
@@ -170,6 +176,19 @@ impl CheckKind {
             Self::EnergyCreated => "J",
             Self::ForceResidual => "N",
         }
+    }
+
+    /// True if the limit is the least permitted value and not the largest.
+    #[must_use]
+    pub fn is_least(self) -> bool {
+        self == Self::Clearance
+    }
+
+    /// What is left of the limit, negative if it is violated: `limit - value`, or `value - limit` if it is the least permitted
+    /// value.
+    #[must_use]
+    pub fn margin(self, value: f64, limit: f64) -> f64 {
+        if self.is_least() { value - limit } else { limit - value }
     }
 
     /// The verdict if this is the first limit that was exceeded.
@@ -183,6 +202,7 @@ impl CheckKind {
             Self::PadOpen => VerdictKind::Opens,
             Self::ContactLost | Self::Drop => VerdictKind::Drops,
             Self::PersonOverlap => VerdictKind::Touches,
+            Self::Clearance => VerdictKind::Collides,
             Self::Penetration | Self::EnergyCreated | Self::ForceResidual | Self::CouplingDrift => {
                 VerdictKind::NoVerdict
             }
@@ -206,12 +226,21 @@ pub struct Check {
     pub value: f64,
     /// The limit.
     pub limit: f64,
-    /// `limit - value`.
+    /// `limit - value`; of a `clearance` `value - limit`.
     pub margin: f64,
     /// The unit of value, limit and margin.
     pub unit: String,
-    /// True if the value does not exceed the limit.
+    /// True if the margin is not negative.
     pub passed: bool,
+}
+
+impl Check {
+    /// The limit in a table, with three digits: `5.000`, or `>= 0.000` if it is the least permitted value.
+    #[must_use]
+    pub fn limit_text(&self) -> String {
+        let sign = if self.name.is_least() { ">= " } else { "" };
+        format!("{sign}{:.3}", self.limit)
+    }
 }
 
 /// The first time that a limit was exceeded.

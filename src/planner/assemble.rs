@@ -42,7 +42,7 @@ pub fn assemble_placed(
     let posture = HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad);
     let comfort = comfort::weighted(*comfort, &scenario.comfort);
     let comfort = scored(&problem.human, &candidate.work.q_h_rad, &operation.wrench_w(&x_wo), comfort);
-    let stability = evaluator.predict(&arms, &object, &operation)?;
+    let (stability, clearance) = evaluator.predict(&arms, &object, &operation)?;
     Some(Plan {
         format: FORMAT,
         name: scenario.name.clone(),
@@ -53,6 +53,7 @@ pub fn assemble_placed(
         human: Some(HumanPosture { posture: Some(figures), ..posture }),
         comfort: Some(comfort),
         stability: Some(stability),
+        clearance,
         planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations }),
         scenario: Some(scenario.clone()),
         benchdog: Some(env!("CARGO_PKG_VERSION").into()),

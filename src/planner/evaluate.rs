@@ -5,6 +5,7 @@ use nalgebra::Point3;
 use super::{
     candidate::{Candidate, Placement},
     library::{GraspingArm, posture_muscular, within_strength},
+    load_shift::{Held, LoadShift},
     outcome::Rejection,
     problem::Problem,
     stats::SearchStats,
@@ -16,10 +17,10 @@ use crate::{
     model::{
         frames::Pose,
         operation::Operation,
-        plan::{ArmHold, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
+        plan::{ArmHold, Clearance, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
         scenario::{Scenario, StabilityKind},
     },
-    statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, StabilityWorkspace},
+    statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, ResponseOutcome, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
@@ -47,8 +48,18 @@ pub struct Feasible {
     pub comfort: Comfort,
     /// What the search maximises.
     pub objective: f64,
-    /// Utilisation of the limits of stability: at most 1, see [`Evaluator::utilisation`].
+    /// Its stability; the utilisation is at most 1.
+    pub stability: Assessment,
+}
+
+/// How a grasp resists its load.
+#[derive(Clone, Debug, Default)]
+pub struct Assessment {
+    /// The share of the limits of stability that it uses, safety factor included: at most 1 if it is stable, infinite if there is
+    /// no equilibrium.
     pub utilisation: f64,
+    /// Where the load at the required load factor moves arms and board; `None` unless the clearance is kept under the load.
+    pub shift: Option<LoadShift>,
 }
 
 /// A candidate that violates a constraint, with what was computed before that was found.
@@ -56,8 +67,8 @@ pub struct Rejected {
     pub why: Rejection,
     pub candidate: Candidate,
     pub configuration: Configuration,
-    /// As in [`Feasible`]; zero if stability was not evaluated.
-    pub utilisation: f64,
+    /// As in [`Feasible`]; zero and no shift if stability was not evaluated.
+    pub stability: Assessment,
 }
 
 impl Configuration {
@@ -96,14 +107,14 @@ impl<'a> Evaluator<'a> {
     pub fn evaluate(&mut self, candidate: Candidate) -> Result<Feasible, Box<Rejected>> {
         let configuration = Configuration::new(&self.problem, &candidate);
         if let Err(why) = self.test_geometry(&candidate, &configuration) {
-            return Err(Box::new(Rejected { why, candidate, configuration, utilisation: 0.0 }));
+            return Err(Box::new(Rejected { why, candidate, configuration, stability: Assessment::default() }));
         }
-        let utilisation = self.utilisation(&candidate, &configuration.placement.x_wo);
-        if utilisation > 1.0 {
-            return Err(Box::new(Rejected { why: Rejection::Stability, candidate, configuration, utilisation }));
+        let stability = self.assess(&candidate, &configuration.placement.x_wo);
+        if let Err(why) = test_stability(&self.problem, &candidate, &configuration.placement.x_wo, &stability) {
+            return Err(Box::new(Rejected { why, candidate, configuration, stability }));
         }
         let comfort = comfort(&self.problem, &candidate, &configuration);
-        Ok(self.feasible(candidate, configuration, comfort, utilisation))
+        Ok(self.feasible(candidate, configuration, comfort, stability))
     }
 
     /// Tests every constraint but stability, which costs most.
@@ -121,22 +132,32 @@ impl<'a> Evaluator<'a> {
         candidate: Candidate,
         configuration: Configuration,
         comfort: Comfort,
-        utilisation: f64,
+        stability: Assessment,
     ) -> Feasible {
         self.stats.found(&comfort);
-        Feasible { candidate, configuration, comfort, objective: comfort.objective, utilisation }
+        Feasible { candidate, configuration, comfort, objective: comfort.objective, stability }
     }
 
-    /// The share of the limits of stability that a grasp uses, safety factor included: at most 1 if it is stable, infinite if
-    /// there is no equilibrium.
-    pub fn utilisation(&mut self, candidate: &Candidate, x_wo: &Pose) -> f64 {
+    /// Why a grasp is not stable, or too close to itself or the board under the load.
+    pub fn test_grasp(&mut self, candidate: &Candidate, x_wo: &Pose) -> Result<(), Rejection> {
+        let stability = self.assess(candidate, x_wo);
+        test_stability(&self.problem, candidate, x_wo, &stability)
+    }
+
+    /// How a grasp resists its load.
+    pub fn assess(&mut self, candidate: &Candidate, x_wo: &Pose) -> Assessment {
+        let keeps_clear = self.problem.scenario.limits.clearance_mm > 0.0;
         contact_model(&self.problem, candidate, x_wo)
             .and_then(|model| {
                 let limits = self.problem.stability_limits();
-                self.stability.utilisation(&model, &limits, self.problem.scenario.planner.stability)
+                self.stability.assess(&model, &limits, self.problem.scenario.planner.stability)
+            })
+            .map(|(utilisation, response)| {
+                let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
+                Assessment { utilisation, shift }
             })
             // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
-            .unwrap_or(f64::INFINITY)
+            .unwrap_or(Assessment { utilisation: f64::INFINITY, shift: None })
     }
 
     /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
@@ -149,16 +170,52 @@ impl<'a> Evaluator<'a> {
         LocalEquilibrium::new(&model, self.problem.stability_limits().load_factor)
     }
 
-    /// The predicted stability of a plan's grasp; `None` if there is no equilibrium.
-    pub fn predict(&mut self, arms: &[ArmHold], object: &PlacedObject, operation: &Operation) -> Option<Stability> {
+    /// The predicted stability of a plan's grasp, with its clearances; `None` if there is no equilibrium.
+    pub fn predict(
+        &mut self,
+        arms: &[ArmHold],
+        object: &PlacedObject,
+        operation: &Operation,
+    ) -> Option<(Stability, Option<Clearance>)> {
         let Problem { scenario, robot, .. } = &self.problem;
         let hand = |(own, arm): (&ArmHold, &GraspingArm)| {
             HandModel::new(&robot.robot.arms[arm.index], &arm.chain, own, object, scenario.grip.friction)
         };
         let hands: Result<Vec<_>, _> = arms.iter().zip(&robot.arms).map(hand).collect();
         let model = ContactModel::from_hands(hands.ok()?, object, operation);
-        self.stability.predict(&model, &scenario.limits).ok()?
+        let stability = self.stability.predict(&model, &scenario.limits).ok()??;
+        let shift = load_shift(&mut self.stability, &model, scenario.planner.stability);
+        let held = Held { robot: &robot.robot, collision: &robot.collision, arms, object };
+        Some((stability, held.clearance(shift.as_ref())))
     }
+}
+
+/// Where the load at load factor 1 moves arms and board; `None` unless stability is compliant, or without an equilibrium.
+pub fn load_shift(workspace: &mut StabilityWorkspace, model: &ContactModel, kind: StabilityKind) -> Option<LoadShift> {
+    if kind != StabilityKind::Compliant {
+        return None;
+    }
+    match workspace.response(model, 1.0) {
+        Ok(ResponseOutcome::Found(response)) => Some(LoadShift::of(&response)),
+        _ => None,
+    }
+}
+
+/// Tests that a grasp resists the load, and that the robot keeps its clearance under it.
+pub fn test_stability(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+    stability: &Assessment,
+) -> Result<(), Rejection> {
+    if stability.utilisation > 1.0 {
+        return Err(Rejection::Stability);
+    }
+    let Some(shift) = &stability.shift else { return Ok(()) };
+    let link_poses = problem.robot.link_poses(&shift.arms(&candidate.arms));
+    let scene = problem.robot.scene(&link_poses, shift.board(x_wo));
+    let violation = problem.robot.collision.first_violation(&scene);
+    if violation.is_none() { Ok(()) } else { Err(Rejection::LoadedCollision) }
 }
 
 /// Tests what depends on the person and the board's pose alone.

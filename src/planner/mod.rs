@@ -16,6 +16,7 @@ mod evaluate;
 mod explain;
 mod front;
 mod library;
+mod load_shift;
 mod natural_boards;
 mod normalise;
 mod outcome;

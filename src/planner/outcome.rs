@@ -130,6 +130,8 @@ pub enum Rejection {
     Collision,
     /// The grasp does not resist the load.
     Stability,
+    /// The robot comes closer to itself or to the board than its clearance under the load.
+    LoadedCollision,
     /// The RULA score of the finished plan's posture exceeds its limit.
     Rula,
     /// The RULA score of arm and wrist of the finished plan's posture exceeds its limit.
@@ -155,6 +157,7 @@ impl Rejection {
             Self::RobotReach => "robot reach",
             Self::Collision => "collision or too close",
             Self::Stability => "stability",
+            Self::LoadedCollision => "too close under the load",
             Self::Rula => "RULA score",
             Self::RulaArm => "RULA score of arm and wrist",
             Self::Reba => "REBA score",

@@ -78,9 +78,7 @@ fn with_response(
 ) -> Result<Feasible, Rejection> {
     let mut candidate = Candidate::without_person(grasp);
     // Stability costs about a thousandth of the person's response.
-    if evaluator.utilisation(&candidate, &grasp.x_wo) > 1.0 {
-        return Err(Rejection::Stability);
-    }
+    evaluator.test_grasp(&candidate, &grasp.x_wo)?;
     let problem = &evaluator.problem;
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
     let query = evaluate::response_query(problem, problem.scenario.operation, link_poses, grasp.x_wo, &points_w);
@@ -98,8 +96,8 @@ fn with_response(
     let comfort = evaluate::comfort(problem, &candidate, &configuration);
     test_scores(problem, &candidate, &comfort)?;
     // The roll is now the response's.
-    let utilisation = evaluator.utilisation(&candidate, &grasp.x_wo);
-    Ok(evaluator.feasible(candidate, configuration, comfort, utilisation))
+    let stability = evaluator.assess(&candidate, &grasp.x_wo);
+    Ok(evaluator.feasible(candidate, configuration, comfort, stability))
 }
 
 /// Tests the scores of the posture: the planner draws again instead of trying the next of several candidates.

@@ -4,13 +4,13 @@
 //! plan states; reach, joint limits, strength, standing and collisions are tested. It serves plans of other planners as well.
 //! Metrics, collision model and stability program are those of the search; its way of choosing and placing is not.
 
-use super::scores::scored;
+use super::{evaluate::load_shift, load_shift::Held, scores::scored};
 use crate::{
     check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
     comfort,
     human::Human,
     model::{
-        plan::{Comfort, MeanComfort, Plan},
+        plan::{Comfort, LeastDistance, MeanComfort, Plan},
         scenario::{ResponseKind, Scenario, StabilityKind},
     },
     robot::Robot,
@@ -31,10 +31,12 @@ pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Vec<Flaw> {
     };
     let mut flaws = checked.inexact();
     verify_stability(&checked, scenario, &mut flaws);
+    verify_clearance(&checked, scenario, &mut flaws);
     match (checked.person(), &plan.comfort) {
         (Some(person), Some(stated)) => {
             verify_comfort(&checked, person, stated, scenario, &mut flaws);
-            flaws.extend(checked.first_contact().map(Flaw::Contact));
+            let contact = checked.first_contact(scenario.limits.clearance_m());
+            flaws.extend(contact.map(|contact| Flaw::Contact(contact.reason)));
             flaws.extend(checked.posture_flaws());
             flaws.extend(other_posture(&checked, person));
         }
@@ -178,6 +180,30 @@ fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut 
         if !agrees(stated, computed, SOLVER_TOLERANCE * computed.max(1.0)) {
             flaws.push(Flaw::Figure { key, stated, computed });
         }
+    }
+}
+
+/// The clearance under the load, and the stated figures. That of the planned pose is among the contacts.
+fn verify_clearance(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut Vec<Flaw>) {
+    let plan = checked.plan();
+    let shift = ContactModel::of_plan(checked, scenario.grip.friction)
+        .ok()
+        .and_then(|model| load_shift(&mut StabilityWorkspace::new(), &model, scenario.planner.stability));
+    let (robot, collision) = (checked.robot(), checked.collision());
+    let held = Held { robot, collision, arms: &plan.arms, object: &plan.object };
+    let required = Some(scenario.limits.clearance_m()).filter(|clearance_m| *clearance_m > 0.0);
+    let contact = shift.as_ref().zip(required).and_then(|(shift, required_m)| held.first_contact(shift, required_m));
+    flaws.extend(contact.map(Flaw::Contact));
+    let (Some(stated), Some(found)) = (&plan.clearance, held.clearance(shift.as_ref())) else { return };
+    let mut compare = |key, stated: &LeastDistance, found: &LeastDistance| {
+        let (stated, computed) = (stated.distance_mm, found.distance_mm);
+        if !agrees(stated, computed, SOLVER_TOLERANCE * computed.abs().max(1.0)) {
+            flaws.push(Flaw::Figure { key, stated, computed });
+        }
+    };
+    compare("clearance.planned.distance_mm", &stated.planned, &found.planned);
+    if let (Some(stated), Some(found)) = (&stated.loaded, &found.loaded) {
+        compare("clearance.loaded.distance_mm", stated, found);
     }
 }
 

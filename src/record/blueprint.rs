@@ -150,6 +150,7 @@ impl Layout {
             }
             CheckKind::SlipRotation => (format!("rotation of the hands on the board, {unit}"), vec![query(plot, "**")]),
             CheckKind::Slip => (format!("slip of the hands on the board, {unit}"), vec![query(plot, "**")]),
+            CheckKind::Clearance => (format!("clearance of the robot, {unit}"), vec![query(plot, "**")]),
             _ => (format!("{plot} of the tool point, {unit}"), vec![query(plot, "**")]),
         };
         let view = self.view("TimeSeries", &name, &queries, 0.19)?;

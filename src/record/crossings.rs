@@ -40,6 +40,7 @@ pub(super) fn board_crossed_s(input: &RecordingInput) -> Option<f64> {
     let first = |&(event, check): &(&Event, CheckKind)| match check {
         CheckKind::Drop => true,
         CheckKind::PersonOverlap => event.what.starts_with("the board"),
+        CheckKind::Clearance => event.what.ends_with("the board"),
         _ => event.what.is_empty(),
     };
     crossings(input).find(first).map(|(event, _)| event.time_s)
@@ -94,9 +95,10 @@ fn position_w(input: &RecordingInput, sample: &Sample, what: &str, arms: &[usize
             return robot.link_poses(&robot.positions(&[state]))[link].translation.vector;
         }
     }
-    if let Some(link) = input.trace.person_touch.as_ref().and_then(|touch| input.robot.link_index(&touch.body))
-        && what.starts_with(&input.robot.links[link].name)
-    {
+    let of_person = input.trace.person_touch.iter().map(|touch| &touch.body);
+    let of_robot = input.trace.robot_touch.iter().map(|[body, _]| body);
+    let mut links = of_person.chain(of_robot).filter_map(|body| input.robot.link_index(body));
+    if let Some(link) = links.find(|&link| what.starts_with(&input.robot.links[link].name)) {
         let states = arms.iter().zip(&sample.arms);
         let states =
             states.map(|(&arm, state)| crate::robot::ArmState { arm, q_rad: &state.q_rad, finger_travel_m: [0.0; 2] });

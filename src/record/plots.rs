@@ -24,11 +24,12 @@ pub(super) const FAILURE: &str = "first crossing";
 pub(super) const LOAD: &str = "load";
 
 /// The plots of checks: the folder of the series, and the check.
-pub(super) const PLOTS: [(&str, CheckKind); 4] = [
+pub(super) const PLOTS: [(&str, CheckKind); 5] = [
     ("slip", CheckKind::Slip),
     ("rotation", CheckKind::SlipRotation),
     ("deflection", CheckKind::Deflection),
     ("torque", CheckKind::TorqueRatio),
+    ("clearance", CheckKind::Clearance),
 ];
 
 /// Logs the plots, the phases and the events.
@@ -43,6 +44,9 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     }
     if !measures.deflection_mm.is_empty() {
         series("deflection", "tool point", palette::board(), &measures.deflection_mm)?;
+    }
+    if !measures.clearance_mm.is_empty() {
+        series("clearance", "least distance", palette::board(), &measures.clearance_mm)?;
     }
     for (joint, colour) in by_torque(input) {
         series("torque", &joint.name, colour, &joint.torque_ratio)?;
@@ -108,6 +112,7 @@ fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
         CheckKind::SlipRotation => measures.hands.iter().map(|hand| hand.slip_deg.as_slice()).collect(),
         CheckKind::Deflection => vec![&measures.deflection_mm],
         CheckKind::TorqueRatio => measures.joints.iter().map(|joint| joint.torque_ratio.as_slice()).collect(),
+        CheckKind::Clearance => vec![&measures.clearance_mm],
         CheckKind::Creep
         | CheckKind::PadOpen
         | CheckKind::ContactLost

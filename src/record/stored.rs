@@ -35,6 +35,9 @@ const ARCHETYPE: &str = "benchdog.Trace";
 /// The column of the person's distance; its rows are empty if the plan has no person.
 const PERSON_DISTANCE: &str = "person_distance_m";
 
+/// The column of the robot's distance from itself and the board; older recordings do not have it.
+const ROBOT_CLEARANCE: &str = "robot_clearance_m";
+
 /// A phase is stored as its index; later versions append.
 const PHASES: [Phase; 5] = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Grip];
 
@@ -47,6 +50,9 @@ struct Constants {
     /// The body that touched the person, and the part of the person.
     #[serde(default)]
     person_touch: Option<[String; 2]>,
+    /// The first two bodies of robot and board that overlapped.
+    #[serde(default)]
+    robot_touch: Option<[String; 2]>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -89,6 +95,7 @@ fn log_trace(messages: &mut Messages, trace: &Trace) -> Result<(), RecordError> 
         of("p_ot_m", |sample| sample.p_ot_m.as_slice().to_vec()),
         of("self_check", |sample| self_check(&sample.self_check)),
         of(PERSON_DISTANCE, |sample| sample.person_distance_m.into_iter().collect()),
+        of(ROBOT_CLEARANCE, |sample| sample.robot_clearance_m.into_iter().collect()),
     ];
     messages.log_columns(&entity(&[TRACE, "board"]), &times_s, board)?;
     for (arm, ArmTrace { name, pads, .. }) in trace.arms.iter().enumerate() {
@@ -126,6 +133,7 @@ fn constants(trace: &Trace) -> Constants {
         p_ot_m: trace.p_ot_m.into(),
         broke_down: trace.broke_down.clone(),
         person_touch: trace.person_touch.clone().map(|PersonTouch { body, part }| [body, part]),
+        robot_touch: trace.robot_touch.clone(),
     }
 }
 
@@ -183,7 +191,8 @@ pub(super) fn trace(chunks: &[Chunk]) -> Result<Trace, String> {
                 x_wo: pose_of(board.numbers("x_wo", index)?),
                 p_ot_m: Vector3::from(board.numbers::<3>("p_ot_m", index)?),
                 self_check: self_check_of(board.numbers("self_check", index)?),
-                person_distance_m: board.rows(PERSON_DISTANCE).get(index).and_then(|row| row.first()).copied(),
+                person_distance_m: board.optional(PERSON_DISTANCE, index),
+                robot_clearance_m: board.optional(ROBOT_CLEARANCE, index),
                 arms: arm_samples.iter_mut().filter_map(Iterator::next).collect(),
             })
         })
@@ -194,6 +203,7 @@ pub(super) fn trace(chunks: &[Chunk]) -> Result<Trace, String> {
         samples,
         broke_down: constants.broke_down,
         person_touch: constants.person_touch.map(|[body, part]| PersonTouch { body, part }),
+        robot_touch: constants.robot_touch,
     })
 }
 
@@ -261,6 +271,11 @@ impl<'a> Columns<'a> {
 
     fn rows(&self, name: &str) -> &[&'a [f64]] {
         self.columns.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// The number of a row that may be empty or missing.
+    fn optional(&self, name: &str, index: usize) -> Option<f64> {
+        self.rows(name).get(index).and_then(|row| row.first()).copied()
     }
 
     fn row(&self, name: &str, index: usize) -> Result<&'a [f64], String> {

@@ -93,12 +93,9 @@ fn checks(text: &mut String, verdict: &Verdict) {
     }
     push(text, format_args!("\n| check | value | limit | margin | unit | |\n|---|---:|---:|---:|---|---|"));
     for check in &verdict.checks {
-        let (value, limit, margin) = (check.value, check.limit, check.margin);
+        let (value, limit, margin) = (check.value, check.limit_text(), check.margin);
         let mark = if check.passed { "" } else { "**FAIL**" };
-        push(
-            text,
-            format_args!("| {} | {value:.3} | {limit:.3} | {margin:.3} | {} | {mark} |", check.name, check.unit),
-        );
+        push(text, format_args!("| {} | {value:.3} | {limit} | {margin:.3} | {} | {mark} |", check.name, check.unit));
     }
 }
 
@@ -118,6 +115,9 @@ fn figures(text: &mut String, plan: &Plan) {
              deflection {deflection_mm:.2} mm"
             ),
         );
+    }
+    if let Some(clearance) = &plan.clearance {
+        push(text, format_args!("Clearance of the robot: {clearance}"));
     }
     if let Some(comfort) = &plan.comfort {
         let (muscular, peripersonal_m) = (comfort.muscular_regularised, comfort.peripersonal_m);

@@ -139,6 +139,7 @@ fn plan(robot: &Robot) -> Plan {
         human: None,
         comfort: None,
         stability: None,
+        clearance: None,
         planner: None,
         scenario: None,
         benchdog: None,
@@ -158,6 +159,7 @@ fn trace(robot: &Robot, plan: &Plan) -> Trace {
         p_ot_m: plan.operation.x_ot.translation.vector,
         samples: (0..=250).map(|step| sample(robot, plan, step)).collect(),
         broke_down: None,
+        robot_touch: Some(["left_wrist".into(), "the board".into()]),
         person_touch: Some(PersonTouch { body: "the board".into(), part: "the person's Head".into() }),
     }
 }
@@ -201,6 +203,7 @@ fn sample(robot: &Robot, plan: &Plan, step: usize) -> Sample {
         p_ot_m: plan.operation.x_ot.translation.vector,
         self_check: StepCheck::default(),
         // Every other digit of a third: nothing that a rounding would leave alone.
+        robot_clearance_m: Some(0.1 / 7.0 - 0.02 * load_factor),
         person_distance_m: Some(0.1 / 3.0 - 0.04 * load_factor),
         arms: plan.arms.iter().enumerate().map(|(index, hold)| hand(index, hold)).collect(),
     }
@@ -227,6 +230,7 @@ fn measures(trace: &Trace) -> Measures {
             })
             .collect(),
         deflection_mm: of(&|s| 6.0 * s.load_factor),
+        clearance_mm: of(&|s| 1e3 * s.robot_clearance_m.unwrap()),
         joints: (0..2)
             .flat_map(|arm| trace.arms[arm].joints.iter().enumerate().map(move |name| joint(name, arm)))
             .collect(),

@@ -110,7 +110,7 @@ fn check_row(check: &Check) -> Vec<String> {
         check.name.to_string(),
         check.unit.clone(),
         figure(check.value),
-        figure(check.limit),
+        check.limit_text(),
         figure(check.margin),
         if check.passed { String::new() } else { "FAIL".to_owned() },
     ]

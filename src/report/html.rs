@@ -11,7 +11,7 @@ use super::{
 use crate::model::{
     measures::{HandMeasures, JointMeasures, Measures},
     plan::PostureFigures,
-    verdict::{Check, CheckKind, Verdict},
+    verdict::{CheckKind, Verdict},
 };
 
 /// Elements that HTML leaves open and maud therefore does not close; closed here, the page is also well-formed XML.
@@ -106,10 +106,11 @@ fn section(outcome: &Outcome) -> Markup {
             summary {
                 h2 { (name) } " " span class=(status.name()) { (status.mark()) } " " (outcome.sentence())
             }
-            @if let Outcome::Judged { verdict, posture, measures, scores, .. } = outcome {
+            @if let Outcome::Judged { verdict, posture, measures, scores, clearance, .. } = outcome {
                 (checks(verdict))
                 @if let Some(figures) = posture { (person(figures)) }
                 @if let Some(scores) = scores { p { "Posture: " (scores) } }
+                @if let Some(clearance) = clearance { p { "Planned clearance of the robot: " (clearance) } }
                 @if let Some(measures) = measures { (plots(verdict, measures)) }
                 p.quiet { (origin(verdict)) }
             }
@@ -154,12 +155,14 @@ fn checks(verdict: &Verdict) -> Markup {
                     @for head in ["value", "limit", "margin"] { th.n { (head) } }
                     th {}
                 }
-                @for Check { name, value, limit, margin, unit, passed } in &verdict.checks {
+                @for check in &verdict.checks {
                     tr {
-                        td { (name) }
-                        td { (unit) }
-                        @for figure in [value, limit, margin] { td.n { (format!("{figure:.3}")) } }
-                        td.failed { @if !passed { "FAIL" } }
+                        td { (check.name) }
+                        td { (check.unit) }
+                        td.n { (format!("{:.3}", check.value)) }
+                        td.n { (check.limit_text()) }
+                        td.n { (format!("{:.3}", check.margin)) }
+                        td.failed { @if !check.passed { "FAIL" } }
                     }
                 }
             }
@@ -173,6 +176,7 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
         hands.map(|(hand, class)| Line { name: &hand.name, class, values: series(hand) }).collect::<Vec<_>>()
     };
     let deflection = Line { name: "tool point", class: "board", values: &measures.deflection_mm };
+    let clearance = Line { name: "least distance", class: "board", values: &measures.clearance_mm };
     let load = Line { name: "multiple of the load", class: "load", values: &measures.load_factor };
     let joints = by_torque(verdict, measures).into_iter().zip(JOINTS);
     let joints = joints.map(|(joint, class)| Line { name: &joint.name, class, values: &joint.torque_ratio });
@@ -181,8 +185,10 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
         ("rotation of the hands on the board, deg", Some(CheckKind::SlipRotation), hands(|hand| &hand.slip_deg)),
         ("deflection of the tool point, mm", Some(CheckKind::Deflection), vec![deflection]),
         ("joint torque / limit, most loaded joints", Some(CheckKind::TorqueRatio), joints.collect()),
+        ("clearance of the robot, mm", Some(CheckKind::Clearance), vec![clearance]),
         ("load factor", None, vec![load]),
     ];
+    let is_measured = |lines: &[Line<'_>]| lines.iter().any(|line| !line.values.is_empty());
     let plot = |(title, kind, lines): (_, Option<CheckKind>, _)| {
         let limit = kind.and_then(|kind| verdict.check(kind)).map(|check| check.limit);
         let failed = verdict.first_failure.as_ref().filter(|failure| Some(failure.check) == kind);
@@ -191,7 +197,7 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
     };
     html! {
         div.plots {
-            @for svg in plots.map(plot) { (PreEscaped(svg)) }
+            @for svg in plots.into_iter().filter(|(_, _, lines)| is_measured(lines)).map(plot) { (PreEscaped(svg)) }
         }
     }
 }

@@ -43,6 +43,8 @@ pub enum Outcome {
         posture: Option<Box<PostureFigures>>,
         /// The scores of the person's posture in words; `None` for a plan without them.
         scores: Option<String>,
+        /// The plan's clearance in words; `None` for a plan that does not state it.
+        clearance: Option<String>,
         /// The judge's time series; `None` if nothing was simulated.
         measures: Option<Box<Measures>>,
         /// The recording's file, if one was written.
@@ -188,8 +190,8 @@ pub fn explanation(verdict: &Verdict) -> String {
         };
     };
     let figures = verdict.check(failure.check).map_or(failure.check.to_string(), |check| {
-        let unit = unit_suffix(check.name);
-        format!("{} {:.2}{unit}, limit {}{unit}", check.name, check.value, check.limit)
+        let (unit, bound) = (unit_suffix(check.name), if check.name.is_least() { "at least" } else { "limit" });
+        format!("{} {:.2}{unit}, {bound} {}{unit}", check.name, check.value, check.limit)
     });
     format!("{figures}, first crossed at {:.3} s under {:.2} of the load", failure.time_s, failure.load_factor)
 }

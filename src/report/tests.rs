@@ -6,7 +6,14 @@ use super::*;
 use crate::model::verdict::{Check, Failure};
 
 fn check(name: CheckKind, value: f64, limit: f64) -> Check {
-    Check { name, value, limit, margin: limit - value, unit: name.unit().into(), passed: value <= limit }
+    Check {
+        name,
+        value,
+        limit,
+        margin: name.margin(value, limit),
+        unit: name.unit().into(),
+        passed: name.margin(value, limit) >= 0.0,
+    }
 }
 
 fn holding() -> Verdict {
@@ -63,6 +70,7 @@ fn outcomes() -> Vec<Outcome> {
         predicted_load_factor,
         posture: None,
         scores: predicted_load_factor.map(|_| "RULA 3 (arm and wrist 4), REBA 5".into()),
+        clearance: None,
         measures: None,
         recording: None,
     };
@@ -155,6 +163,30 @@ fn files_are_written_whole_or_not_at_all() {
     let error = file::write_whole(&taken, b"three").unwrap_err();
     assert!(error.to_string().starts_with(&format!("failed to write {}: ", taken.display())), "{error}");
     assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2, "nothing is left beside the directory");
+}
+
+#[test]
+fn a_limit_from_below_is_shown_as_one_everywhere() {
+    let mut verdict = holding();
+    verdict.checks.push(check(CheckKind::Clearance, -1.25, 0.0));
+    verdict.verdict = VerdictKind::Collides;
+    verdict.first_failure = Some(Failure { check: CheckKind::Clearance, time_s: 1.32, load_factor: 0.82 });
+    let table = console::details(&verdict, None, None);
+    let row: Vec<_> = table.lines().find(|line| line.starts_with("clearance")).unwrap().split_whitespace().collect();
+    assert_eq!(row, ["clearance", "mm", "-1.250", ">=", "0.000", "-1.250", "FAIL"]);
+    let expected = "clearance -1.25 mm, at least 0 mm, first crossed at 1.320 s under 0.82 of the load";
+    assert_eq!(explanation(&verdict), expected);
+    let outcome = Outcome::Judged {
+        verdict: Box::new(verdict),
+        predicted_load_factor: None,
+        posture: None,
+        scores: None,
+        clearance: Some("5.00 mm between left_wrist and the board".into()),
+        measures: None,
+        recording: None,
+    };
+    let page = html::page(&[outcome]);
+    assert!(page.contains("&gt;= 0.000") && page.contains("5.00 mm between left_wrist and the board"), "{page}");
 }
 
 #[test]

@@ -289,6 +289,8 @@ pub struct LimitsSection {
     pub torque_ratio: f64,
     /// Smallest predicted load factor of a plan; the planner requires 1.1 times this value of the compliant load factor.
     pub load_factor: f64,
+    /// Least distance of the robot from itself and from the board that the planner keeps, mm, at least 0.
+    pub clearance_mm: f64,
     /// Largest RULA score of the person's posture, 1 to 7; no limit by default.
     pub rula: Option<u8>,
     /// Largest RULA score of arm and wrist, 1 to 12; no limit by default.
@@ -300,9 +302,21 @@ pub struct LimitsSection {
 impl Default for LimitsSection {
     /// The default limits (`docs/method.md#810-default-limits`).
     fn default() -> Self {
-        let Limits { slip_mm, slip_deg, creep_mm_s, torque_ratio, load_factor, rula, rula_arm, reba, .. } =
-            Limits::USUAL;
-        Self { slip_mm, slip_deg, deflection_mm: None, creep_mm_s, torque_ratio, load_factor, rula, rula_arm, reba }
+        let Limits {
+            slip_mm, slip_deg, creep_mm_s, torque_ratio, load_factor, clearance_mm, rula, rula_arm, reba, ..
+        } = Limits::USUAL;
+        Self {
+            slip_mm,
+            slip_deg,
+            deflection_mm: None,
+            creep_mm_s,
+            torque_ratio,
+            load_factor,
+            clearance_mm,
+            rula,
+            rula_arm,
+            reba,
+        }
     }
 }
 

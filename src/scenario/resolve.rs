@@ -319,6 +319,7 @@ fn limits_with_defaults(section: &LimitsSection, kind: OperationKind) -> Limits 
         creep_mm_s: section.creep_mm_s,
         torque_ratio: section.torque_ratio,
         load_factor: section.load_factor,
+        clearance_mm: section.clearance_mm,
         rula: section.rula,
         rula_arm: section.rula_arm,
         reba: section.reba,
@@ -333,6 +334,7 @@ fn check_limits(check: &Checker<'_>, limits: &Limits) -> Result<(), InputError> 
     check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
     // The solvers stop at 100, and the planner applies a safety factor.
     check.within("limits.load_factor", limits.load_factor, 0.0, 50.0, "a multiple of the load")?;
+    check.not_negative("limits.clearance_mm", limits.clearance_mm, "mm")?;
     for (key, score, most) in [
         ("limits.rula", limits.rula, 7.0),
         ("limits.rula_arm", limits.rula_arm, 12.0),

@@ -11,7 +11,7 @@
 //! - The board, a free body under gravity and the tool's wrench over time (`tool_load.rs`). Only pads and board
 //!   collide. Joint limits are not modelled: the planned angles are inside them, and servos deflect by milliradians.
 //! - The person of the plan stands still and is not part of the dynamics: the trace records their distance from robot
-//!   and board (`person_monitor.rs`).
+//!   and board, and that of the robot from itself and from the board (`distance_monitor.rs`).
 //!
 //! # The pads
 //! The engine connects two flat boxes at four corner contacts, whose resistance to rotation depends on their distance
@@ -74,6 +74,7 @@ mod bodies;
 mod body_chain;
 mod conditions;
 mod convert;
+mod distance_monitor;
 mod error;
 mod feed_forward;
 mod gripper;
@@ -81,7 +82,6 @@ mod hand_over;
 mod mjcf;
 mod pad;
 mod pad_shape;
-mod person_monitor;
 mod phases;
 mod scene;
 mod servo;
@@ -89,9 +89,9 @@ mod tool_load;
 mod world;
 
 pub use conditions::Conditions;
+use distance_monitor::DistanceMonitor;
 pub use error::SimError;
 pub use mjcf::mjcf;
-use person_monitor::PersonMonitor;
 pub use scene::{SimScene, blank_sample};
 use tool_load::ToolLoad;
 
@@ -120,7 +120,7 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
     let tool = ToolLoad::new(checked.plan(), conditions)?;
     let timestep_s = conditions.settings.timestep_s;
     let mut scene = SimScene::new(checked, conditions)?;
-    let mut person = PersonMonitor::of(checked, conditions);
+    let mut distances = DistanceMonitor::of(checked, conditions);
     let mut trace = empty_trace(checked, conditions, tool.steps() + 1);
     let mut untouched_s = 0.0;
     for step in 0..=tool.steps() {
@@ -137,7 +137,7 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
         let sample = &mut trace.samples[step];
         (sample.time_s, sample.phase) = (time_s, phase);
         scene.observe(sample);
-        sample.person_distance_m = person.as_mut().map(|person| person.distance_m(step, sample));
+        distances.observe(step, sample);
         // There are no forces before the first step.
         untouched_s = if step == 0 || sample.has_contact() { 0.0 } else { untouched_s + timestep_s };
         if untouched_s > LOST_AFTER_S {
@@ -145,7 +145,7 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
             break;
         }
     }
-    trace.person_touch = person.and_then(|person| person.touch);
+    distances.finish(&mut trace);
     Ok(trace)
 }
 
@@ -168,5 +168,6 @@ fn empty_trace(checked: &CheckedPlan<'_>, conditions: &Conditions, samples: usiz
         samples: vec![blank_sample(plan); samples],
         broke_down: None,
         person_touch: None,
+        robot_touch: None,
     }
 }

@@ -218,5 +218,6 @@ pub fn blank_sample(plan: &Plan) -> Sample {
         arms: arms.collect(),
         self_check: StepCheck::default(),
         person_distance_m: None,
+        robot_clearance_m: None,
     }
 }

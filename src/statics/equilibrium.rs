@@ -38,6 +38,8 @@ pub struct Equilibrium {
     pub pad_wrenches_p: Vec<[Wrench; 2]>,
     /// Motor torques of each arm, N m.
     pub joint_torque_nm: Vec<DVector<f64>>,
+    /// Displacement of each arm's joints, `-(K_q + dg/dq)^-1 J' w`, rad.
+    pub joint_displacement_rad: Vec<DVector<f64>>,
     /// Displacement of the board at O's origin.
     pub board: Twist,
     /// Displacement of each hand at its grasp point, `-C w`.
@@ -54,14 +56,16 @@ impl Equilibrium {
     ) -> Self {
         let mut joint_torque_nm = Vec::with_capacity(model.hands.len());
         let mut hands = Vec::with_capacity(model.hands.len());
+        let mut joint_displacement_rad = Vec::with_capacity(model.hands.len());
         for (hand, pads) in model.hands.iter().zip(&pad_wrenches_p) {
             let torque = hand.joint_torque_nm(pads);
             let deflection_rad = hand.joint_deflection_rad(&(&torque - &hand.gravity_torque_nm));
             let moved = &hand.jacobian_o * &deflection_rad;
             hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
-            joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * deflection_rad);
+            joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * &deflection_rad);
+            joint_displacement_rad.push(-deflection_rad);
         }
-        Self { load_factor, pad_wrenches_p, joint_torque_nm, board, hands }
+        Self { load_factor, pad_wrenches_p, joint_torque_nm, joint_displacement_rad, board, hands }
     }
 
     /// Displacement of the board relative to a hand at the grasp point, `Ad d + C w`.
@@ -107,13 +111,20 @@ pub struct CompliantResponse {
     pub deflection_m: Vector3<f64>,
     /// Displacement of the board relative to each hand at the grasp point, O axes.
     pub slip: Vec<Twist>,
+    /// Displacement of the board at O's origin, O axes.
+    pub board: Twist,
+    /// Displacement of each arm's joints, rad.
+    pub joints_rad: Vec<DVector<f64>>,
 }
 
 impl CompliantResponse {
     pub(super) fn between(model: &ContactModel, unloaded: &Equilibrium, loaded: Equilibrium) -> Self {
-        let deflection_m = (loaded.board - unloaded.board).at(&model.p_ot).linear;
+        let board = loaded.board - unloaded.board;
+        let deflection_m = board.at(&model.p_ot).linear;
+        let joints = loaded.joint_displacement_rad.iter().zip(&unloaded.joint_displacement_rad);
+        let joints_rad = joints.map(|(loaded_rad, unloaded_rad)| loaded_rad - unloaded_rad).collect();
         let slip = (0..model.hands.len()).map(|hand| loaded.slip(model, hand) - unloaded.slip(model, hand)).collect();
-        Self { equilibrium: loaded, deflection_m, slip }
+        Self { equilibrium: loaded, deflection_m, slip, board, joints_rad }
     }
 
     /// Length of the displacement of the tool tip, mm.

@@ -2,7 +2,7 @@
 
 use super::{
     contact_model::{ContactModel, ContactModelError},
-    equilibrium::ResponseOutcome,
+    equilibrium::{CompliantResponse, ResponseOutcome},
     load_factor::LoadFactorOutcome,
     workspace::StabilityWorkspace,
 };
@@ -29,25 +29,40 @@ impl StabilityWorkspace {
         limits: &Limits,
         kind: StabilityKind,
     ) -> Result<f64, ContactModelError> {
+        self.assess(model, limits, kind).map(|(utilisation, _)| utilisation)
+    }
+
+    /// As [`StabilityWorkspace::utilisation`], with the response at `limits.load_factor` from which it follows; there is none for
+    /// the criterion `paper` or without an equilibrium.
+    ///
+    /// # Errors
+    /// If the contact model is invalid.
+    pub fn assess(
+        &mut self,
+        model: &ContactModel,
+        limits: &Limits,
+        kind: StabilityKind,
+    ) -> Result<(f64, Option<CompliantResponse>), ContactModelError> {
+        const UNSTABLE: (f64, Option<CompliantResponse>) = (f64::INFINITY, None);
         let least = limits.load_factor;
         if model.infeasibility(least).is_some() {
-            return Ok(f64::INFINITY);
+            return Ok(UNSTABLE);
         }
         let mut utilisation = 0.0;
         if kind == StabilityKind::Paper || limits.torque_ratio > 1.0 {
-            let Some(load_factor) = self.load_factor(model)?.load_factor() else { return Ok(f64::INFINITY) };
+            let Some(load_factor) = self.load_factor(model)?.load_factor() else { return Ok(UNSTABLE) };
             utilisation = if least == 0.0 { 0.0 } else { least / load_factor };
         }
         if kind == StabilityKind::Paper {
-            return Ok(utilisation);
+            return Ok((utilisation, None));
         }
-        let ResponseOutcome::Found(response) = self.response(model, least)? else { return Ok(f64::INFINITY) };
+        let ResponseOutcome::Found(response) = self.response(model, least)? else { return Ok(UNSTABLE) };
         utilisation = response.utilisation(model, limits).max(utilisation);
         if least < 1.0 {
-            let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(f64::INFINITY) };
+            let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(UNSTABLE) };
             utilisation = utilisation.max(response.deflection_mm() / limits.deflection_mm);
         }
-        Ok(utilisation)
+        Ok((utilisation, Some(response)))
     }
 
     /// The stability figures of a plan; `None` without a load factor or without a compliant equilibrium at load 1.

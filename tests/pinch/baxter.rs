@@ -76,6 +76,7 @@ pub fn plan(robot: &Robot, operation: Operation, mass_kg: f64, grip_force_n: f64
         human: None,
         comfort: None,
         stability: None,
+        clearance: None,
         planner: None,
         scenario: None,
         benchdog: None,

@@ -151,6 +151,7 @@ pub fn plan(robot: &Robot, x_wg: Pose, grip: &Grip, wrench_g: Wrench) -> Plan {
         human: None,
         comfort: None,
         stability: None,
+        clearance: None,
         planner: None,
         scenario: None,
         benchdog: None,

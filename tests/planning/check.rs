@@ -31,7 +31,7 @@ fn a_good_plan_has_no_flaw() {
     let (plan, robot) = load();
     let checked = checked(&robot, &plan);
     assert_eq!(checked.arms().len(), 2);
-    assert_eq!(checked.first_contact(), None);
+    assert_eq!(checked.first_contact(0.0), None);
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod referee;
 mod shared;
 
 mod check;
+mod clearance;
 mod comfort;
 mod natural;
 mod planner;

@@ -245,8 +245,14 @@ fn motions_are_clear(found: &path::Continuous, size_m: [f64; 3]) {
                 assert!(is.rotation.angle_to(&meant.rotation) < 1e-6);
             }
             let poses = link_poses(&step.q_rad, size_m[2]);
-            let scene =
-                Scene { link_poses: &poses, holding: &[0, 1], board_size_m: size_m, x_wo: step.x_wo, person: &[] };
+            let scene = Scene {
+                link_poses: &poses,
+                holding: &[0, 1],
+                board_size_m: size_m,
+                x_wo: step.x_wo,
+                person: &[],
+                clearance_m: 0.0,
+            };
             assert_eq!(collision.first_violation(&scene), None);
         }
         for pair in motion.windows(2) {

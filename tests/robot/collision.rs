@@ -46,7 +46,7 @@ fn part(p0: [f64; 3], p1: [f64; 3], radius_m: f64) -> PersonPart {
 }
 
 fn scene<'a>(link_poses: &'a [Pose], holding: &'a [usize], x_wo: Pose, person: &'a [PersonPart]) -> Scene<'a> {
-    Scene { link_poses, holding, board_size_m: BOARD_SIZE_M, x_wo, person }
+    Scene { link_poses, holding, board_size_m: BOARD_SIZE_M, x_wo, person, clearance_m: 0.0 }
 }
 
 #[test]
@@ -182,7 +182,8 @@ fn capsule_w(part: &PersonPart) -> Shapes {
     vec![(ParryPose::IDENTITY, SharedShape::capsule(p0, p1, part.radius_m))]
 }
 
-/// The minimum margin over all pairs of primitives, m.
+/// The minimum margin over all pairs of primitives, m. The clearance must be below half the distance that the wrist's links
+/// always have.
 fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
     let links = links_w(robot, scene.link_poses);
     let board = board_w(scene.board_size_m, &scene.x_wo);
@@ -190,7 +191,7 @@ fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
     for a in 0..links.len() {
         for b in a + 1..links.len() {
             if !robot.allowed_collisions.contains(&[a, b]) {
-                margin_m = margin_m.min(distance_m(&links[a], &links[b]));
+                margin_m = margin_m.min(distance_m(&links[a], &links[b]) - scene.clearance_m);
             }
         }
         let holder = scene.holding.iter().find(|&&arm| {
@@ -198,7 +199,7 @@ fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
             robot.links[a].name.starts_with(prefix)
         });
         if holder.is_none() {
-            margin_m = margin_m.min(distance_m(&links[a], &board));
+            margin_m = margin_m.min(distance_m(&links[a], &board) - scene.clearance_m);
         }
     }
     for part in scene.person {
@@ -212,6 +213,11 @@ fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
     margin_m
 }
 
+/// The same scene without the person.
+fn scene_without_person<'a>(scene: &Scene<'a>) -> Scene<'a> {
+    Scene { person: &[], ..*scene }
+}
+
 /// Angles near the neutral posture, with and without collisions.
 fn posture() -> impl Strategy<Value = Vec<f64>> {
     NEUTRAL_RAD.map(|q| q - 0.9..q + 0.9).to_vec()
@@ -219,6 +225,48 @@ fn posture() -> impl Strategy<Value = Vec<f64>> {
 
 fn point() -> impl Strategy<Value = [f64; 3]> {
     [0.2..1.6, -0.8..0.8, -0.6..0.8]
+}
+
+/// The left palm is a box that ends 106.75 mm behind G; a board whose edge faces it is another.
+#[test]
+fn the_palm_keeps_its_clearance_from_the_boards_edge() {
+    let robot = baxter();
+    let model = CollisionModel::new(robot);
+    let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
+    let left = robot.arm_index("left").unwrap();
+    let gripper = &robot.arms[left].gripper;
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), -std::f64::consts::FRAC_PI_2);
+    let held = [left];
+    for (gap_m, clearance_m) in [(0.006, 0.005), (0.004, 0.005), (0.001, 0.0), (-0.002, 0.0), (-0.002, 0.005)] {
+        let x_go = Isometry3::from_parts(Translation3::new(0.0, 0.0, gap_m - 0.10675 + 0.2), turn);
+        let scene = Scene { clearance_m, ..scene(&poses, &held, poses[gripper.frame_link] * x_go, &[]) };
+        let nearest = model.nearest_of_robot(&scene, f64::INFINITY).unwrap();
+        assert_eq!(nearest.bodies, [Body::Link(gripper.palm_link), Body::Board]);
+        // Between two boxes parry's iteration ends well below a micrometre.
+        assert!((nearest.distance_m - gap_m).abs() < 1e-6, "{nearest:?}");
+        assert!((model.min_signed_margin_m(&scene) - (gap_m - clearance_m)).abs() < 1e-6);
+        let violation = model.first_violation(&scene);
+        assert_eq!(violation.is_some(), gap_m <= clearance_m);
+        if let Some(violation) = violation {
+            assert_eq!((violation.bodies, violation.required_m), (nearest.bodies, clearance_m));
+            assert!((violation.distance_m - gap_m.max(0.0)).abs() < 1e-6 && !violation.is_of_person());
+        }
+    }
+}
+
+/// The lower forearm and the hand are 14.8 mm apart whatever the joints between them do, and the upper shoulder and the upper
+/// elbow at most 48 mm: no pair is asked for more than half of that.
+#[test]
+fn links_that_are_always_near_each_other_do_not_make_every_pose_infeasible() {
+    let robot = baxter();
+    let model = CollisionModel::new(robot);
+    let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
+    let of = |clearance_m| Scene { clearance_m, ..scene(&poses, &[], far_away(), &[]) };
+    let nearest = model.nearest_of_robot(&of(0.0), f64::INFINITY).unwrap();
+    assert!(nearest.distance_m < 0.015, "{nearest:?}");
+    assert_eq!(model.first_violation(&of(0.020)), None);
+    // Beyond what the other links have in this pose.
+    assert!(model.first_violation(&of(0.5)).is_some());
 }
 
 #[test]
@@ -315,7 +363,7 @@ proptest! {
     fn the_broad_phase_misses_no_pair(
         left in posture(), right in posture(), place in point(), turn in [-3.0..3.0, -3.0..3.0, -3.0..3.0],
         ends in [point(), point()], radius_m in 0.03..0.12, holds in any::<bool>(),
-        clearance in prop::option::of(0.0..0.05),
+        clearance in prop::option::of(0.0..0.05), clearance_m in prop_oneof![Just(0.0), 0.0..0.007],
     ) {
         let robot = baxter();
         let model = CollisionModel::new(robot);
@@ -326,7 +374,7 @@ proptest! {
         );
         let person = [PersonPart { board_clearance_m: clearance, ..part(ends[0], ends[1], radius_m) }];
         let holding: &[usize] = if holds { &[0, 1] } else { &[] };
-        let scene = scene(&poses, holding, x_wo, &person);
+        let scene = Scene { clearance_m, ..scene(&poses, holding, x_wo, &person) };
         let expected_m = brute_force_margin_m(robot, &scene);
         // Poses are put together in another order, and parry's iteration on round shapes ends up to some 10 um early.
         let found_m = model.min_margin_m(&scene);
@@ -337,6 +385,13 @@ proptest! {
             // Clearances aside, what does not overlap has the same distance either way.
             prop_assert!(signed_m <= 0.0 || (signed_m - found_m).abs() < 1e-9, "{signed_m} {found_m}");
         }
+        let alone = scene_without_person(&scene);
+        let nearest = model.nearest_of_robot(&alone, f64::INFINITY).unwrap();
+        // With the same requirement for all pairs the nearest one has the least margin.
+        let nearest_m = nearest.distance_m - clearance_m;
+        prop_assert!((nearest_m - model.min_signed_margin_m(&alone)).abs() < 1e-9, "{nearest:?}");
+        let within = model.nearest_of_robot(&alone, clearance_m);
+        prop_assert_eq!(within, Some(nearest).filter(|nearest| nearest.distance_m < clearance_m));
         if expected_m.abs() > 1e-4 || expected_m == 0.0 {
             prop_assert_eq!(model.first_violation(&scene).is_some(), expected_m <= 0.0);
         }

@@ -34,6 +34,7 @@ fn no_limits() -> Limits {
         creep_mm_s: 1e9,
         torque_ratio: 1e9,
         load_factor: 1.0,
+        clearance_mm: 0.0,
         rula: None,
         rula_arm: None,
         reba: None,

@@ -20,6 +20,8 @@ pub struct GraspingRobot {
     /// Where the search looks for poses of the board.
     pub domain: SearchDomain,
     pub collision: CollisionModel,
+    /// Required distance of the robot from itself and from the board, m.
+    pub clearance_m: f64,
     /// Of each link the arm that moves it, as an index into `arms`, and the last of the arm's joints before the link.
     pub moved_by: Vec<Option<(usize, usize)>>,
     /// The indices of all arms: each of them grasps.
@@ -39,8 +41,8 @@ pub struct GraspingArm {
 }
 
 impl GraspingRobot {
-    /// Prepares a robot for boards with these sides.
-    pub fn new(robot: &Robot, size_m: [f64; 3]) -> Self {
+    /// Prepares a robot for boards with these sides and this clearance, m.
+    pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
         let arms = robot.arms.iter().enumerate().map(|(index, arm)| {
             let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, size_m[2]));
             let chain = Chain::new(robot, index, finger_travel_m[0]);
@@ -62,6 +64,7 @@ impl GraspingRobot {
             size_m,
             arms,
             collision: CollisionModel::new(robot),
+            clearance_m,
             moved_by: moved_by(robot),
             grasping: (0..robot.arms.len()).collect(),
         }
@@ -80,7 +83,8 @@ impl GraspingRobot {
 
     /// The collision scene of robot and board without a person.
     pub fn scene<'s>(&'s self, link_poses: &'s [Pose], x_wo: Pose) -> Scene<'s> {
-        Scene { link_poses, holding: &self.grasping, board_size_m: self.size_m, x_wo, person: &[] }
+        let (holding, board_size_m, clearance_m) = (&self.grasping[..], self.size_m, self.clearance_m);
+        Scene { link_poses, holding, board_size_m, x_wo, person: &[], clearance_m }
     }
 
     /// True if the arms and the board are clear of each other.

@@ -27,7 +27,7 @@ use crate::{
     robot::Robot,
 };
 
-/// Collision-free grasps of a robot for boards of one size. It depends on nothing else.
+/// Collision-free grasps of a robot for boards of one size with one clearance. It depends on nothing else.
 pub struct GraspLibrary {
     /// The robot, prepared for boards of that size.
     pub robot: GraspingRobot,
@@ -59,10 +59,10 @@ impl LibraryEntry {
 }
 
 impl GraspLibrary {
-    /// The library of a robot for boards with these sides, m; it has fewer than the usual number of entries where grasps are
-    /// rare.
-    pub fn new(robot: &Robot, size_m: [f64; 3]) -> Self {
-        let robot = GraspingRobot::new(robot, size_m);
+    /// The library of a robot for boards with these sides, m, that keeps a clearance, m; it has fewer than the usual number of
+    /// entries where grasps are rare.
+    pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
+        let robot = GraspingRobot::new(robot, size_m, clearance_m);
         let mut random = Pcg64::new(SEED, 0);
         let mut entries = Vec::with_capacity(GRASPS);
         let mut draws = 0;

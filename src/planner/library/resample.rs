@@ -155,7 +155,7 @@ mod tests {
 
     fn library() -> GraspLibrary {
         let loaded = paper::operations()[0].load().unwrap();
-        GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m)
+        GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m, loaded.scenario.limits.clearance_m())
     }
 
     #[test]

@@ -98,7 +98,7 @@ impl<'a> PathProblem<'a> {
     pub fn remove_unstable(&mut self, grasp: &BoardGrasp, estimates: &mut [f64]) {
         let candidate = Candidate::without_person(grasp);
         for (evaluator, estimate) in self.evaluators.iter_mut().zip(estimates) {
-            if estimate.is_finite() && evaluator.utilisation(&candidate, &grasp.x_wo) > 1.0 {
+            if estimate.is_finite() && evaluator.test_grasp(&candidate, &grasp.x_wo).is_err() {
                 *estimate = f64::NEG_INFINITY;
             }
         }
@@ -138,7 +138,7 @@ impl<'a> PathProblem<'a> {
         }
         self.evaluations += 1;
         let candidate = Candidate::without_person(grasp);
-        if self.evaluators[point].utilisation(&candidate, &grasp.x_wo) > 1.0 {
+        if self.evaluators[point].test_grasp(&candidate, &grasp.x_wo).is_err() {
             return None;
         }
         let link_poses = self.library.robot.link_poses(&grasp.arms);

@@ -282,7 +282,9 @@ mod tests {
                 let mut loaded = operation.load().unwrap();
                 loaded.scenario.planner.budget = Budget::Fast;
                 loaded.scenario.human.place = place;
-                compare_starts(&loaded.scenario, &GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m));
+                let clearance_m = loaded.scenario.limits.clearance_m();
+                let library = GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m, clearance_m);
+                compare_starts(&loaded.scenario, &library);
             }
         }
     }

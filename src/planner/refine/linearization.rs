@@ -7,6 +7,7 @@ use super::{
         candidate::Candidate,
         domain::{ANGLE_RAD, DEPTH_M},
         evaluate::{self, Configuration, Evaluator, Feasible},
+        load_shift::LoadShift,
         params::refine::{
             CLEARANCE_MARGIN_M, FULL_UTILISATION, MARGIN, NEAR_M, RELAXED_UTILISATION, STABILITY_DIFFERENCE,
         },
@@ -32,31 +33,67 @@ pub struct Linearization {
     /// The constraints: simple ones, then pairs of near bodies, then stability if it is included.
     pub constraints: Vec<LinearConstraint>,
     /// The pairs of near bodies.
-    near: Vec<[(BodyRef, usize); 2]>,
+    near: Vec<NearBodies>,
     /// Gradient of the utilisation of stability, if it is included.
     stability: Option<DVector<f64>>,
     /// True if that gradient is an update of one at another candidate.
     stability_is_updated: bool,
 }
 
+/// Two primitives that are near each other.
+#[derive(Clone, Copy, Debug)]
+struct NearBodies {
+    bodies: [(BodyRef, usize); 2],
+    /// How much nearer the load brings them, m, at least 0; taken as constant in a step.
+    approach_m: f64,
+}
+
+/// A candidate with the displacement by its load.
+#[derive(Clone, Copy)]
+pub struct Shifted<'a> {
+    pub candidate: &'a Candidate,
+    pub configuration: &'a Configuration,
+    pub shift: &'a Option<LoadShift>,
+}
+
+impl Shifted<'_> {
+    /// The pairs of near bodies of robot and board under the load; none if the clearance is not kept under the load.
+    fn near(&self, problem: &Problem<'_>) -> Vec<NearPair> {
+        let Some(shift) = self.shift else { return Vec::new() };
+        let link_poses = problem.robot.link_poses(&shift.arms(&self.candidate.arms));
+        let x_wo = shift.board(&self.configuration.placement.x_wo);
+        problem.robot.collision.near(&problem.robot.scene(&link_poses, x_wo), NEAR_M)
+    }
+}
+
+/// The pair of the same primitives.
+fn same<'n>(near: &'n [NearPair], bodies: &[(BodyRef, usize); 2]) -> Option<&'n NearPair> {
+    near.iter().find(|near| near.bodies == *bodies)
+}
+
 impl Linearization {
     /// Linearises about a candidate, without stability.
     pub fn new(problem: &Problem<'_>, here: &Feasible) -> Self {
-        let Feasible { candidate, configuration, comfort, .. } = here;
+        let Feasible { candidate, configuration, comfort, stability, .. } = here;
         let variables = Variables::new(problem, candidate, &configuration.placement);
         let margins = simple_margins(problem, candidate, configuration, &comfort.activations);
         let near = problem.robot.collision.near(&configuration.scene(problem), NEAR_M);
+        let loaded = Shifted { candidate, configuration, shift: &stability.shift }.near(problem);
+        let approach_m =
+            |near: &NearPair| same(&loaded, &near.bodies).map_or(0.0, |loaded| near.margin_m - loaded.margin_m);
+        let approaches_m: Vec<f64> = near.iter().map(|near| approach_m(near).max(0.0)).collect();
         let jacobian = Jacobian::new(problem, here, &variables);
         let simple = jacobian.simple_gradients().into_iter().zip(margins);
         let mut constraints: Vec<_> =
             simple.map(|(gradient, margin)| LinearConstraint { gradient, margin: margin - MARGIN }).collect();
-        constraints.extend(near.iter().map(|near| LinearConstraint {
+        constraints.extend(near.iter().zip(&approaches_m).map(|(near, approach_m)| LinearConstraint {
             gradient: jacobian.distance_gradient(near),
-            margin: near.margin_m - CLEARANCE_MARGIN_M,
+            margin: near.margin_m - approach_m - CLEARANCE_MARGIN_M,
         }));
         let gradient = jacobian.objective_gradient();
         drop(jacobian);
-        let near = near.iter().map(|near| near.bodies).collect();
+        let near = near.iter().zip(approaches_m);
+        let near = near.map(|(near, approach_m)| NearBodies { bodies: near.bodies, approach_m }).collect();
         Self { variables, gradient, constraints, near, stability: None, stability_is_updated: false }
     }
 
@@ -73,9 +110,10 @@ impl Linearization {
     ) -> bool {
         let simple = simple_margins(problem, candidate, configuration, &comfort.activations);
         let near = problem.robot.collision.near(&configuration.scene(problem), NEAR_M);
-        let mut violated = near.iter().any(|near| near.margin_m <= 0.0 && !self.near.contains(&near.bodies));
-        let near_margin = |bodies: &[(BodyRef, usize); 2]| {
-            near.iter().find(|near: &&NearPair| near.bodies == *bodies).map(|near| near.margin_m - CLEARANCE_MARGIN_M)
+        let is_known = |near: &NearPair| self.near.iter().any(|known| known.bodies == near.bodies);
+        let mut violated = near.iter().any(|near| near.margin_m <= 0.0 && !is_known(near));
+        let near_margin = |known: &NearBodies| {
+            same(&near, &known.bodies).map(|near| near.margin_m - known.approach_m - CLEARANCE_MARGIN_M)
         };
         let margins = simple.iter().map(|&margin| Some(margin - MARGIN)).chain(self.near.iter().map(near_margin));
         for ((corrected, linear), margin) in corrected.iter_mut().zip(&self.constraints).zip(margins) {
@@ -87,6 +125,31 @@ impl Linearization {
             violated |= margin < -MARGIN.max(CLEARANCE_MARGIN_M);
         }
         violated
+    }
+
+    /// Shifts the constraints of near bodies after a step that brought bodies too close under the load (`corrected` are the
+    /// constraints of the step's program); false if nothing can be learned from it.
+    pub fn correct_loaded(
+        &self,
+        problem: &Problem<'_>,
+        there: Shifted<'_>,
+        d: &DVector<f64>,
+        corrected: &mut [LinearConstraint],
+    ) -> bool {
+        let loaded = there.near(problem);
+        let first = self.constraints.len() - self.near.len() - usize::from(self.stability.is_some());
+        let mut learned = false;
+        for (number, known) in self.near.iter().enumerate() {
+            let Some(loaded) = same(&loaded, &known.bodies) else { continue };
+            let (linear, corrected) = (&self.constraints[first + number], &mut corrected[first + number]);
+            let margin = loaded.margin_m - CLEARANCE_MARGIN_M;
+            let error = margin - (linear.margin + linear.gradient.dot(d));
+            if margin < 0.0 && error < 0.0 && linear.margin + error < corrected.margin {
+                corrected.margin = linear.margin + error;
+                learned = true;
+            }
+        }
+        learned
     }
 
     /// Includes stability in the constraints after a step that violated it; false if nothing can be learned from it.
@@ -103,12 +166,12 @@ impl Linearization {
         }
         let was_included = self.stability.is_some();
         let gradient = self.stability_gradient(evaluator, here);
-        let margin = FULL_UTILISATION - here.utilisation;
+        let margin = FULL_UTILISATION - here.stability.utilisation;
         if !was_included {
             self.constraints.push(LinearConstraint { gradient: -&gradient, margin });
             corrected.push(LinearConstraint { gradient: -gradient, margin });
         } else if let Some(stability) = corrected.last_mut() {
-            let error = (here.utilisation + gradient.dot(d)) - utilisation;
+            let error = (here.stability.utilisation + gradient.dot(d)) - utilisation;
             stability.margin = stability.margin.min(margin + error.min(0.0));
         }
         true
@@ -116,9 +179,9 @@ impl Linearization {
 
     /// Includes stability in the constraints if it is near its limit or beyond.
     pub fn include_stability(&mut self, evaluator: &mut Evaluator<'_>, here: &Feasible) {
-        if here.utilisation >= RELAXED_UTILISATION && here.utilisation.is_finite() {
+        if here.stability.utilisation >= RELAXED_UTILISATION && here.stability.utilisation.is_finite() {
             let gradient = -self.stability_gradient(evaluator, here);
-            self.constraints.push(LinearConstraint { gradient, margin: FULL_UTILISATION - here.utilisation });
+            self.constraints.push(LinearConstraint { gradient, margin: FULL_UTILISATION - here.stability.utilisation });
         }
     }
 
@@ -143,9 +206,10 @@ impl Linearization {
                     let model = evaluate::contact_model(&evaluator.problem, &candidate, &x_wo).ok()?;
                     local.utilisation(&model, &limits)
                 })
-                .unwrap_or_else(|| evaluator.utilisation(&candidate, &x_wo));
+                .unwrap_or_else(|| evaluator.assess(&candidate, &x_wo).utilisation);
             // Where there is no equilibrium the difference says nothing: a positive entry keeps the step away.
-            gradient[number] = if there.is_finite() { (there - here.utilisation) / STABILITY_DIFFERENCE } else { 1.0 };
+            gradient[number] =
+                if there.is_finite() { (there - here.stability.utilisation) / STABILITY_DIFFERENCE } else { 1.0 };
         }
         self.stability = Some(gradient.clone());
         gradient
@@ -154,12 +218,13 @@ impl Linearization {
     /// Takes over the gradient of the utilisation from the linearisation before a step (Broyden's rank-one update).
     pub fn update_stability(&mut self, before: &Self, from: &Feasible, to: &Feasible, d: &DVector<f64>) {
         let Some(known) = &before.stability else { return };
-        if to.utilisation < RELAXED_UTILISATION {
+        if to.stability.utilisation < RELAXED_UTILISATION {
             return;
         }
-        let error = to.utilisation - from.utilisation - known.dot(d);
+        let error = to.stability.utilisation - from.stability.utilisation - known.dot(d);
         let gradient = known + d * (error / d.norm_squared());
-        self.constraints.push(LinearConstraint { gradient: -&gradient, margin: FULL_UTILISATION - to.utilisation });
+        self.constraints
+            .push(LinearConstraint { gradient: -&gradient, margin: FULL_UTILISATION - to.stability.utilisation });
         self.stability = Some(gradient);
         self.stability_is_updated = true;
     }
@@ -173,7 +238,7 @@ impl Linearization {
         self.stability_is_updated = false;
         let gradient = -self.stability_gradient(evaluator, here);
         if let Some(stability) = self.constraints.last_mut() {
-            *stability = LinearConstraint { gradient, margin: FULL_UTILISATION - here.utilisation };
+            *stability = LinearConstraint { gradient, margin: FULL_UTILISATION - here.stability.utilisation };
         }
         true
     }

@@ -33,9 +33,9 @@ pub fn repair(evaluator: &mut Evaluator<'_>, mut candidate: Candidate) -> Option
 /// The shortest step that satisfies the linearised constraints. Stability is among them only if it is what is violated: it
 /// costs more than all others, and a candidate that collides has to move anyway.
 fn step(evaluator: &mut Evaluator<'_>, rejected: Rejected) -> Option<Candidate> {
-    let Rejected { candidate, configuration, utilisation, .. } = rejected;
+    let Rejected { candidate, configuration, stability, .. } = rejected;
     let comfort = evaluate::comfort(&evaluator.problem, &candidate, &configuration);
-    let here = Feasible { objective: comfort.objective, candidate, configuration, comfort, utilisation };
+    let here = Feasible { objective: comfort.objective, candidate, configuration, comfort, stability };
     let mut linearization = Linearization::new(&evaluator.problem, &here);
     linearization.include_stability(evaluator, &here);
     let count = linearization.gradient.len();

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{
     super::{
         evaluate::{self, Configuration, Evaluator, Feasible},
+        outcome::Rejection,
         params::{
             RefinementRound,
             refine::{CORRECTIONS, GOOD, LEAST_GAIN, POOR, RADIUS_RANGE, SHRINK, START_RADIUS},
@@ -17,7 +18,7 @@ use super::{
         problem::Problem,
         qp::{self, LinearConstraint},
     },
-    linearization::Linearization,
+    linearization::{Linearization, Shifted},
 };
 
 /// Refines the starts round by round; the best first.
@@ -129,15 +130,22 @@ impl Iterate {
         {
             return Trial::Failed;
         }
-        let utilisation = evaluator.utilisation(&candidate, &configuration.placement.x_wo);
-        if utilisation <= 1.0 {
-            return Trial::Feasible(Box::new(evaluator.feasible(candidate, configuration, comfort, utilisation)));
-        }
-        if self.linearization.correct_stability(evaluator, &self.here, utilisation, d, &mut corrected) {
-            Trial::Violated(corrected)
-        } else {
-            Trial::Failed
-        }
+        let x_wo = &configuration.placement.x_wo;
+        let stability = evaluator.assess(&candidate, x_wo);
+        let learned = match evaluate::test_stability(&evaluator.problem, &candidate, x_wo, &stability) {
+            Ok(()) => {
+                return Trial::Feasible(Box::new(evaluator.feasible(candidate, configuration, comfort, stability)));
+            }
+            Err(Rejection::LoadedCollision) => {
+                let there = Shifted { candidate: &candidate, configuration: &configuration, shift: &stability.shift };
+                self.linearization.correct_loaded(&evaluator.problem, there, d, &mut corrected)
+            }
+            Err(_) => {
+                let utilisation = stability.utilisation;
+                self.linearization.correct_stability(evaluator, &self.here, utilisation, d, &mut corrected)
+            }
+        };
+        if learned { Trial::Violated(corrected) } else { Trial::Failed }
     }
 
     /// Moves to a candidate and updates the Hessian.
