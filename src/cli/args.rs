@@ -302,7 +302,10 @@ pub struct LimitArgs {
     /// Rotation of a hand relative to the board, degrees
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = positive)]
     pub slip_deg: Option<f64>,
-    /// Displacement of the board's tool point, mm
+    /// Displacement of the board's tool point under the board's weight, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
+    pub sag_mm: Option<f64>,
+    /// Displacement of the board's tool point under the load, mm
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = positive)]
     pub deflection_mm: Option<f64>,
     /// Rate of slip in the second half of the hold phase, mm/s

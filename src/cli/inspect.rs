@@ -14,7 +14,7 @@ use crate::{
     judge::judge,
     model::{
         scenario::{Expectation, Limits},
-        verdict::Verdict,
+        verdict::{Verdict, VerdictKind},
     },
     record::{self, RecordError, RecordedRun, RecordedSummary},
     report::{columns, console},
@@ -33,8 +33,8 @@ pub fn inspect(args: &InspectArgs) -> Result<Exit, CliError> {
 }
 
 fn wants_check(args: &InspectArgs) -> bool {
-    let LimitArgs { slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio } = args.limits;
-    let limits = [slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio];
+    let LimitArgs { slip_mm, slip_deg, sag_mm, deflection_mm, creep_mm_s, torque_ratio } = args.limits;
+    let limits = [slip_mm, slip_deg, sag_mm, deflection_mm, creep_mm_s, torque_ratio];
     args.check || args.scenario.is_some() || limits.iter().any(Option::is_some)
 }
 
@@ -48,11 +48,19 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
         }
         None => (scenario.limits, Expectation { verdict: verdict.expected }),
     };
-    let judgement = judge(&trace, &with(limits, args.limits));
+    let given = with(limits, args.limits);
+    let mut judgement = judge(&trace, &given);
     if judgement.fingerprint != verdict.fingerprint {
         let (found, expected) = (judgement.fingerprint, verdict.fingerprint);
         let problem = format!("found a trace with fingerprint {found}, expected {expected}, that of the verdict");
         return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
+    }
+    if verdict.verdict == VerdictKind::NoVerdict && given == scenario.limits {
+        // Why there is none may not be in the trace: other time steps, or the statics.
+        (judgement.verdict, judgement.reason) = (verdict.verdict, verdict.reason.clone());
+    }
+    if given == scenario.limits {
+        judgement.confirmation.clone_from(&verdict.confirmation);
     }
     Ok(judgement.to_verdict(&verdict.name, expect.verdict, verdict.seed, versions()))
 }
@@ -61,6 +69,7 @@ fn with(limits: Limits, given: LimitArgs) -> Limits {
     Limits {
         slip_mm: given.slip_mm.unwrap_or(limits.slip_mm),
         slip_deg: given.slip_deg.unwrap_or(limits.slip_deg),
+        sag_mm: given.sag_mm.unwrap_or(limits.sag_mm),
         deflection_mm: given.deflection_mm.unwrap_or(limits.deflection_mm),
         creep_mm_s: given.creep_mm_s.unwrap_or(limits.creep_mm_s),
         torque_ratio: given.torque_ratio.unwrap_or(limits.torque_ratio),

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use super::{exit::CliError, planners::Planners, versions::versions};
 use crate::{
     check::CheckedPlan,
-    judge::{Judgement, judge},
+    judge::{Judgement, confirmed, judge},
     model::{
         FORMAT,
+        load::Uncertainty,
         plan::{Plan, PostureFigures},
         scenario::Scenario,
         trace::Trace,
@@ -17,6 +18,7 @@ use crate::{
     robot::Robot,
     scenario::LoadedScenario,
     sim::{self, Conditions},
+    statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace},
 };
 
 /// A scenario or plan with its verdict.
@@ -68,11 +70,45 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
         let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, reason);
         return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
     }
-    let trace = sim::simulate(&checked, &Conditions::of(scenario)).map_err(CliError::Simulation)?;
-    let judgement = judge(&trace, &scenario.limits);
+    let (trace, judgement) = simulated_and_judged(&checked, scenario)?;
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
     Ok(Run { verdict, posture, plan: Some(plan), simulated: Some((trace, judgement)) })
+}
+
+/// The simulation of a plan and its judgement, confirmed at shorter time steps if it is near to a limit. A grasp that holds
+/// the board only by the simulation, and provably not by the statics, has no verdict.
+fn simulated_and_judged(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<(Trace, Judgement), CliError> {
+    let run = |timestep_s: f64| {
+        let mut conditions = Conditions::of(scenario);
+        conditions.settings.timestep_s = timestep_s;
+        let trace = sim::simulate(checked, &conditions).map_err(CliError::Simulation)?;
+        let judgement = judge(&trace, &scenario.limits);
+        Ok::<_, CliError>((trace, judgement))
+    };
+    let (trace, judgement) = confirmed(scenario.simulation.timestep_s, run)?;
+    let refuted = judgement.verdict == VerdictKind::Holds && cannot_carry_the_weight(checked, scenario);
+    if !refuted {
+        return Ok((trace, judgement));
+    }
+    let reason =
+        "the simulation holds the board, but the statics prove that the hands cannot carry its weight".to_owned();
+    Ok((trace, Judgement { verdict: VerdictKind::NoVerdict, reason: Some(reason), ..judgement }))
+}
+
+/// True if the statics prove that the hands cannot carry the board's weight with the simulated friction and grip forces.
+fn cannot_carry_the_weight(checked: &CheckedPlan<'_>, scenario: &Scenario) -> bool {
+    let Uncertainty { friction_scale, grip_force_scale, .. } = scenario.uncertainty;
+    let Ok(mut model) = ContactModel::of_plan(checked, scenario.grip.friction * friction_scale) else { return false };
+    for hand in &mut model.hands {
+        hand.grip_force_n *= grip_force_scale;
+    }
+    match StabilityWorkspace::new().friction_load_factor(&model) {
+        Ok(LoadFactorOutcome::GravityInfeasible { certificate }) => {
+            certificate.proves_infeasible(&model).unwrap_or(false)
+        }
+        _ => false,
+    }
 }
 
 /// The verdict on a scenario for which nothing was simulated.
@@ -87,6 +123,7 @@ fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason:
         self_checks: Vec::new(),
         first_failure: None,
         peak_torque_ratio: BTreeMap::new(),
+        confirmation: None,
         reason: Some(reason),
         versions: versions(),
         seed: scenario.planner.seed,

@@ -27,11 +27,11 @@ const PERSON_OVERLAP_LIMIT_MM: f64 = 0.0;
 const CLEARANCE_LIMIT_MM: f64 = 0.0;
 
 /// Slip above which the board counts as dropped, mm (docs/method.md#86-contact).
-const DROP_MM: f64 = 50.0;
+pub(super) const DROP_MM: f64 = 50.0;
 
 /// The order of checks that are crossed at the same sample; the first one determines the verdict: loss of the board,
 /// then the contacts, then consequences.
-const PRECEDENCE: [CheckKind; 10] = [
+const PRECEDENCE: [CheckKind; 11] = [
     CheckKind::Drop,
     CheckKind::ContactLost,
     CheckKind::PadOpen,
@@ -39,6 +39,7 @@ const PRECEDENCE: [CheckKind; 10] = [
     CheckKind::SlipRotation,
     CheckKind::Clearance,
     CheckKind::TorqueRatio,
+    CheckKind::Sag,
     CheckKind::Deflection,
     CheckKind::PersonOverlap,
     CheckKind::Creep,
@@ -74,8 +75,8 @@ impl Series {
     }
 }
 
-/// Every check, in the order of tables. `judged` are the samples from the reference to the end of the load; `measures`
-/// starts at the same sample. Creep is left out if the hold phase is too short for a slope, if its load is not constant
+/// Every check, in the order of tables. `judged` are the samples from the hand-over to the end of the load or the loss of
+/// the board; `measures` starts at the same sample. Creep is left out if the hold phase is too short for a slope, if its load is not constant
 /// (a hand that follows the load does not creep), or if `is_complete` is false (the second half of the hold phase is
 /// not known).
 pub(super) fn findings(
@@ -90,12 +91,13 @@ pub(super) fn findings(
         let series = |hand: &HandMeasures| Series::new(format!("{} hand", hand.name), &series(hand)[..count]);
         sampled(kind, limit, measures.hands.iter().map(series).collect())
     };
-    let deflection = Series::new(String::new(), &measures.deflection_mm[..count]);
+    let board = |kind, limit, values: &[f64]| sampled(kind, limit, vec![Series::new(String::new(), &values[..count])]);
     let joint = |joint: &JointMeasures| Series::new(joint.name.clone(), &joint.torque_ratio[..count]);
     let mut findings = vec![
         hand(CheckKind::Slip, limits.slip_mm, |hand| &hand.slip_mm),
         hand(CheckKind::SlipRotation, limits.slip_deg, |hand| &hand.slip_deg),
-        sampled(CheckKind::Deflection, limits.deflection_mm, vec![deflection]),
+        board(CheckKind::Sag, limits.sag_mm, &measures.sag_mm),
+        board(CheckKind::Deflection, limits.deflection_mm, &measures.deflection_mm),
     ];
     findings.extend(if is_complete { creep(trace, judged, limits.creep_mm_s) } else { None });
     findings.extend([
@@ -168,11 +170,11 @@ fn clearance(trace: &Trace, distances_mm: Option<&[f64]>) -> Option<Finding> {
 }
 
 /// The time for which a condition has been true at each sample, ms; 0 where it is false. A sample's forces are those of
-/// the step before it, so that step counts. The step before the first sample is not judged; the length of the next one
-/// is used, so that a condition that is true from the start counts.
+/// the step before it, so that step counts. The step before the first sample is not judged; the length of the next one,
+/// or a microsecond, is used, so that a condition that is true from the start counts.
 fn duration_ms(judged: &[Sample], condition: impl Fn(&Sample) -> bool) -> Vec<f64> {
     let step_before_s = |index: usize| match index {
-        0 => judged.get(1).map_or(0.0, |next| next.time_s - judged[0].time_s),
+        0 => judged.get(1).map_or(1e-6, |next| next.time_s - judged[0].time_s),
         _ => judged[index].time_s - judged[index - 1].time_s,
     };
     let mut lasted_s = 0.0;

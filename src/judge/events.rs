@@ -74,6 +74,7 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
     let happened = match finding.check.name {
         CheckKind::Slip => "slides by more than",
         CheckKind::SlipRotation => "turns by more than",
+        CheckKind::Sag => "the tool tip sinks under the board's weight by more than",
         CheckKind::Deflection => "the tool tip deflects by more than",
         CheckKind::Creep => "creeps faster than",
         CheckKind::TorqueRatio => "needs more than its torque limit times",
@@ -82,9 +83,11 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
         CheckKind::Drop => "has dropped the board: it slid by more than",
         CheckKind::PersonOverlap => "overlap by more than",
         CheckKind::Clearance => "are closer to each other than",
-        CheckKind::Penetration | CheckKind::EnergyCreated | CheckKind::ForceResidual | CheckKind::CouplingDrift => {
-            "the simulation violates the laws of mechanics by more than"
-        }
+        CheckKind::Penetration
+        | CheckKind::EnergyCreated
+        | CheckKind::ForceResidual
+        | CheckKind::CouplingDrift
+        | CheckKind::Chatter => "the simulation violates the laws of mechanics by more than",
     };
     let unit = match finding.check.name {
         CheckKind::TorqueRatio => String::new(),

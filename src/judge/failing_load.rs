@@ -91,6 +91,7 @@ mod tests {
             self_checks: Vec::new(),
             first_failure: None,
             peak_torque_ratio: std::collections::BTreeMap::new(),
+            confirmation: None,
             reason: None,
             fingerprint: String::new(),
             events: Vec::new(),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::model::{
     FORMAT,
     measures::{Event, Measures},
-    verdict::{Check, Failure, Verdict, VerdictKind},
+    verdict::{Check, Confirmation, Failure, Verdict, VerdictKind},
 };
 
 /// The judgement of a trace.
@@ -19,8 +19,10 @@ pub struct Judgement {
     pub self_checks: Vec<Check>,
     /// The first limit that was crossed.
     pub first_failure: Option<Failure>,
-    /// Largest torque over limit of each joint, from the reference to the end of the load.
+    /// Largest torque over limit of each joint, over the judged samples.
     pub peak_torque_ratio: BTreeMap<String, f64>,
+    /// Simulations at shorter time steps, if there were any, see [`confirmed`](super::confirmed).
+    pub confirmation: Option<Confirmation>,
     /// Why there is no verdict.
     pub reason: Option<String>,
     /// SHA-256 of the trace.
@@ -51,6 +53,7 @@ impl Judgement {
             self_checks: self.self_checks.clone(),
             first_failure: self.first_failure.clone(),
             peak_torque_ratio: self.peak_torque_ratio.clone(),
+            confirmation: self.confirmation.clone(),
             reason: self.reason.clone(),
             versions,
             seed,

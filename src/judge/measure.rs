@@ -1,28 +1,39 @@
 //! The measured series of a trace.
 
+use nalgebra::{Point3, Vector3};
+
 use crate::model::{
     frames::Pose,
     measures::{HandMeasures, JointMeasures, Measures},
     trace::{Sample, Trace},
 };
 
-/// Slip, deflection and torque ratios of the samples of a trace, relative to the first one
-/// (docs/method.md#81-reference-state):
+/// Slip, sag, deflection and torque ratios of the samples of a trace, the first of which is the hand-over and
+/// `settled` the end of settling (docs/method.md#81-reference-states):
 ///
-/// - slip of a hand: `|p_OC(t) - p_OC(ref)|` and the angle of `R_OC(ref)' R_OC(t)`, C at the centre between its pads;
-/// - deflection: `|X_WO(t) p_OT - X_WO(ref) p_OT|`, T the tool point at that time;
+/// - slip of a hand: `|p_OC(t) - p_OC(0)|` and the angle of `R_OC(0)' R_OC(t)`, C at the centre between its pads;
+/// - sag: `|X_WO(t) p_OT - X_WO(0) p_OT|` up to the end of settling, T the tool point there;
+/// - deflection: `|X_WO(t) p_OT - X_WO(settled) p_OT|` from then on, T the tool point at that time;
 /// - torque ratio of a joint: `|tau_demanded| / tau_max`;
 /// - clearance: the distance of the robot from itself and from the board.
-pub(super) fn measures(trace: &Trace, samples: &[Sample]) -> Measures {
-    let deflection_mm = |sample: &Sample| {
-        let p_ot = nalgebra::Point3::from(sample.p_ot_m);
-        1e3 * (sample.x_wo * p_ot - samples[0].x_wo * p_ot).norm()
+pub(super) fn measures(trace: &Trace, samples: &[Sample], settled: usize) -> Measures {
+    let moved_mm = |sample: &Sample, since: &Sample, p_ot_m: Vector3<f64>| {
+        let p_ot = Point3::from(p_ot_m);
+        1e3 * (sample.x_wo * p_ot - since.x_wo * p_ot).norm()
     };
+    let sag_mm = |index: usize| moved_mm(&samples[index.min(settled)], &samples[0], trace.p_ot_m);
+    let deflection_mm = |sample: &Sample| moved_mm(sample, &samples[settled], sample.p_ot_m);
     Measures {
         time_s: samples.iter().map(|sample| sample.time_s).collect(),
+        judged: 0,
         load_factor: samples.iter().map(|sample| sample.load_factor).collect(),
         hands: (0..trace.arms.len()).map(|arm| hand_measures(trace, samples, arm)).collect(),
-        deflection_mm: samples.iter().map(deflection_mm).collect(),
+        sag_mm: (0..samples.len()).map(sag_mm).collect(),
+        deflection_mm: samples[..settled]
+            .iter()
+            .map(|_| 0.0)
+            .chain(samples[settled..].iter().map(deflection_mm))
+            .collect(),
         clearance_mm: clearance_mm(samples).unwrap_or_default(),
         joints: (0..trace.arms.len()).flat_map(|arm| joint_measures(trace, samples, arm)).collect(),
     }

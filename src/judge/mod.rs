@@ -1,10 +1,10 @@
 //! The judge: compares a trace with its limits (docs/method.md#8-judgement).
 //!
-//!
 //! A pure function of trace and limits. It must not depend on how the trace was made, on the planner's prediction or on
 //! the expected verdict.
 
 mod checks;
+mod confirm;
 mod events;
 mod failing_load;
 mod fingerprint;
@@ -16,6 +16,7 @@ mod tests;
 
 use std::collections::BTreeMap;
 
+pub use confirm::confirmed;
 pub use failing_load::{FailingLoad, failing_load};
 pub use fingerprint::fingerprint;
 pub use judgement::Judgement;
@@ -29,10 +30,10 @@ use crate::model::{
 
 /// Judges a trace.
 ///
-/// The reference is the last sample of settling (docs/method.md#81-reference-state); a board lost before that drops.
-/// The samples from there to the end of the load are judged, those of the release are not. A value equal to its limit
-/// passes. The earliest crossing determines the verdict; of several at the same sample the loss of the board comes
-/// first, then the contacts (pad, slip, rotation), then the clearance, torque, deflection, the person and creep.
+/// Judged are the samples from the hand-over of the board (docs/method.md#81-reference-states) to the end of the load, or to
+/// the sample at which the board is lost: what follows tells nothing about the hold. A value equal to its limit passes. The
+/// earliest crossing determines the verdict; of several at the same sample the loss of the board comes first, then the
+/// contacts (pad, slip, rotation), then the clearance, torque, sag, deflection, the person and creep.
 ///
 /// A trace that breaks down is judged up to its last valid sample. If a limit was crossed before, it determines the
 /// verdict. Otherwise there is no verdict, as the effect of the rest of the load is unknown.
@@ -42,16 +43,18 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
         return no_verdict(trace, Measures::default(), Vec::new(), reason);
     }
     let ValidPart { samples, ends_because } = valid_part(trace);
-    let reference = reference(samples);
-    let measures = measure::measures(trace, &samples[reference..]);
-    let judged = judged(samples, reference);
+    let hand_over = last_of(samples, Phase::Grip);
+    let settled = last_of(samples, Phase::Settle).max(hand_over);
+    let mut measures = measure::measures(trace, &samples[hand_over..], settled - hand_over);
+    let Judged { samples: judged, is_lost } = judged(&samples[hand_over..], &measures);
+    measures.judged = judged.len();
     if let Some(reason) = no_verdict_reason(trace, judged, ends_because.as_deref()) {
         return no_verdict(trace, measures, Vec::new(), reason);
     }
-    let findings = checks::findings(trace, judged, &measures, limits, ends_because.is_none());
+    let findings = checks::findings(trace, judged, &measures, limits, ends_because.is_none() && !is_lost);
     let first = checks::first_failure(&findings);
-    let decided = first.map_or(samples.len(), |(_, crossing)| reference + crossing.sample + 1);
-    let self_checks = self_checks::self_checks(&samples[..decided]);
+    let decided = first.map_or(hand_over + judged.len(), |(_, crossing)| hand_over + crossing.sample + 1);
+    let self_checks = self_checks::self_checks(trace, &samples[..decided], hand_over);
     let unfinished = ends_because.clone().filter(|_| first.is_none());
     if let Some(reason) = unfinished.or_else(|| self_checks::failed_self_checks(&self_checks)) {
         return no_verdict(trace, measures, self_checks, reason);
@@ -63,7 +66,8 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
             time_s: judged[crossing.sample].time_s,
             load_factor: judged[crossing.sample].load_factor,
         }),
-        peak_torque_ratio: peak_torque_ratio(&measures, judged.len()),
+        peak_torque_ratio: peak_torque_ratio(&measures),
+        confirmation: None,
         reason: None,
         fingerprint: fingerprint(trace),
         events: events::events(trace, samples, judged, &findings, ends_because.as_deref()),
@@ -94,28 +98,32 @@ fn not_finite(sample: &Sample) -> String {
     format!("found a number that is not finite in the sample at {} s", sample.time_s)
 }
 
-/// Index of the reference: the last sample of settling, or the first of a trace that never settled. If the board is
-/// lost while settling, and the load never acts, it is the first sample after the last contact.
-fn reference(samples: &[Sample]) -> usize {
-    let settled = samples.iter().rposition(|sample| sample.phase == Phase::Settle).unwrap_or(0);
-    if samples.iter().any(|sample| sample.phase.is_loaded()) {
-        return settled;
-    }
-    let last_touch = samples.iter().rposition(Sample::has_contact).map_or(0, |last| last + 1);
-    settled.min(last_touch)
+/// Index of the last sample of a phase; 0 without one.
+fn last_of(samples: &[Sample], phase: Phase) -> usize {
+    samples.iter().rposition(|sample| sample.phase == phase).unwrap_or(0)
 }
 
-/// The samples from the reference to the end of the load; to the end of the trace if the board was lost before the
-/// load; empty if the load never acted for another reason.
-fn judged(samples: &[Sample], reference: usize) -> &[Sample] {
+/// The judged samples.
+struct Judged<'a> {
+    samples: &'a [Sample],
+    /// True if the board is lost at the last one.
+    is_lost: bool,
+}
+
+/// The judged ones of the samples since the hand-over: up to the end of the load, or the sample at which the board is lost.
+/// Without a load only a loss can be judged, so there are no judged samples if the board is held to the end.
+fn judged<'a>(samples: &'a [Sample], measures: &Measures) -> Judged<'a> {
+    let dropped = |index: usize| measures.hands.iter().any(|hand| hand.slip_mm[index] > checks::DROP_MM);
+    let lost = (0..samples.len()).find(|&index| !samples[index].has_contact() || dropped(index));
     let end = samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
-    let lost = !samples[reference].has_contact();
-    let end = end.unwrap_or(if lost { samples.len() } else { reference });
-    &samples[reference..end.max(reference)]
+    match (lost.map(|lost| lost + 1), end) {
+        (Some(lost), end) if end.is_none_or(|end| lost <= end) => Judged { samples: &samples[..lost], is_lost: true },
+        (_, end) => Judged { samples: &samples[..end.unwrap_or(0)], is_lost: false },
+    }
 }
 
-fn peak_torque_ratio(measures: &Measures, count: usize) -> BTreeMap<String, f64> {
-    let peak = |ratios: &[f64]| ratios[..count].iter().copied().fold(0.0, f64::max);
+fn peak_torque_ratio(measures: &Measures) -> BTreeMap<String, f64> {
+    let peak = |ratios: &[f64]| ratios[..measures.judged].iter().copied().fold(0.0, f64::max);
     measures.joints.iter().map(|joint| (joint.name.clone(), peak(&joint.torque_ratio))).collect()
 }
 
@@ -160,6 +168,7 @@ fn no_verdict(trace: &Trace, measures: Measures, self_checks: Vec<Check>, reason
         self_checks,
         first_failure: None,
         peak_torque_ratio: BTreeMap::new(),
+        confirmation: None,
         fingerprint: fingerprint(trace),
         events: events::events_without_verdict(trace, &reason),
         reason: Some(reason),

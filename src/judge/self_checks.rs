@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::checks::check;
 use crate::model::{
-    trace::{Phase, Sample},
+    trace::{Phase, Sample, Trace},
     verdict::{Check, CheckKind},
 };
 
@@ -24,9 +24,20 @@ const COUPLING_LIMIT_MM: f64 = 1.0;
 /// still swings.
 const FORCE_LIMIT_N: f64 = 1.0;
 
-/// Penetration, created energy and finger coupling up to the sample that decides the verdict, and the momentum balance
-/// at the end of settling and of a hold that is followed by a release. Samples without contact are left out.
-pub(super) fn self_checks(decisive: &[Sample]) -> Vec<Check> {
+/// Limit of the fast oscillation of a pad's normal force, as a share of the grip force. Typical: 0.003; 0.02 for hands that
+/// slide. Pads that ring reach 0.2 to 1.
+const CHATTER_LIMIT: f64 = 0.1;
+
+/// Time over which a pad's oscillation is averaged, s.
+const CHATTER_WINDOW_S: f64 = 0.05;
+
+/// Half of the longest period that counts as fast, s, if the time step is shorter.
+const CHATTER_LAG_S: f64 = 0.002;
+
+/// Penetration, created energy and finger coupling up to the sample that decides the verdict, the momentum balance at the
+/// end of settling and of a hold that is followed by a release, and chatter from the hand-over on, the sample of this
+/// number. Samples without contact are left out.
+pub(super) fn self_checks(trace: &Trace, decisive: &[Sample], hand_over: usize) -> Vec<Check> {
     let largest = |of: fn(&Sample) -> f64| decisive.iter().map(of).fold(0.0, worse);
     let ends = |phase| decisive.windows(2).filter(move |pair| pair[0].phase == phase && pair[1].phase != phase);
     let steady_ends = ends(Phase::Settle).chain(ends(Phase::Hold)).map(|pair| &pair[0]);
@@ -37,6 +48,7 @@ pub(super) fn self_checks(decisive: &[Sample]) -> Vec<Check> {
         check(CheckKind::EnergyCreated, created_j(decisive), ENERGY_LIMIT_J),
         check(CheckKind::ForceResidual, residual_n, FORCE_LIMIT_N),
         check(CheckKind::CouplingDrift, 1e3 * largest(|s| s.self_check.coupling_m), COUPLING_LIMIT_MM),
+        check(CheckKind::Chatter, chatter(trace, &decisive[hand_over.min(decisive.len())..]), CHATTER_LIMIT),
     ]
 }
 
@@ -52,6 +64,30 @@ fn created_j(samples: &[Sample]) -> f64 {
         lowest = lowest.min(sample.self_check.contact_energy_j);
         worse(created, sample.self_check.contact_energy_j - lowest)
     })
+}
+
+/// The largest fast oscillation of a pad's normal force N over the grip force: the root mean square over 50 ms of
+/// `(N(t - h) - 2 N(t) + N(t + h)) / 4`, with h the time step or 2 ms. An oscillation of amplitude a and period 2 h gives
+/// a; one that is ten times as slow, 0.02 a. 0 if fewer samples are known.
+fn chatter(trace: &Trace, samples: &[Sample]) -> f64 {
+    let [first, second, ..] = samples else { return 0.0 };
+    let steps = |time_s: f64| (time_s / (second.time_s - first.time_s)).round() as usize;
+    let lags = [1, steps(CHATTER_LAG_S).max(1)];
+    let pads = trace.arms.iter().enumerate().flat_map(|(arm, of)| (0..of.pads.len()).map(move |pad| (arm, pad)));
+    let mut largest = 0.0;
+    for (arm, pad) in pads {
+        let share = |sample: &Sample| sample.arms[arm].pads[pad].normal_force_n / trace.arms[arm].grip_force_n;
+        let shares: Vec<f64> = samples.iter().map(share).collect();
+        for lag in lags {
+            let bends: Vec<f64> = (lag..shares.len().saturating_sub(lag))
+                .map(|at| (shares[at - lag] - 2.0 * shares[at] + shares[at + lag]) / 4.0)
+                .collect();
+            let count = steps(CHATTER_WINDOW_S).max(1);
+            let means = bends.chunks_exact(count).map(|w| w.iter().map(|bend| bend * bend).sum::<f64>() / count as f64);
+            largest = means.map(f64::sqrt).fold(largest, worse);
+        }
+    }
+    largest
 }
 
 /// Why the simulation is invalid by these checks; `None` if it is valid.

@@ -2,17 +2,21 @@
 
 use super::verdict::CheckKind;
 
-/// The measured series of a hold, from the reference state (the end of settling) to the end of the valid part of the
-/// trace (`docs/method.md#81-reference-state`).
+/// The measured series of a hold, from the hand-over of the board to the end of the valid part of the trace
+/// (`docs/method.md#81-reference-states`).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Time since the start of the simulation, s. This and every series below have one entry per sample.
     pub time_s: Vec<f64>,
+    /// The number of samples that are judged, from the first; those after them show what else happened, such as the release.
+    pub judged: usize,
     /// The applied multiple of the operation's wrench.
     pub load_factor: Vec<f64>,
     /// Motion of each hand relative to the board.
     pub hands: Vec<HandMeasures>,
-    /// Displacement in W of the board's tool point, mm.
+    /// Displacement in W of the board's tool point since the hand-over, mm; from the end of settling on that of its end.
+    pub sag_mm: Vec<f64>,
+    /// Displacement in W of the board's tool point since the end of settling, mm; 0 before.
     pub deflection_mm: Vec<f64>,
     /// Distance of the robot from itself and from the board, mm; empty if it was not measured.
     pub clearance_mm: Vec<f64>,
@@ -20,7 +24,7 @@ pub struct Measures {
     pub joints: Vec<JointMeasures>,
 }
 
-/// Motion of one hand relative to the board since the reference state.
+/// Motion of one hand relative to the board since the hand-over.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandMeasures {
     /// The arm's name.

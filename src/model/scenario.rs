@@ -417,8 +417,11 @@ pub struct Limits {
     pub slip_mm: f64,
     /// Rotation of a hand relative to the board, degrees.
     pub slip_deg: f64,
-    /// Displacement of the board's tool point, mm.
+    /// Displacement of the board's tool point under the load, mm.
     pub deflection_mm: f64,
+    /// Displacement of the board's tool point under the board's weight, mm: from the hand-over to the load.
+    #[serde(default = "default_sag_mm")]
+    pub sag_mm: f64,
     /// Rate of slip in the second half of the hold phase, mm/s.
     pub creep_mm_s: f64,
     /// Demanded joint torque divided by its limit.
@@ -440,12 +443,18 @@ pub struct Limits {
     pub reba: Option<u8>,
 }
 
+/// The default of [`Limits::sag_mm`].
+fn default_sag_mm() -> f64 {
+    Limits::USUAL.sag_mm
+}
+
 impl Limits {
     /// The default limits but for cuts (`docs/method.md#810-default-limits`).
     pub const USUAL: Self = Self {
         slip_mm: 1.0,
         slip_deg: 2.0,
         deflection_mm: 5.0,
+        sag_mm: 10.0,
         creep_mm_s: 0.1,
         torque_ratio: 1.0,
         load_factor: 1.0,

@@ -21,8 +21,10 @@ pub enum VerdictKind {
     Drops,
     /// The demanded torque of a joint exceeded its limit.
     Saturates,
-    /// The displacement of the tool point exceeded its limit.
+    /// The displacement of the tool point under the load exceeded its limit.
     Deflects,
+    /// The displacement of the tool point under the board's weight exceeded its limit.
+    Sags,
     /// A hand kept slipping under constant load.
     Creeps,
     /// In the planned pose, robot or board violate a clearance to the person; or they touched the person during the simulation.
@@ -46,6 +48,7 @@ impl VerdictKind {
             Self::Drops => "drops",
             Self::Saturates => "saturates",
             Self::Deflects => "deflects",
+            Self::Sags => "sags",
             Self::Creeps => "creeps",
             Self::Touches => "touches",
             Self::Collides => "collides",
@@ -84,6 +87,9 @@ pub struct Verdict {
     pub first_failure: Option<Failure>,
     /// Largest torque ratio of each joint: demanded torque divided by its limit.
     pub peak_torque_ratio: BTreeMap<String, f64>,
+    /// Simulations at shorter time steps, if the first one was too near to a limit to decide. `None` if it was not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confirmation: Option<Confirmation>,
     /// Why there is no plan or no valid simulation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -107,11 +113,13 @@ impl Verdict {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckKind {
-    /// Largest translation of a hand on the board, mm.
+    /// Largest translation of a hand on the board since the hand-over, mm.
     Slip,
-    /// Largest rotation of a hand on the board, degrees.
+    /// Largest rotation of a hand on the board since the hand-over, degrees.
     SlipRotation,
-    /// Largest displacement of the board's tool point, mm.
+    /// Largest displacement of the board's tool point under the weight, from the hand-over to the load, mm.
+    Sag,
+    /// Largest displacement of the board's tool point under the load, mm.
     Deflection,
     /// Rate of slip in the second half of the hold, mm/s.
     Creep,
@@ -136,6 +144,8 @@ pub enum CheckKind {
     ForceResidual,
     /// Self-check: largest difference between the travels of coupled fingers, mm.
     CouplingDrift,
+    /// Self-check: largest fast oscillation of a pad's normal force, divided by the grip force.
+    Chatter,
 }
 
 impl CheckKind {
@@ -144,6 +154,7 @@ impl CheckKind {
         match self {
             Self::Slip => "slip",
             Self::SlipRotation => "slip_rotation",
+            Self::Sag => "sag",
             Self::Deflection => "deflection",
             Self::Creep => "creep",
             Self::TorqueRatio => "torque_ratio",
@@ -156,6 +167,7 @@ impl CheckKind {
             Self::EnergyCreated => "energy_created",
             Self::ForceResidual => "force_residual",
             Self::CouplingDrift => "coupling_drift",
+            Self::Chatter => "chatter",
         }
     }
 
@@ -163,6 +175,7 @@ impl CheckKind {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Slip
+            | Self::Sag
             | Self::Deflection
             | Self::Drop
             | Self::PersonOverlap
@@ -171,7 +184,7 @@ impl CheckKind {
             | Self::CouplingDrift => "mm",
             Self::SlipRotation => "deg",
             Self::Creep => "mm/s",
-            Self::TorqueRatio => "1",
+            Self::TorqueRatio | Self::Chatter => "1",
             Self::PadOpen | Self::ContactLost => "ms",
             Self::EnergyCreated => "J",
             Self::ForceResidual => "N",
@@ -196,6 +209,7 @@ impl CheckKind {
         match self {
             Self::Slip => VerdictKind::Slips,
             Self::SlipRotation => VerdictKind::Pivots,
+            Self::Sag => VerdictKind::Sags,
             Self::Deflection => VerdictKind::Deflects,
             Self::Creep => VerdictKind::Creeps,
             Self::TorqueRatio => VerdictKind::Saturates,
@@ -203,7 +217,7 @@ impl CheckKind {
             Self::ContactLost | Self::Drop => VerdictKind::Drops,
             Self::PersonOverlap => VerdictKind::Touches,
             Self::Clearance => VerdictKind::Collides,
-            Self::Penetration | Self::EnergyCreated | Self::ForceResidual | Self::CouplingDrift => {
+            Self::Penetration | Self::EnergyCreated | Self::ForceResidual | Self::CouplingDrift | Self::Chatter => {
                 VerdictKind::NoVerdict
             }
         }
@@ -240,6 +254,39 @@ impl Check {
     pub fn limit_text(&self) -> String {
         let sign = if self.name.is_least() { ">= " } else { "" };
         format!("{sign}{:.3}", self.limit)
+    }
+}
+
+/// Simulations of one plan at shorter and shorter time steps (docs/method.md#812-confirmation).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Confirmation {
+    /// Why the first simulation alone does not decide.
+    pub because: String,
+    /// The verdict at each time step, the scenario's first.
+    pub runs: Vec<StepVerdict>,
+}
+
+/// The verdict at a time step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StepVerdict {
+    /// The time step, s.
+    pub timestep_s: f64,
+    /// The verdict.
+    pub verdict: VerdictKind,
+}
+
+impl std::fmt::Display for Confirmation {
+    /// `deflection 4.80 mm is within 10 % of its limit of 5 mm: 2 ms holds, 1 ms holds`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.because)?;
+        for (index, StepVerdict { timestep_s, verdict }) in self.runs.iter().enumerate() {
+            let separator = if index == 0 { ':' } else { ',' };
+            // Halves and quarters of round steps are short decimals.
+            write!(f, "{separator} {} ms {verdict}", (timestep_s * 1e9).round() / 1e6)?;
+        }
+        Ok(())
     }
 }
 

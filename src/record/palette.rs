@@ -67,6 +67,11 @@ pub(super) fn shade(arm: usize, darker: f32) -> Color {
     Color::from_rgb(dim(r), dim(g), dim(b))
 }
 
+/// Series after the last judged sample.
+pub(super) fn not_judged() -> Color {
+    Color::from_rgb(110, 110, 110)
+}
+
 /// The points of the peripersonal metric.
 pub(super) fn points() -> Color {
     Color::from_rgb(255, 255, 255)

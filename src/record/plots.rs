@@ -20,13 +20,17 @@ pub(super) const LIMIT: &str = "limit";
 /// Name of the series of the first crossing of a limit.
 pub(super) const FAILURE: &str = "first crossing";
 
+/// End of the name of a series after the last judged sample.
+pub(super) const NOT_JUDGED: &str = ", not judged";
+
 /// The plot of the load factor, which has no limit.
 pub(super) const LOAD: &str = "load";
 
 /// The plots of checks: the folder of the series, and the check.
-pub(super) const PLOTS: [(&str, CheckKind); 5] = [
+pub(super) const PLOTS: [(&str, CheckKind); 6] = [
     ("slip", CheckKind::Slip),
     ("rotation", CheckKind::SlipRotation),
+    ("sag", CheckKind::Sag),
     ("deflection", CheckKind::Deflection),
     ("torque", CheckKind::TorqueRatio),
     ("clearance", CheckKind::Clearance),
@@ -36,11 +40,23 @@ pub(super) const PLOTS: [(&str, CheckKind); 5] = [
 pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(), RecordError> {
     let measures = input.measures;
     let mut series = |plot, name: &str, colour, values: &[f64]| {
-        log_series(messages, [plot, name], &measures.time_s, values, (colour, 2.0, name))
+        let judged = measures.judged.min(values.len());
+        log_series(messages, [plot, name], &measures.time_s[..judged], &values[..judged], (colour, 2.0, name))?;
+        // The last judged value again, so that the two lines meet.
+        let rest = judged.saturating_sub(1);
+        if judged == values.len() {
+            return Ok(());
+        }
+        let later = format!("{name}{NOT_JUDGED}");
+        let style = (palette::not_judged(), 1.0, later.as_str());
+        log_series(messages, [plot, &later], &measures.time_s[rest..], &values[rest..], style)
     };
     for (arm, hand) in measures.hands.iter().enumerate() {
         series("slip", &format!("{} hand", hand.name), palette::hand(arm), &hand.slip_mm)?;
         series("rotation", &format!("{} hand", hand.name), palette::hand(arm), &hand.slip_deg)?;
+    }
+    if !measures.sag_mm.is_empty() {
+        series("sag", "tool point", palette::board(), &measures.sag_mm)?;
     }
     if !measures.deflection_mm.is_empty() {
         series("deflection", "tool point", palette::board(), &measures.deflection_mm)?;
@@ -110,6 +126,7 @@ fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
     match kind {
         CheckKind::Slip => measures.hands.iter().map(|hand| hand.slip_mm.as_slice()).collect(),
         CheckKind::SlipRotation => measures.hands.iter().map(|hand| hand.slip_deg.as_slice()).collect(),
+        CheckKind::Sag => vec![&measures.sag_mm],
         CheckKind::Deflection => vec![&measures.deflection_mm],
         CheckKind::TorqueRatio => measures.joints.iter().map(|joint| joint.torque_ratio.as_slice()).collect(),
         CheckKind::Clearance => vec![&measures.clearance_mm],
@@ -121,7 +138,8 @@ fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
         | CheckKind::Penetration
         | CheckKind::EnergyCreated
         | CheckKind::ForceResidual
-        | CheckKind::CouplingDrift => Vec::new(),
+        | CheckKind::CouplingDrift
+        | CheckKind::Chatter => Vec::new(),
     }
 }
 

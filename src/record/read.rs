@@ -7,7 +7,7 @@ use rerun::log::Chunk;
 use super::{
     decode::{chunks, document, json, texts, times_s},
     error::RecordError,
-    plots::{FAILURE, LIMIT, without_time},
+    plots::{FAILURE, LIMIT, NOT_JUDGED, without_time},
     stored,
     summary::{ABOUT, About},
 };
@@ -130,7 +130,7 @@ fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
     for chunk in chunks {
         let parts: Vec<String> = chunk.entity_path().iter().map(|part| part.unescaped_str().to_owned()).collect();
         let [folder, plot, series] = parts.as_slice() else { continue };
-        if folder != "plots" || [LIMIT, FAILURE].contains(&series.as_str()) {
+        if folder != "plots" || [LIMIT, FAILURE].contains(&series.as_str()) || series.ends_with(NOT_JUDGED) {
             continue;
         }
         let Some(peak) = peak(chunk, end_s) else { continue };

@@ -219,6 +219,7 @@ fn measures(trace: &Trace) -> Measures {
     };
     Measures {
         time_s: of(&|s| s.time_s),
+        judged: samples.iter().filter(|sample| sample.phase != Phase::Release).count(),
         load_factor: of(&|s| s.load_factor),
         hands: ["left", "right"]
             .into_iter()
@@ -229,6 +230,7 @@ fn measures(trace: &Trace) -> Measures {
                 slip_deg: of(&|s| turn_rad.to_degrees() * s.load_factor),
             })
             .collect(),
+        sag_mm: of(&|_| 0.25),
         deflection_mm: of(&|s| 6.0 * s.load_factor),
         clearance_mm: of(&|s| 1e3 * s.robot_clearance_m.unwrap()),
         joints: (0..2)
@@ -262,6 +264,7 @@ fn verdict(trace: &Trace, measures: &Measures) -> Verdict {
         self_checks: Vec::new(),
         first_failure: Some(Failure { check: CheckKind::SlipRotation, time_s: 0.276, load_factor: 0.88 }),
         peak_torque_ratio: measures.joints.iter().map(|j| (j.name.clone(), peak(&j.torque_ratio))).collect(),
+        confirmation: None,
         reason: None,
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into()), ("rapier3d-f64".into(), "0.36.1".into())]),
         seed: 1,

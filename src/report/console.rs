@@ -35,6 +35,7 @@ pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
         "result",
         "slip mm",
         "slip deg",
+        "sag mm",
         "deflection mm",
         "torque",
         "load",
@@ -65,6 +66,9 @@ pub fn details(verdict: &Verdict, posture: Option<&PostureFigures>, recording: O
         text.push_str(&posture::table(figures));
     }
     let mut notes = vec![vec!["because".to_owned(), explanation(verdict)]];
+    if let Some(confirmation) = &verdict.confirmation {
+        notes.push(vec!["confirmation".to_owned(), confirmation.to_string()]);
+    }
     if let Some(joints) = highest_torques(verdict) {
         notes.push(vec!["torque peaks".to_owned(), joints]);
     }
@@ -83,7 +87,7 @@ fn row(outcome: &Outcome, wall_s: Option<f64>) -> Vec<String> {
     let figure = |value: Option<f64>| value.map_or(NO_FIGURE.to_owned(), |value| format!("{value:.2}"));
     let time = wall_s.map_or(NO_FIGURE.to_owned(), |wall_s| format!("{wall_s:.1}"));
     let Outcome::Judged { verdict, predicted_load_factor, .. } = outcome else {
-        let mut row = vec![NO_FIGURE.to_owned(); 9];
+        let mut row = vec![NO_FIGURE.to_owned(); 10];
         outcome.name().clone_into(&mut row[0]);
         outcome.status().mark().clone_into(&mut row[3]);
         row.push(time);
@@ -97,6 +101,7 @@ fn row(outcome: &Outcome, wall_s: Option<f64>) -> Vec<String> {
         outcome.status().mark().to_owned(),
         checked(CheckKind::Slip),
         checked(CheckKind::SlipRotation),
+        checked(CheckKind::Sag),
         checked(CheckKind::Deflection),
         checked(CheckKind::TorqueRatio),
         figure(*predicted_load_factor),

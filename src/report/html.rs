@@ -108,6 +108,7 @@ fn section(outcome: &Outcome) -> Markup {
             }
             @if let Outcome::Judged { verdict, posture, measures, scores, clearance, .. } = outcome {
                 (checks(verdict))
+                @if let Some(confirmation) = &verdict.confirmation { p { "Confirmation: " (confirmation) } }
                 @if let Some(figures) = posture { (person(figures)) }
                 @if let Some(scores) = scores { p { "Posture: " (scores) } }
                 @if let Some(clearance) = clearance { p { "Planned clearance of the robot: " (clearance) } }
@@ -175,6 +176,7 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
         let hands = measures.hands.iter().zip(HANDS.into_iter().cycle());
         hands.map(|(hand, class)| Line { name: &hand.name, class, values: series(hand) }).collect::<Vec<_>>()
     };
+    let sag = Line { name: "tool point", class: "board", values: &measures.sag_mm };
     let deflection = Line { name: "tool point", class: "board", values: &measures.deflection_mm };
     let clearance = Line { name: "least distance", class: "board", values: &measures.clearance_mm };
     let load = Line { name: "multiple of the load", class: "load", values: &measures.load_factor };
@@ -183,6 +185,7 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
     let plots = [
         ("slip of the hands on the board, mm", Some(CheckKind::Slip), hands(|hand| &hand.slip_mm)),
         ("rotation of the hands on the board, deg", Some(CheckKind::SlipRotation), hands(|hand| &hand.slip_deg)),
+        ("sag of the tool point, mm", Some(CheckKind::Sag), vec![sag]),
         ("deflection of the tool point, mm", Some(CheckKind::Deflection), vec![deflection]),
         ("joint torque / limit, most loaded joints", Some(CheckKind::TorqueRatio), joints.collect()),
         ("clearance of the robot, mm", Some(CheckKind::Clearance), vec![clearance]),
@@ -193,7 +196,7 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
         let limit = kind.and_then(|kind| verdict.check(kind)).map(|check| check.limit);
         let failed = verdict.first_failure.as_ref().filter(|failure| Some(failure.check) == kind);
         let failed_s = failed.map(|failure| failure.time_s);
-        Plot { title, time_s: &measures.time_s, lines, limit, failed_s }.svg()
+        Plot { title, time_s: &measures.time_s, judged: measures.judged, lines, limit, failed_s }.svg()
     };
     html! {
         div.plots {

@@ -29,6 +29,8 @@ pub(super) struct Plot<'a> {
     pub title: &'a str,
     /// The times, s.
     pub time_s: &'a [f64],
+    /// The number of times that are judged, from the first; the rest is shaded.
+    pub judged: usize,
     /// The lines.
     pub lines: Vec<Line<'a>>,
     /// The limit, drawn as a horizontal line.
@@ -56,6 +58,10 @@ impl Plot<'_> {
             body,
             "<svg x=\"{left}\" y=\"{above}\" width=\"{w}\" height=\"{h}\" viewBox=\"{left} {above} {w} {h}\">"
         );
+        if let Some(&until_s) = self.time_s.get(self.judged.wrapping_sub(1)).filter(|_| self.has_rest()) {
+            let (x, w) = (scale.x_px(until_s), right - scale.x_px(until_s));
+            let _ = write!(body, "<rect class=\"rest\" x=\"{x:.1}\" y=\"{above}\" width=\"{w:.1}\" height=\"{h}\"/>");
+        }
         for line in &self.lines {
             let _ = write!(body, "<polyline class=\"{}\" points=\"{}\"/>", line.class, scale.points(self.time_s, line));
         }
@@ -75,12 +81,18 @@ impl Plot<'_> {
         )
     }
 
+    /// True if there is more than what is judged.
+    fn has_rest(&self) -> bool {
+        self.judged < self.time_s.len()
+    }
+
     fn legend(&self, body: &mut String) {
         let mut x = AREA_PX[0] + 4.0;
         let limit = self.limit.map(|_| ("limit", "limit"));
         let failed = self.failed_s.map(|_| ("first crossing", "failed"));
         let lines = self.lines.iter().map(|line| (line.name, line.class));
-        for (name, class) in lines.chain(limit).chain(failed) {
+        let rest = self.has_rest().then_some(("not judged", "rest"));
+        for (name, class) in lines.chain(limit).chain(failed).chain(rest) {
             let y = 192.0;
             let _ =
                 write!(body, "<line class=\"{class}\" x1=\"{x:.1}\" x2=\"{:.1}\" y1=\"{y}\" y2=\"{y}\"/>", x + 14.0);
@@ -193,8 +205,15 @@ mod tests {
         let mut values = vec![0.0; time_s.len()];
         values[7_531] = 2.0;
         let line = Line { name: "left hand", class: "hand-0", values: &values };
-        let svg =
-            Plot { title: "slip, mm", time_s: &time_s, lines: vec![line], limit: Some(1.0), failed_s: None }.svg();
+        let svg = Plot {
+            title: "slip, mm",
+            time_s: &time_s,
+            judged: time_s.len(),
+            lines: vec![line],
+            limit: Some(1.0),
+            failed_s: None,
+        }
+        .svg();
         // The peak is 2 of an axis up to 2.2: y = 172 - 146 * 2 / 2.2.
         assert!(svg.contains(&format!(",{:.1}", 172.0 - 146.0 * 2.0 / 2.2)), "{svg}");
         assert!(svg.matches(',').count() < 2 * COLUMNS + 20);

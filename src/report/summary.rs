@@ -9,9 +9,10 @@ use crate::model::{
 };
 
 /// The checks in a summary, with the names of their columns.
-const FIGURES: [(&str, CheckKind); 5] = [
+const FIGURES: [(&str, CheckKind); 6] = [
     ("slip_mm", CheckKind::Slip),
     ("slip_deg", CheckKind::SlipRotation),
+    ("sag_mm", CheckKind::Sag),
     ("deflection_mm", CheckKind::Deflection),
     ("creep_mm_s", CheckKind::Creep),
     ("torque_ratio", CheckKind::TorqueRatio),
@@ -39,6 +40,7 @@ struct Entry<'a> {
     expected: Option<VerdictKind>,
     slip_mm: Option<f64>,
     slip_deg: Option<f64>,
+    sag_mm: Option<f64>,
     deflection_mm: Option<f64>,
     creep_mm_s: Option<f64>,
     torque_ratio: Option<f64>,
@@ -70,7 +72,7 @@ pub fn json(outcomes: &[Outcome]) -> String {
 
 fn entry(outcome: &Outcome) -> Entry<'_> {
     let verdict = outcome.verdict();
-    let [slip_mm, slip_deg, deflection_mm, creep_mm_s, torque_ratio] = figures(outcome);
+    let [slip_mm, slip_deg, sag_mm, deflection_mm, creep_mm_s, torque_ratio] = figures(outcome);
     Entry {
         name: outcome.name(),
         status: outcome.status().name(),
@@ -78,6 +80,7 @@ fn entry(outcome: &Outcome) -> Entry<'_> {
         expected: verdict.map(|verdict| verdict.expected),
         slip_mm,
         slip_deg,
+        sag_mm,
         deflection_mm,
         creep_mm_s,
         torque_ratio,
@@ -88,7 +91,7 @@ fn entry(outcome: &Outcome) -> Entry<'_> {
     }
 }
 
-fn figures(outcome: &Outcome) -> [Option<f64>; 5] {
+fn figures(outcome: &Outcome) -> [Option<f64>; 6] {
     FIGURES.map(|(_, kind)| outcome.verdict().and_then(|verdict| verdict.check(kind)).map(|check| check.value))
 }
 

@@ -32,6 +32,7 @@ fn holding() -> Verdict {
         self_checks: Vec::new(),
         first_failure: None,
         peak_torque_ratio: BTreeMap::from([("left_s0".into(), 0.25), ("left_w1".into(), 0.75)]),
+        confirmation: None,
         reason: None,
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into())]),
         seed: 1,

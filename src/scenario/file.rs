@@ -281,8 +281,10 @@ pub struct LimitsSection {
     pub slip_mm: f64,
     /// Rotation of a hand relative to the board, degrees.
     pub slip_deg: f64,
-    /// Displacement of the board's tool point, mm; by default 15 for `cut` and 5 otherwise.
+    /// Displacement of the board's tool point under the load, mm; by default 15 for `cut` and 5 otherwise.
     pub deflection_mm: Option<f64>,
+    /// Displacement of the board's tool point under the board's weight, mm: from the hand-over to the load.
+    pub sag_mm: f64,
     /// Rate of slip in the second half of the hold phase, mm/s.
     pub creep_mm_s: f64,
     /// Demanded joint torque divided by its limit.
@@ -303,12 +305,23 @@ impl Default for LimitsSection {
     /// The default limits (`docs/method.md#810-default-limits`).
     fn default() -> Self {
         let Limits {
-            slip_mm, slip_deg, creep_mm_s, torque_ratio, load_factor, clearance_mm, rula, rula_arm, reba, ..
+            slip_mm,
+            slip_deg,
+            sag_mm,
+            creep_mm_s,
+            torque_ratio,
+            load_factor,
+            clearance_mm,
+            rula,
+            rula_arm,
+            reba,
+            ..
         } = Limits::USUAL;
         Self {
             slip_mm,
             slip_deg,
             deflection_mm: None,
+            sag_mm,
             creep_mm_s,
             torque_ratio,
             load_factor,

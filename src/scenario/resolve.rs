@@ -316,6 +316,7 @@ fn limits_with_defaults(section: &LimitsSection, kind: OperationKind) -> Limits 
         slip_mm: section.slip_mm,
         slip_deg: section.slip_deg,
         deflection_mm: section.deflection_mm.unwrap_or(Limits::of(kind).deflection_mm),
+        sag_mm: section.sag_mm,
         creep_mm_s: section.creep_mm_s,
         torque_ratio: section.torque_ratio,
         load_factor: section.load_factor,
@@ -330,6 +331,7 @@ fn check_limits(check: &Checker<'_>, limits: &Limits) -> Result<(), InputError> 
     check.positive("limits.slip_mm", limits.slip_mm, "mm")?;
     check.positive("limits.slip_deg", limits.slip_deg, "degrees")?;
     check.positive("limits.deflection_mm", limits.deflection_mm, "mm")?;
+    check.positive("limits.sag_mm", limits.sag_mm, "mm")?;
     check.positive("limits.creep_mm_s", limits.creep_mm_s, "mm/s")?;
     check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
     // The solvers stop at 100, and the planner applies a safety factor.

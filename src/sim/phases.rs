@@ -8,6 +8,9 @@ use crate::model::{scenario::SimulationSettings, trace::Phase};
 /// deeper than under the grip force at rest.
 const GRIP_S: f64 = 0.05;
 
+/// The largest number of steps: that of a scenario at a quarter of its time step, as a confirmation may need.
+const MOST_STEPS: usize = 4 * SimulationSettings::MAX_STEPS;
+
 /// The number of steps in which the grippers close.
 pub(super) fn grip_steps(settings: &SimulationSettings) -> usize {
     (GRIP_S.min(settings.settle_s / 10.0) / settings.timestep_s).round() as usize
@@ -30,7 +33,7 @@ impl PhaseSchedule {
     ///
     /// # Errors
     /// [`SimError::Settings`] if the time step is not positive or longer than 4 ms, a phase is negative or not finite,
-    /// or the simulation is longer than 100 000 steps.
+    /// or the simulation is longer than 400 000 steps.
     pub fn new(settings: &SimulationSettings) -> Result<Self, SimError> {
         let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
         if !(timestep_s > 0.0 && timestep_s <= SimulationSettings::MAX_TIMESTEP_S) {
@@ -52,9 +55,9 @@ impl PhaseSchedule {
             hold: steps("hold_s", hold_s)?,
             release: steps("release_s", release_s)?,
         };
-        if profile.steps() > SimulationSettings::MAX_STEPS {
+        if profile.steps() > MOST_STEPS {
             let found = settle_s + ramp_s + hold_s + release_s;
-            return Err(SimError::Settings { key: "duration in s", found, expected: "at most 100000 time steps" });
+            return Err(SimError::Settings { key: "duration in s", found, expected: "at most 400000 time steps" });
         }
         Ok(profile)
     }

@@ -185,8 +185,7 @@ fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) 
     // A sleeping board would not react to the load.
     let body = RigidBodyBuilder::dynamic().pose(convert::to_engine_pose(&object.x_wo)).can_sleep(false);
     let body = world.bodies.insert(body);
-    let collider =
-        ColliderBuilder::cuboid(hx, hy, hz)
+    let collider = ColliderBuilder::cuboid(hx, hy, hz)
         .mass(inertial_mass_kg(object))
         .friction(friction)
         .collision_groups(board_groups());

@@ -18,10 +18,7 @@ impl StabilityWorkspace {
     ///
     /// # Errors
     /// If the contact model is invalid.
-    pub fn carrying_torque_nm(
-        &mut self,
-        model: &ContactModel,
-    ) -> Result<Option<Vec<DVector<f64>>>, ContactModelError> {
+    pub fn carrying_torque_nm(&mut self, model: &ContactModel) -> Result<Option<Vec<DVector<f64>>>, ContactModelError> {
         model.check()?;
         let welded = WeldedStiffness::new(model).and_then(|welded| elastic::equilibrium(model, &welded, 0.0));
         let unloaded = match welded {

@@ -31,6 +31,7 @@ fn no_limits() -> Limits {
         slip_mm: 1e9,
         slip_deg: 1e9,
         deflection_mm: 1e9,
+        sag_mm: 1e9,
         creep_mm_s: 1e9,
         torque_ratio: 1e9,
         load_factor: 1.0,
