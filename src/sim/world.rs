@@ -18,28 +18,28 @@ const SWEEPS: usize = 6;
 const STABILISATION_SWEEPS: usize = 4;
 
 /// Stiffness of the contacts as a frequency, Hz: the same for all time steps up to 2 ms, so that results do not depend
-/// on them. With 500, small pads that tilt yield by a tenth more; with 1400 and more, the slip of hands that slide differs
-/// between time steps of 2 and 0.5 ms by more than 3 %.
-const CONTACT_FREQUENCY_HZ: f64 = 1000.0;
+/// on them. With 700, pads that tilt yield by up to 10 % more under small loads; with 2000, the deflection of hands that
+/// slide differs between time steps of 2 and 0.5 ms by up to 3 %.
+const CONTACT_FREQUENCY_HZ: f64 = 1400.0;
 
 /// The largest number of periods of a contact in a substep, reached at a time step of 2 ms. Longer steps get softer
 /// contacts; otherwise they would oscillate.
-const MAX_OSCILLATIONS: f64 = 1.0;
+const MAX_OSCILLATIONS: f64 = 1.4;
 
 /// Damping of the contacts, as a multiple of the critical one.
 const CONTACT_DAMPING_RATIO: f64 = 1.0;
 
 /// The least inertia of a board in the engine, as a mass, kg. The engine scales a contact's stiffness with the effective
 /// mass of the two bodies, and its sweeps converge slowly if one is much lighter than the other. With its own inertia
-/// alone, a strip of 79 g and boards of 30 g rang between their hands, and their pads were up to ten times as soft as
+/// alone, a strip of 79 g and boards of 30 g rang between their hands, and their pads were up to thirty times as soft as
 /// those on a board of 1 kg. See [`inertial_mass_kg`].
-const LEAST_INERTIA_KG: f64 = 0.5;
+const LEAST_INERTIA_KG: f64 = 1.0;
 
 /// The mass with which a board resists acceleration, kg: its own, or that of a heavier board of its shape. Its weight is
 /// always its own.
 ///
 /// The state of rest does not depend on inertia. Between two arms whose effective mass is several kilograms each, the
-/// difference changes the frequency of their swing by a few per cent at most.
+/// difference changes the frequency of their swing by a few per cent.
 pub(super) fn inertial_mass_kg(object: &PlacedObject) -> f64 {
     object.mass_kg.max(LEAST_INERTIA_KG)
 }

@@ -365,7 +365,7 @@ fn the_trace_describes_the_simulation() {
     pads.sort();
     assert_eq!(pads, ["lower", "upper"]);
     let first = &trace.samples[0];
-    assert_eq!((first.time_s, first.load_factor, first.phase), (0.0, 0.0, Phase::Settle));
+    assert_eq!((first.time_s, first.load_factor, first.phase), (0.0, 0.0, Phase::Grip));
     for (arm, hold) in first.arms.iter().zip(&plan.arms) {
         assert_eq!(arm.q_rad, hold.q_rad);
         // Both pads are on the board: twice the travel is its thickness; the pads meet at a travel of -1.85 mm.
