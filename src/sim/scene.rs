@@ -20,6 +20,7 @@ use crate::{
         frames::Pose,
         load::ForceFrame,
         plan::{PlacedObject, Plan},
+        scenario::SimulationSettings,
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },
@@ -33,6 +34,11 @@ const LOST_RAD_S: f64 = 100.0;
 /// at once, the arms overshoot by a fifth, and hands that slide in the swing keep an offset: under a tenth of the load
 /// some then turn less than hands that were loaded slowly. With 0.1 to 0.25 s the difference vanishes.
 const HAND_OVER_S: f64 = 0.15;
+
+/// The number of steps of the hand-over, for valid settings.
+pub(super) fn hand_over_steps(settings: &SimulationSettings) -> usize {
+    (HAND_OVER_S.min(settings.settle_s / 2.0) / settings.timestep_s).round() as usize
+}
 
 /// A board held by arms, advanced step by step. [`simulate`](super::simulate) applies a plan's load; tests apply their
 /// own.
@@ -75,7 +81,6 @@ impl SimScene {
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;
-        let hand_over_s = HAND_OVER_S.min(conditions.settings.settle_s / 2.0);
         Ok(Self {
             balance: Balance::new(&world, board.body, energy_j),
             world,
@@ -85,7 +90,7 @@ impl SimScene {
             p_ot_m,
             frame: conditions.load.frame,
             x_wo_planned: plan.object.x_wo,
-            steps: [0, (hand_over_s / conditions.settings.timestep_s).round() as usize],
+            steps: [0, hand_over_steps(&conditions.settings)],
             tool: ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m },
             tool_wrench_w: Wrench::default(),
         })
