@@ -59,6 +59,8 @@ OPEN_SHARE = 0.05
 LOST_AFTER_S = 0.1
 # The search for the failing load, as that of Benchdog: range, first stride and final width relative to the load.
 LEAST_FACTOR, LARGEST_FACTOR, STRIDE, WIDTH = 1 / 64, 100.0, 1.1, 1e-3
+# Stands for the failing load of a hold that the largest factor does not end.
+NEVER_FAILS = LARGEST_FACTOR + 1
 # Deflections that differ by less agree, mm.
 LEAST_DIFFERENCE_MM = 0.02
 # Exit codes of a Benchdog that reached its end: expectations met, not met, no plan.
@@ -213,7 +215,7 @@ class Result:
     first_check: Optional[str]
     # The largest value of each check.
     values: Dict[str, float]
-    # The multiple of the load at which the hold fails, if it was searched.
+    # The multiple of the load at which the hold fails, if it was searched: 101 if it holds the largest that is tried.
     fails_at: Optional[float] = None
 
 
@@ -300,15 +302,15 @@ def creep_mm_s(scene: Scene, hands_p: np.ndarray) -> Optional[float]:
 
 
 def failing_load(scene: Scene, guess: float) -> float:
-    """The smallest multiple of the load that was found to fail, at most 0.1 % above one that holds; inf if none does."""
-    holds_at, fails_at, stride = 0.0, float("inf"), STRIDE
+    """The smallest multiple of the load that was found to fail, at most 0.1 % above one that holds."""
+    holds_at, fails_at, stride = 0.0, NEVER_FAILS, STRIDE
     factor = min(max(guess, LEAST_FACTOR), LARGEST_FACTOR)
     while True:
         if judge(scene, play(scene, factor)).verdict == "holds":
             holds_at = factor
         else:
             fails_at = factor
-        if np.isinf(fails_at):
+        if fails_at == NEVER_FAILS:
             if holds_at >= LARGEST_FACTOR:
                 return fails_at
             factor = min(holds_at * stride, LARGEST_FACTOR)
@@ -398,7 +400,7 @@ def compare(file: Path, folder: Path, options: argparse.Namespace) -> Comparison
     theirs = judge(scene, play(scene))
     if options.failing_load:
         margin = json.loads(benchdog(options.benchdog, "margin", plan, *scenario, "--format", "json"))
-        ours.fails_at = float("inf") if margin["fails_at"] is None else margin["fails_at"]
+        ours.fails_at = NEVER_FAILS if margin["fails_at"] is None else margin["fails_at"]
         theirs.fails_at = failing_load(scene, ours.fails_at)
     if first == "person_overlap":
         return Comparison(verdict["name"], ours, theirs, True, "not compared: the person is not in the scene")

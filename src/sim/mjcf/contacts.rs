@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// The longest time step, s.
-const TIMESTEP_S: f64 = 0.0005;
+const TIMESTEP_S: f64 = 0.00025;
 
 /// Time constant of the contacts and of the fingers' coupling, s: two time steps are the least that MuJoCo allows.
 const TIME_CONSTANT_S: f64 = 2.0 * TIMESTEP_S;
@@ -38,7 +38,7 @@ const LARGEST_IMPEDANCE: f64 = 0.9999;
 
 /// Time steps of MuJoCo in one of the scenario's.
 pub(super) fn steps_per_sample(settings: &SimulationSettings) -> usize {
-    // Rounding must not add a step to four steps of 0.5 ms; the scenario's step is at most 4 ms.
+    // Rounding must not add a step to eight steps of 0.25 ms; the scenario's step is at most 4 ms.
     (settings.timestep_s / TIMESTEP_S - 1e-9).ceil().max(1.0) as usize
 }
 
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_time_step_divides_that_of_the_scenario() {
-        for (timestep_s, expected) in [(0.002, 4), (0.0005, 1), (0.001, 2), (0.004, 8), (0.0003, 1), (0.0012, 3)] {
+        for (timestep_s, expected) in [(0.002, 8), (0.0005, 2), (0.00025, 1), (0.004, 16), (0.0003, 2), (0.0012, 5)] {
             let settings = SimulationSettings { timestep_s, ..SimulationSettings::default() };
             assert_eq!(steps_per_sample(&settings), expected, "{timestep_s}");
         }
