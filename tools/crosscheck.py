@@ -24,6 +24,7 @@ Needs the packages `mujoco` (developed with 4.0.0) and `numpy`.
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import re
 import subprocess
@@ -86,8 +87,8 @@ class Scene:
         model = self.model
         self.sample_s = float(self.numbers("tool_timestep_s")[0])
         self.steps_per_sample = round(self.sample_s / model.opt.timestep)
-        self.wrenches_o = self.numbers("tool_wrench_o").reshape(-1, 6)
-        self.points_o = self.numbers("tool_point_o").reshape(-1, 3)
+        self.wrenches_o = self.table("tool_wrench_o").reshape(-1, 6)
+        self.points_o = self.table("tool_point_o").reshape(-1, 3)
         self.turns_with_board = self.text("tool_frame") == "board"
         self.settle, self.ramp, self.hold, _ = (int(count) for count in self.numbers("phase_samples"))
         self.hand_over = int(self.numbers("hand_over_samples")[0])
@@ -109,9 +110,8 @@ class Scene:
         self.limits = {"drop": DROP_MM, "pad_open": PAD_OPEN_MS, "contact_lost": CONTACT_LOST_MS}
         fields = {"slip": "slip_mm", "slip_rotation": "slip_deg", "deflection": "deflection_mm", "sag": "sag_mm"}
         fields.update(creep="creep_mm_s", torque_ratio="torque_ratio")
-        names = {model.numeric(index).name for index in range(model.nnumeric)}
         for check, name in fields.items():
-            if f"limit_{name}" in names:
+            if self.has_numbers(f"limit_{name}"):
                 self.limits[check] = float(self.numbers(f"limit_{name}")[0])
 
     def numbers(self, name: str) -> np.ndarray:
@@ -120,6 +120,15 @@ class Scene:
             return np.array(self.model.numeric(name).data)
         except KeyError as error:
             raise InputError(f"{self.path}: found no numeric field {name}, expected an export of Benchdog") from error
+
+    def has_numbers(self, name: str) -> bool:
+        """Whether there is a numeric field of this name."""
+        return mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_NUMERIC, name) >= 0
+
+    def table(self, name: str) -> np.ndarray:
+        """A table in several numbered fields."""
+        count = next(number for number in itertools.count() if not self.has_numbers(f"{name} {number}"))
+        return np.concatenate([self.numbers(f"{name} {number}") for number in range(max(count, 1))])
 
     def text(self, name: str) -> str:
         """A text field."""

@@ -3,8 +3,8 @@
 //! | field | content |
 //! |---|---|
 //! | `tool_timestep_s` | time between samples, s: a whole multiple of the time step |
-//! | `tool_wrench_o` | six a sample: N, and N m about the tool point, O axes |
-//! | `tool_point_o` | three a sample: the tool point in O, m |
+//! | `tool_wrench_o 0`, ... | six a sample: N, and N m about the tool point, O axes |
+//! | `tool_point_o 0`, ... | three a sample: the tool point in O, m |
 //! | `tool_frame` | `board` if the wrench turns with the board, `world` if it keeps the direction that it has at the planned pose |
 //! | `phase_samples` | samples of settling, ramp, hold and release |
 //! | `hand_over_samples` | samples in which the support of the board's weight falls linearly to zero |
@@ -13,7 +13,8 @@
 //! | `joints` | the joints of each hand's arm; hands are separated by `; ` |
 //! | `grip_force_n` | one a hand |
 //!
-//! Sample 0 is the initial state; the wrench of a sample acts in the steps before it.
+//! Sample 0 is the initial state; the wrench of a sample acts in the steps before it. Long tables are in several numbered
+//! fields, one after the other.
 
 use std::io;
 
@@ -23,6 +24,9 @@ use super::{
     xml::{Xml, empty, numbers},
 };
 use crate::model::{load::ForceFrame, scenario::Limits, trace::Phase, wrench::Wrench};
+
+/// The most numbers in a field: whole samples, below the 500 that MuJoCo 3 can read.
+const FIELD_LEN: usize = 480;
 
 /// Writes the element `custom`.
 pub(super) fn custom(
@@ -51,19 +55,29 @@ pub(super) fn custom(
         ("limit_deflection_mm", vec![limits.deflection_mm]),
         ("limit_creep_mm_s", vec![limits.creep_mm_s]),
         ("limit_torque_ratio", vec![limits.torque_ratio]),
+    ];
+    let tables: [(&str, Vec<f64>); 2] = [
         ("tool_wrench_o", states.iter().flat_map(|state| <[f64; 6]>::from(state.wrench_o)).collect()),
         ("tool_point_o", states.iter().flat_map(|state| <[f64; 3]>::from(state.p_ot_m)).collect()),
     ];
     xml.create_element("custom").write_inner_content(|xml| {
         for (name, data) in &numeric {
-            let size = data.len().to_string();
-            empty(xml, "numeric", &[("name", (*name).into()), ("size", size), ("data", numbers(data))])?;
+            numeric_field(xml, (*name).to_owned(), data)?;
+        }
+        for (name, data) in &tables {
+            for (number, part) in data.chunks(FIELD_LEN).enumerate() {
+                numeric_field(xml, format!("{name} {number}"), part)?;
+            }
         }
         texts
             .iter()
             .try_for_each(|(name, data)| empty(xml, "text", &[("name", (*name).into()), ("data", data.clone())]))
     })?;
     Ok(())
+}
+
+fn numeric_field(xml: &mut Xml, name: String, data: &[f64]) -> io::Result<()> {
+    empty(xml, "numeric", &[("name", name), ("size", data.len().to_string()), ("data", numbers(data))])
 }
 
 fn frame_name(frame: ForceFrame) -> &'static str {
