@@ -1,10 +1,10 @@
 //! An arm of the plan with what its bodies, contacts and servos have in common.
 
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3};
 
 use super::super::{
     arm::weight_torque_nm,
-    bodies::ArmBodies,
+    bodies::{ArmBodies, MovingBody},
     conditions::Conditions,
     pad_shape::{GraspingHand, PadLoading, PadPart, pad_parts},
 };
@@ -50,10 +50,9 @@ impl<'a> ExportedArm<'a> {
         let bodies = ArmBodies::new(robot, arm);
         let loading =
             PadLoading::new(&GraspingHand { arm, bodies: &bodies, x_og: hold.x_og }, object, grip_force_n, softness_s2);
-        let finger_kg = bodies.bodies[bodies.body_of_joint[arm.joints.len()]].mass.mass_kg + object.mass_kg;
         Self {
             fed_forward_nm: weight_torque_nm(robot, index, &hold.q_rad, gap_m),
-            finger_per_kg: inverse_mass_per_kg(robot, index, finger_kg),
+            finger_per_kg: inverse_mass_per_kg(robot, index, &bodies, object.mass_kg),
             arm,
             hold,
             bodies,
@@ -87,16 +86,25 @@ impl<'a> ExportedArm<'a> {
 }
 
 /// Inverse mass of a finger as MuJoCo's contacts assume it, 1/kg: the mean over all directions at zero joint angles, `(1/3)
-/// (trace(J M^-1 J') + 1/m)`, with the Jacobian `J` of G, the mass matrix `M` of the arm, and the mass `m` of finger and
-/// drive.
-fn inverse_mass_per_kg(robot: &Robot, arm_index: usize, finger_kg: f64) -> f64 {
+/// (trace(J M^-1 J') + 1/m)`, with the Jacobian `J` of the finger's centre of mass, the mass matrix `M` of the arm, and the
+/// mass `m` of finger and drive.
+fn inverse_mass_per_kg(robot: &Robot, arm_index: usize, bodies: &ArmBodies, drive_kg: f64) -> f64 {
     let chain = Chain::new(robot, arm_index, 0.0);
     let zero_rad = vec![0.0; chain.dof()];
-    let jacobian = chain.jacobian_w(&zero_rad).fixed_rows::<3>(0).into_owned();
+    let finger = bodies.body_of_joint[chain.dof()];
+    let mass = &bodies.bodies[finger].mass;
+    let com_w = pose_at_zero(bodies, finger) * Point3::from(mass.com_b);
+    let r_m = com_w.coords - chain.gripper_pose(&zero_rad).translation.vector;
+    let of_g = chain.jacobian_w(&zero_rad);
+    let jacobian = of_g.fixed_rows::<3>(0) - r_m.cross_matrix() * of_g.fixed_rows::<3>(3);
     // The mass matrix of a chain of bodies with mass can be inverted; without joints there is nothing to add.
-    let of_arm = chain
-        .mass_matrix(&zero_rad)
-        .cholesky()
-        .map_or(0.0, |mass| (&jacobian * mass.solve(&jacobian.transpose())).trace());
-    (of_arm + 1.0 / finger_kg) / 3.0
+    let inverse = chain.mass_matrix(&zero_rad).cholesky();
+    let of_arm = inverse.map_or(0.0, |inverse| (&jacobian * inverse.solve(&jacobian.transpose())).trace());
+    (of_arm + 1.0 / (mass.mass_kg + drive_kg)) / 3.0
+}
+
+/// The pose of a body in W with all joints at zero.
+fn pose_at_zero(bodies: &ArmBodies, body: usize) -> Pose {
+    let MovingBody { parent, x_pj, .. } = &bodies.bodies[body];
+    parent.map_or(Pose::identity(), |parent| pose_at_zero(bodies, parent)) * x_pj
 }
