@@ -3,22 +3,24 @@
 
     tools/crosscheck.py SCENARIO_OR_PLAN [...] [--benchdog FILE] [--failing-load] [--tolerance SHARE] [--json]
 
-Each argument is a scenario (.toml), a plan (.json) or a folder: of scenarios, or of plans such as the output folder of
-`benchdog run`. Benchdog plans what has no plan, simulates it and gives its verdict. Then `benchdog export --mjcf` writes
-the scene, MuJoCo plays it here, and the motion is judged by the same limits and in the same order (docs/method.md,
-section 8). Everything that is played and judged is in the exported file; section 7.7 describes it. Both results are
-printed side by side: the verdict, the first check that failed, the largest deflection, slip, rotation and torque ratio.
+Each argument is a scenario (.toml), a plan (.json) or a folder: of scenarios, or of plans such as the output folder
+of `benchdog run`. Benchdog plans what has no plan, simulates it and gives its verdict. Then `benchdog export --mjcf`
+writes the scene, MuJoCo plays it here, and the motion is judged by the same limits and in the same order
+(docs/method.md, section 8). Slip and rotation count from the hand-over of the board's weight, the sag of the tool
+point from there to the end of settling. Everything that is played and judged is in the exported file; section 7.7
+describes it. Both results are printed side by side: the verdict, the first check that failed, the largest deflection,
+slip, rotation and torque ratio.
 
-`--failing-load` also searches the multiple of the load at which the hold fails: in MuJoCo here, by bisection to 0.1 %, and
-with `benchdog margin`.
+`--failing-load` also searches the multiple of the load at which the hold fails: in MuJoCo here, by bisection to 0.1
+%, and with `benchdog margin`.
 
-Not compared are plans that Benchdog does not simulate (nothing found, bodies that touch, a person who would not stand so)
-and holds that fail because robot or board touch the person, who is not in the exported file.
+Not compared are plans that Benchdog does not simulate (nothing found, bodies that touch, a person who would not stand
+so) and holds that fail because robot or board touch the person, who is not in the exported file.
 
 The exit code is 0 if both engines agree, 1 if a verdict differs, or a deflection where both hold by more than the
 tolerance, and 2 for invalid input.
 
-Needs the packages `mujoco` (developed with 4.0.0) and `numpy`.
+Needs Python 3.9 and the packages `mujoco` (measured with 3.3.7) and `numpy`.
 """
 
 from __future__ import annotations
@@ -39,8 +41,8 @@ import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 
-# The verdict that each check gives if its limit is the first that is crossed. Of checks that are crossed at the same sample
-# the first in this order counts.
+# The verdict that each check gives if its limit is the first that is crossed. Of checks that are crossed at the same
+# sample the first in this order counts.
 VERDICTS = {
     "drop": "drops",
     "contact_lost": "drops",
@@ -299,7 +301,7 @@ def open_ms(scene: Scene, condition: np.ndarray) -> np.ndarray:
 
 
 def creep_mm_s(scene: Scene, hands_p: np.ndarray) -> Optional[float]:
-    """The slope of the hands' positions over the second half of the hold; None if it ended early or the load changes."""
+    """The slope of the hands' positions in the second half of the hold; None if it ended early or the load changes."""
     end, half = scene.settle + scene.ramp + scene.hold, (scene.hold - 1) // 2
     first = end - half
     load = np.hstack([scene.wrenches_o, scene.points_o])[first : end + 1]
@@ -341,7 +343,7 @@ def benchdog(binary: Path, *arguments: object) -> str:
     try:
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
     except OSError as error:
-        raise InputError(f"{binary}: {error.strerror}, expected the program benchdog (`cargo build --release`)") from error
+        raise InputError(f"{binary}: {error.strerror}, expected the program of `cargo build --release`") from error
     if done.returncode not in ENDED:
         raise InputError(done.stderr.strip() or f"{' '.join(command)}: exit code {done.returncode}")
     return done.stdout
