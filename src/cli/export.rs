@@ -16,7 +16,8 @@ pub fn export(args: &ExportArgs) -> Result<Exit, CliError> {
     let loaded = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
     inputs::protect(&loaded.inputs, [args.mjcf.clone()])?;
     let checked = CheckedPlan::new(&loaded.robot, &loaded.plan, &loaded.scenario.human, &loaded.scenario.tool)?;
-    let text = sim::mjcf(&checked, &Conditions::of(&loaded.scenario)).map_err(CliError::Simulation)?;
+    let conditions = Conditions::of(&loaded.scenario);
+    let text = sim::mjcf(&checked, &conditions, &loaded.scenario.limits).map_err(CliError::Simulation)?;
     report::file::write_whole(&args.mjcf, text.as_bytes())?;
     Ok(Exit::Met)
 }

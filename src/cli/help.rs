@@ -70,8 +70,9 @@ Examples:
 
 /// `benchdog export --help`.
 pub const EXPORT: &str = "\
-Example:
-  benchdog export plan.json --mjcf scene.xml";
+Examples:
+  benchdog export plan.json --mjcf scene.xml
+  python3 tools/crosscheck.py plan.json     plays the export in MuJoCo and compares the verdicts";
 
 /// `benchdog curve --help`.
 pub const CURVE: &str = "\

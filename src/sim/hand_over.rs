@@ -28,6 +28,11 @@ impl HandOver {
         }
     }
 
+    /// The number of steps in which the grippers close, and in which the weight is handed over.
+    pub fn steps(&self) -> [usize; 2] {
+        [self.grip_steps, self.hand_over_steps]
+    }
+
     /// Goes on to the next step.
     pub fn advance(&mut self) {
         self.step += 1;

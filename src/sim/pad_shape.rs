@@ -82,12 +82,10 @@ impl PadLoading {
         self.softness_s2 * (1.0 / self.finger_kg + (1.0 + turning) / self.board_kg)
     }
 
-    /// Penetration of the corners of a core with these half sides, and of the ball at the centre under its share, m.
-    fn penetrations_m(&self, [x, z]: [f64; 2]) -> [f64; 2] {
+    /// Mean compliance of the contacts at the corners of a box with these half sides, m/N.
+    fn corner_compliance_m_n(&self, [x, z]: [f64; 2]) -> f64 {
         let corners = [[x, z], [x, -z], [-x, z], [-x, -z]];
-        let corner_m_n = corners.iter().map(|corner| self.compliance_m_n(*corner)).sum::<f64>() / 4.0;
-        let corner_n = (1.0 - CENTRE_SHARE) / 4.0 * self.force_n;
-        [corner_n * corner_m_n, CENTRE_SHARE * self.force_n * self.compliance_m_n([0.0; 2])]
+        corners.iter().map(|corner| self.compliance_m_n(*corner)).sum::<f64>() / 4.0
     }
 }
 
@@ -115,6 +113,8 @@ pub(super) struct PadPart {
     pub solid: Solid,
     /// Pose of its centre in P.
     pub x_pc: Pose,
+    /// Mean compliance of its contacts with the board, m/N.
+    pub compliance_m_n: f64,
 }
 
 /// The parts of a pad: the core, the ball at its centre, and the whole face.
@@ -127,17 +127,25 @@ pub(super) fn pad_parts(pad: &Pad, loading: &PadLoading) -> [PadPart; 3] {
     let half_m = pad.size_m.map(|side| side / 2.0);
     let corner_m = mean_radius_m(half_m) / (1.0 - CENTRE_SHARE);
     let core_m = half_m.map(|half| half * corner_m / half_m[0].hypot(half_m[1]));
-    let [core_penetration_m, ball_penetration_m] = loading.penetrations_m(core_m);
-    let part = |name, solid, recess_m: f64| PadPart {
+    let [core_m_n, ball_m_n, face_m_n] = [
+        loading.corner_compliance_m_n(core_m),
+        loading.compliance_m_n([0.0; 2]),
+        loading.corner_compliance_m_n(half_m),
+    ];
+    // Penetration of the corners of the core, and of the ball at the centre under its share.
+    let core_penetration_m = (1.0 - CENTRE_SHARE) / 4.0 * loading.force_n * core_m_n;
+    let ball_penetration_m = CENTRE_SHARE * loading.force_n * ball_m_n;
+    let part = |name, solid, recess_m: f64, compliance_m_n| PadPart {
         name,
         solid,
         x_pc: Isometry3::translation(0.0, 0.0, -recess_m - DEPTH_M / 2.0),
+        compliance_m_n,
     };
     let flat = |[x, y]: [f64; 2]| Solid::Box { half_m: [x, y, DEPTH_M / 2.0] };
     [
-        part("core", flat(core_m), 0.0),
-        part("ball", Solid::Ball { radius_m: DEPTH_M / 2.0 }, core_penetration_m - ball_penetration_m),
-        part("face", flat(half_m), FACE_RECESS * core_penetration_m),
+        part("core", flat(core_m), 0.0, core_m_n),
+        part("ball", Solid::Ball { radius_m: DEPTH_M / 2.0 }, core_penetration_m - ball_penetration_m, ball_m_n),
+        part("face", flat(half_m), FACE_RECESS * core_penetration_m, face_m_n),
     ]
 }
 

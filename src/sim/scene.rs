@@ -21,6 +21,7 @@ use crate::{
         frames::Pose,
         load::ForceFrame,
         plan::{PlacedObject, Plan},
+        scenario::SimulationSettings,
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },

@@ -1,0 +1,110 @@
+//! The bodies: arms, fingers with their pads, and the board.
+
+use std::io;
+
+use nalgebra::{Isometry3, Translation3, Vector3};
+
+use super::{
+    super::{bodies::MovingBody, gripper::FINGER_DAMPING_N_S_M, pad::x_gp, pad_shape::Solid},
+    exported_arm::ExportedArm,
+    scenery,
+    xml::{Xml, empty, geom, numbers, pose_attributes, site, with},
+};
+use crate::{
+    model::plan::PlacedObject,
+    robot::{JointKind, Robot},
+};
+
+/// The group of geoms that touch.
+const TOUCHING_GROUP: u8 = 0;
+const PAD_RGBA: [f64; 4] = [0.15, 0.15, 0.15, 1.0];
+const BOARD_RGBA: [f64; 4] = [0.82, 0.65, 0.42, 1.0];
+
+/// The children of a body, or of the world, recursively. The planned joint positions are appended to `positions`, in the
+/// order of MuJoCo's coordinates.
+pub(super) fn children(
+    xml: &mut Xml,
+    robot: &Robot,
+    arm: &ExportedArm<'_>,
+    drive_kg: f64,
+    parent: Option<usize>,
+    positions: &mut Vec<f64>,
+) -> io::Result<()> {
+    let (hand_body, x_bc) = arm.hand();
+    if hand_body == parent {
+        site(xml, &format!("{} hand", arm.hold.name), &x_bc)?;
+    }
+    for (index, body) in arm.bodies.bodies.iter().enumerate().filter(|(_, body)| body.parent == parent) {
+        let joint = &robot.joints[body.joint];
+        let name = robot.links[joint.child_link].name.as_str();
+        let place = arm.bodies.body_of_joint.iter().position(|&of| of == index).unwrap_or_default();
+        let element = with(xml.create_element("body").with_attribute(("name", name)), &pose_attributes(&body.x_pj));
+        element.write_inner_content(|xml| {
+            inertial(xml, body)?;
+            let finger = place.checked_sub(arm.arm.joints.len());
+            positions.push(finger.map_or_else(|| arm.hold.q_rad[place], |finger| arm.finger_m[finger]));
+            let kind = if joint.kind == JointKind::Prismatic { "slide" } else { "hinge" };
+            let [damping, armature] = finger.map_or([0.0; 2], |_| [FINGER_DAMPING_N_S_M, drive_kg]);
+            let attributes = [
+                ("name", joint.name.clone()),
+                ("type", kind.into()),
+                ("axis", numbers(joint.axis_j.as_slice())),
+                ("damping", damping.to_string()),
+                ("armature", armature.to_string()),
+            ];
+            empty(xml, "joint", &attributes)?;
+            scenery::moving(xml, robot, arm, index)?;
+            if let Some(k) = finger {
+                pads(xml, robot, arm, k, body)?;
+            }
+            children(xml, robot, arm, drive_kg, Some(index), positions)
+        })?;
+    }
+    Ok(())
+}
+
+fn inertial(xml: &mut Xml, body: &MovingBody) -> io::Result<()> {
+    let i = &body.mass.inertia_b;
+    let full = [i[(0, 0)], i[(1, 1)], i[(2, 2)], i[(0, 1)], i[(0, 2)], i[(1, 2)]];
+    let attributes = [
+        ("pos", numbers(body.mass.com_b.as_slice())),
+        ("mass", body.mass.mass_kg.to_string()),
+        ("fullinertia", numbers(&full)),
+    ];
+    empty(xml, "inertial", &attributes)
+}
+
+/// The parts of a finger's pad, in the finger's body.
+fn pads(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, k: usize, body: &MovingBody) -> io::Result<()> {
+    let finger = &arm.arm.gripper.fingers[k];
+    let placement = arm.bodies.placements[arm.arm.gripper.frame_link];
+    let axis_j: Vector3<f64> = robot.joints[finger.joint].axis_j.into_inner();
+    let x_gf = placement.x_bl.inverse() * body.x_pj * Translation3::from(axis_j * finger.closed_m);
+    let x_fp = x_gf.inverse() * x_gp(&finger.pad, k);
+    for part in arm.parts(k) {
+        let (name, x_fc) = (arm.part_name(k, &part), x_fp * part.x_pc);
+        let look = (TOUCHING_GROUP, PAD_RGBA);
+        match part.solid {
+            Solid::Box { half_m } => geom(xml, &name, ("box", &half_m), &x_fc, look)?,
+            Solid::Ball { radius_m } => geom(xml, &name, ("sphere", &[radius_m]), &x_fc, look)?,
+        }
+    }
+    Ok(())
+}
+
+/// The board, a free body, with the site of the tool: at the tool point, with the axes of O.
+pub(super) fn board(xml: &mut Xml, object: &PlacedObject, p_ot_m: &Vector3<f64>) -> io::Result<()> {
+    let [x, y, z] = object.size_m;
+    let element = with(xml.create_element("body").with_attribute(("name", "board")), &pose_attributes(&object.x_wo));
+    element.write_inner_content(|xml| {
+        empty(xml, "freejoint", &[("name", "board".into())])?;
+        let inertia = [y * y + z * z, x * x + z * z, x * x + y * y].map(|sum| sum * object.mass_kg / 12.0);
+        let attributes =
+            [("pos", "0 0 0".to_owned()), ("mass", object.mass_kg.to_string()), ("diaginertia", numbers(&inertia))];
+        empty(xml, "inertial", &attributes)?;
+        let half_m = object.size_m.map(|side| side / 2.0);
+        geom(xml, "board", ("box", &half_m), &Isometry3::identity(), (TOUCHING_GROUP, BOARD_RGBA))?;
+        site(xml, "tool", &Isometry3::from(*p_ot_m))
+    })?;
+    Ok(())
+}
