@@ -4,7 +4,7 @@
 //! data too: MuJoCo does not interpret `<custom>` fields, so the user of the file applies the wrench at the board's
 //! site `tool`. The file must not contain anything that only rapier needs.
 //!
-//! Checked by hand in MuJoCo 3: in `scenarios/plans/cut-rim.json` the tool tip deflects by 5.39 mm there and by 5.31 mm
+//! Checked by hand in MuJoCo 3: in `scenarios/plans/meets-itself.json` the tool tip deflects by 5.39 mm there and by 5.31 mm
 //! here. MuJoCo's contacts are much softer, so the faces are farther behind the cores, and pads that tilt rock by that
 //! much: under the quickstart's drill, which tilts them, the tip deflects by 6.2 mm there and by 3.9 mm here and in the
 //! statics.
