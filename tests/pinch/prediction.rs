@@ -43,7 +43,7 @@ fn simulated(case: &Case, load_factor: f64) -> Judgement {
 
 fn predicted(case: &Case, load_factor: f64) -> CompliantResponse {
     match StabilityWorkspace::new().response(&case.hold, load_factor).unwrap() {
-        ResponseOutcome::Found(response) => response,
+        ResponseOutcome::Found(response) => *response,
         other => panic!("{}: {other:?}", case.plan.name),
     }
 }
