@@ -4,6 +4,7 @@
 //! primitives exclude pairs that are far apart. The required distances are those of docs/method.md#35-clearances.
 
 mod clearances;
+mod link_shapes;
 mod near_pairs;
 mod nearest;
 mod person_clearance;
@@ -15,6 +16,7 @@ use nalgebra::Point3;
 use parry3d_f64::glamx::DVec3;
 
 use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
+use link_shapes::LinkShapes;
 pub use near_pairs::{BodyRef, NearPair};
 pub use nearest::Nearest;
 pub use person_clearance::PersonClearance;
@@ -115,35 +117,6 @@ pub struct CollisionModel {
     fingers: Vec<Vec<usize>>,
 }
 
-#[derive(Clone)]
-struct LinkShapes {
-    pieces: Vec<Piece>,
-    centre_l: Point3<f64>,
-    radius_m: f64,
-}
-
-impl LinkShapes {
-    /// Minimum of `bound_m` and the measure to another link, m.
-    fn distance_within(&self, x_wl: &Pose, other: &Self, x_wm: &Pose, bound_m: f64, measure: Measure) -> f64 {
-        let centres_m = (x_wl * self.centre_l - x_wm * other.centre_l).norm();
-        if centres_m >= self.radius_m + other.radius_m + bound_m {
-            return bound_m;
-        }
-        let others = place_all(&other.pieces, x_wm);
-        others.fold(bound_m, |bound_m, other| self.distance_to_within(x_wl, &other, bound_m, measure))
-    }
-
-    /// Minimum of `bound_m` and the signed distance to another body, m.
-    fn signed_distance_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64) -> f64 {
-        place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.signed_distance_within(other, bound_m))
-    }
-
-    /// Minimum of `bound_m` and the measure to another body, m.
-    fn distance_to_within(&self, x_wl: &Pose, other: &Placed<'_>, bound_m: f64, measure: Measure) -> f64 {
-        place_all(&self.pieces, x_wl).fold(bound_m, |bound_m, piece| piece.distance_within(other, bound_m, measure))
-    }
-}
-
 /// A link in W.
 struct PlacedLink<'a> {
     pieces: &'a [Placed<'a>],
@@ -241,7 +214,7 @@ impl CollisionModel {
         let board = board.placed(&scene.x_wo);
         let mut margin_m = f64::INFINITY;
         for pair in &self.self_pairs {
-            let ([a, b], clearance_m) = (pair.links, pair.required_m(scene));
+            let ([a, b], clearance_m) = (pair.links, pair.required_m(scene.clearance_m));
             let bound_m = margin_m + clearance_m;
             let nearest = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], bound_m, measure);
             margin_m = nearest - clearance_m;
@@ -308,7 +281,7 @@ impl CollisionModel {
 
     fn robot_self(&self, scene: &Scene<'_>, links: &[PlacedLink<'_>]) -> Option<Violation> {
         self.self_pairs.iter().find_map(|pair| {
-            let ([a, b], required_m) = (pair.links, pair.required_m(scene));
+            let ([a, b], required_m) = (pair.links, pair.required_m(scene.clearance_m));
             let distance_m = links[a].too_close_to(&links[b], required_m)?;
             Some(Violation { bodies: [Body::Link(a), Body::Link(b)], required_m, distance_m })
         })

@@ -56,7 +56,7 @@ impl CollisionModel {
             scene.person.iter().map(|part| Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m)).collect();
         let mut found = Vec::new();
         for pair in &self.self_pairs {
-            let ([a, b], required_m) = (pair.links, pair.required_m(scene));
+            let ([a, b], required_m) = (pair.links, pair.required_m(scene.clearance_m));
             let centres_m = (self.centre_w(scene, a) - self.centre_w(scene, b)).norm();
             if centres_m <= self.links[a].radius_m + self.links[b].radius_m + required_m + within_m {
                 pairs(&links[a], &links[b], required_m, within_m, &mut found);

@@ -64,8 +64,11 @@ impl CollisionModel {
         for link in (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
             let shapes = &self.links[link];
             let centre_w = super::point_w(&poses[link], &shapes.centre_l);
-            if !shapes.pieces.is_empty() && board.meets_sphere(centre_w, shapes.radius_m + found.bound_m()) {
-                let distance_m = shapes.signed_distance_within(&poses[link], &board, found.bound_m());
+            // A link inside the board may be deeper in it than its own radius.
+            let reach_m = shapes.radius_m + found.bound_m().max(0.0);
+            if !shapes.pieces.is_empty() && board.meets_sphere(centre_w, reach_m) {
+                let (bound_m, measure) = (found.bound_m(), Measure::SignedDistance);
+                let distance_m = shapes.distance_to_within(&poses[link], &board, bound_m, measure);
                 found.offer([Body::Link(link), Body::Board], distance_m);
             }
         }

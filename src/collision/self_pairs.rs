@@ -1,6 +1,6 @@
 //! The pairs of links that must not touch, and the distance that each can be asked to keep (docs/method.md#35-clearances).
 
-use super::{LinkShapes, Scene, shapes::Measure};
+use super::{link_shapes::LinkShapes, shapes::Measure};
 use crate::robot::{JointKind, Robot};
 
 /// Pairs with at most this many moving joints between their links have a largest distance: the design of the arm.
@@ -23,9 +23,9 @@ pub(super) struct SelfPair {
 }
 
 impl SelfPair {
-    /// The required distance in a scene, m.
-    pub fn required_m(&self, scene: &Scene<'_>) -> f64 {
-        scene.clearance_m.min(self.most_m)
+    /// The required distance, m, where `clearance_m` is asked for.
+    pub fn required_m(&self, clearance_m: f64) -> f64 {
+        clearance_m.min(self.most_m)
     }
 }
 

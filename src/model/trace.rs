@@ -101,7 +101,7 @@ pub struct Sample {
     /// is below 1 cm; other samples repeat the last value. `None` if the plan has no person.
     pub person_distance_m: Option<f64>,
     /// Least distance of the robot from itself and from the board, m, without the pairs that may touch; negative for an
-    /// overlap: its depth. It is measured every 10 ms, and in every step while it is below 4 mm; other samples repeat the last
+    /// overlap: its depth. It is measured every 10 ms, and in every step while it is below 1 mm; other samples repeat the last
     /// value. `None` if no two bodies can meet, or if an older recording does not contain it.
     pub robot_clearance_m: Option<f64>,
 }

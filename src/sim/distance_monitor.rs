@@ -19,9 +19,9 @@ const INTERVAL_S: f64 = 0.01;
 /// contact between two measurements.
 const NEAR_PERSON_M: f64 = 0.01;
 
-/// The same for the robot and itself or the board, which move by millimetres relative to each other: at up to 0.4 m/s. It is
+/// The same for the robot and itself or the board, which move by millimetres relative to each other: at up to 0.1 m/s. It is
 /// less than the usual clearance of a plan.
-const NEAR_ROBOT_M: f64 = 0.004;
+const NEAR_ROBOT_M: f64 = 0.001;
 
 /// The nearest bodies are first searched for within the last distance plus this, m: nearly always enough, and fast.
 const SLACK_M: f64 = 0.02;

@@ -62,7 +62,8 @@
 //! A step of two arms takes about 180 us, 11 times real time on one core, a step of one arm 51 us. Of its 2.5 million
 //! instructions 99 % are the engine's: 43 % mass matrices and Coriolis terms with their factorisation, repeated in each
 //! of four substeps, 37 % contact rows and sweeps, 7 % forward kinematics. Reading the state and the balance take 0.3 %
-//! each, the person's distance at most 0.5 %; the judge adds 2 %, nearly all of it the fingerprint. Three substeps
+//! each, the person's distance at most 0.5 %, the robot's from itself about 3 %;
+//! the judge adds 2 %, nearly all of it the fingerprint. Three substeps
 //! would take a quarter less time, but small deflections would exceed the bounds above; with four sweeps instead of
 //! six, hands slide at a release. `benches/sim.rs` measures it.
 //!

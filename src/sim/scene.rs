@@ -21,7 +21,6 @@ use crate::{
         frames::Pose,
         load::ForceFrame,
         plan::{PlacedObject, Plan},
-        scenario::SimulationSettings,
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },

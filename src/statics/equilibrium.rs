@@ -138,7 +138,7 @@ impl CompliantResponse {
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResponseOutcome {
     /// The response.
-    Found(CompliantResponse),
+    Found(Box<CompliantResponse>),
     /// No equilibrium exists at this load factor; 0 means under the weight alone.
     NoEquilibrium {
         /// The load factor.

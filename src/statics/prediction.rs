@@ -62,7 +62,7 @@ impl StabilityWorkspace {
             let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(UNSTABLE) };
             utilisation = utilisation.max(response.deflection_mm() / limits.deflection_mm);
         }
-        Ok((utilisation, Some(response)))
+        Ok((utilisation, Some(*response)))
     }
 
     /// The stability figures of a plan; `None` without a load factor or without a compliant equilibrium at load 1.

@@ -102,7 +102,7 @@ impl StabilityWorkspace {
             }
         }
         let loaded = equilibria.remove(1);
-        Ok(ResponseOutcome::Found(CompliantResponse::between(model, &equilibria[0], loaded)))
+        Ok(ResponseOutcome::Found(Box::new(CompliantResponse::between(model, &equilibria[0], loaded))))
     }
 
     /// The equilibrium by the interior point, or by clarabel if that does not converge.

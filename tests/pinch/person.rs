@@ -1,7 +1,7 @@
 //! A person too close to robot and board, and one at a safe distance.
 
 use benchdog::{
-    collision::{CollisionModel, PersonClearance, PersonPart},
+    collision::{CollisionModel, PersonClearance, PersonPart, Scene},
     human::{Human, default_tool, standing_pose_w},
     judge::{Judgement, judge},
     model::{
@@ -12,7 +12,7 @@ use benchdog::{
         verdict::{CheckKind, VerdictKind},
         wrench::Wrench,
     },
-    robot::Robot,
+    robot::{ArmState, Robot},
     sim::Conditions,
 };
 use nalgebra::Vector3;
@@ -114,4 +114,31 @@ fn the_distance_is_measured_in_every_step_if_small_and_every_fifth_otherwise() {
     assert!((200..300).all(|step| moved(&near, step)));
     let (far, _) = simulated(robot, &with_person_at(robot, &plan, 0.05));
     assert!((200..300).all(|step| moved(&far, step) == (step % 5 == 0)));
+}
+
+#[test]
+fn the_robots_distance_from_itself_and_the_board_is_that_of_its_links_in_the_sample() {
+    let robot = common::baxter();
+    let plan = pulled(robot, 20.0);
+    let (trace, _) = simulated(robot, &plan);
+    let model = CollisionModel::new(robot);
+    let arms: Vec<usize> = plan.arms.iter().map(|hold| robot.arm_index(&hold.name).unwrap()).collect();
+    for sample in trace.samples.iter().step_by(5) {
+        let states = arms.iter().zip(&sample.arms).map(|(&arm, state)| ArmState {
+            arm,
+            q_rad: &state.q_rad,
+            finger_travel_m: [state.finger_m[0], state.finger_m[1]],
+        });
+        let link_poses = robot.link_poses(&robot.positions(&states.collect::<Vec<_>>()));
+        let scene = Scene {
+            link_poses: &link_poses,
+            holding: &arms,
+            board_size_m: plan.object.size_m,
+            x_wo: sample.x_wo,
+            person: &[],
+            clearance_m: 0.0,
+        };
+        let nearest = model.nearest_of_robot(&scene, f64::INFINITY).unwrap();
+        assert_eq!(sample.robot_clearance_m, Some(nearest.distance_m));
+    }
 }

@@ -4,7 +4,7 @@
 use std::{convert::Infallible, thread};
 
 use benchdog::{
-    judge::{Judgement, failing_load, judge},
+    judge::{Judgement, failing_load},
     model::{plan::Plan, scenario::Limits, verdict::VerdictKind},
     sim::{Conditions, simulate},
     statics::{CompliantResponse, ContactModel, LimitCrossing, ResponseOutcome, StabilityWorkspace},
@@ -12,7 +12,7 @@ use benchdog::{
 
 use crate::{
     common::{baxter, checked, ten_plans},
-    holds::{FRICTION, SETTINGS, limits},
+    holds::{FRICTION, SETTINGS, judged_grasp, limits},
 };
 
 /// A share of the load at which most pads are far from their limits.
@@ -38,12 +38,12 @@ fn cases() -> Vec<Case> {
 fn simulated(case: &Case, load_factor: f64) -> Judgement {
     let trace =
         simulate(&checked(baxter(), &case.plan), &Conditions::new(FRICTION, SETTINGS).scaled(load_factor)).unwrap();
-    judge(&trace, &case.limits)
+    judged_grasp(trace, &case.limits)
 }
 
 fn predicted(case: &Case, load_factor: f64) -> CompliantResponse {
     match StabilityWorkspace::new().response(&case.hold, load_factor).unwrap() {
-        ResponseOutcome::Found(response) => response,
+        ResponseOutcome::Found(response) => *response,
         other => panic!("{}: {other:?}", case.plan.name),
     }
 }

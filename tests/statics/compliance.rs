@@ -13,7 +13,7 @@ use crate::fixtures::{limits, random_hold, strong_hand, two_strong_hands};
 
 fn response(hold: &ContactModel, load_factor: f64) -> CompliantResponse {
     match StabilityWorkspace::new().response(hold, load_factor).unwrap() {
-        ResponseOutcome::Found(response) => response,
+        ResponseOutcome::Found(response) => *response,
         other => panic!("expected an equilibrium, found {other:?}"),
     }
 }
