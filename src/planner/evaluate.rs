@@ -1,10 +1,12 @@
 //! The evaluation of a candidate: every constraint in order of cost, and the objective.
 
 use nalgebra::Point3;
+use rayon::prelude::*;
 
 use super::{
     candidate::{Candidate, Placement},
-    library::{GraspingArm, posture_muscular, within_strength},
+    library::{BoardGrasp, GraspingArm, posture_muscular, within_strength},
+    near_miss::NearMisses,
     outcome::Rejection,
     problem::Problem,
     stats::SearchStats,
@@ -17,7 +19,7 @@ use crate::{
         frames::Pose,
         operation::Operation,
         plan::{ArmHold, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
-        scenario::{Scenario, StabilityKind},
+        scenario::{Grip, Scenario, StabilityKind},
     },
     statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, StabilityWorkspace},
 };
@@ -26,6 +28,8 @@ use crate::{
 pub struct Evaluator<'a> {
     pub problem: Problem<'a>,
     pub stats: SearchStats<'a>,
+    /// The candidates that kept every constraint but stability and came nearest to it.
+    pub near_misses: NearMisses,
     stability: StabilityWorkspace,
 }
 
@@ -89,7 +93,7 @@ impl Configuration {
 impl<'a> Evaluator<'a> {
     /// An evaluator of a problem.
     pub fn new(problem: Problem<'a>, stats: SearchStats<'a>) -> Self {
-        Self { problem, stats, stability: StabilityWorkspace::new() }
+        Self { problem, stats, near_misses: NearMisses::default(), stability: StabilityWorkspace::new() }
     }
 
     /// Tests every constraint, the cheapest first, and computes the objective.
@@ -100,6 +104,7 @@ impl<'a> Evaluator<'a> {
         }
         let utilisation = self.utilisation(&candidate, &configuration.placement.x_wo);
         if utilisation > 1.0 {
+            self.near_misses.add(utilisation, &candidate, &configuration.placement.x_wo);
             return Err(Box::new(Rejected { why: Rejection::Stability, candidate, configuration, utilisation }));
         }
         let comfort = comfort(&self.problem, &candidate, &configuration);
@@ -130,13 +135,7 @@ impl<'a> Evaluator<'a> {
     /// The share of the limits of stability that a grasp uses, safety factor included: at most 1 if it is stable, infinite if
     /// there is no equilibrium.
     pub fn utilisation(&mut self, candidate: &Candidate, x_wo: &Pose) -> f64 {
-        contact_model(&self.problem, candidate, x_wo)
-            .and_then(|model| {
-                let limits = self.problem.stability_limits();
-                self.stability.utilisation(&model, &limits, self.problem.scenario.planner.stability)
-            })
-            // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
-            .unwrap_or(f64::INFINITY)
+        utilisation(&self.problem, &mut self.stability, candidate, x_wo)
     }
 
     /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
@@ -159,6 +158,24 @@ impl<'a> Evaluator<'a> {
         let model = ContactModel::from_hands(hands.ok()?, object, operation);
         self.stability.predict(&model, &scenario.limits).ok()?
     }
+}
+
+/// See [`Evaluator::utilisation`].
+fn utilisation(problem: &Problem<'_>, stability: &mut StabilityWorkspace, candidate: &Candidate, x_wo: &Pose) -> f64 {
+    contact_model(problem, candidate, x_wo)
+        .and_then(|model| {
+            stability.utilisation(&model, &problem.stability_limits(), problem.scenario.planner.stability)
+        })
+        // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
+        .unwrap_or(f64::INFINITY)
+}
+
+/// The utilisation of each grasp with the roll of the scenario's tool, see [`Evaluator::utilisation`].
+pub fn utilisations(problem: &Problem<'_>, grasps: &[&BoardGrasp]) -> Vec<f64> {
+    let of_grasp = |stability: &mut StabilityWorkspace, grasp: &&BoardGrasp| {
+        utilisation(problem, stability, &Candidate::without_person(grasp), &grasp.x_wo)
+    };
+    grasps.par_iter().map_init(StabilityWorkspace::new, of_grasp).collect()
 }
 
 /// Tests what depends on the person and the board's pose alone.
@@ -265,12 +282,25 @@ pub fn contact_model(
     candidate: &Candidate,
     x_wo: &Pose,
 ) -> Result<ContactModel, ContactModelError> {
-    let Scenario { operation, grip, .. } = problem.scenario;
+    contact_model_with(problem, candidate, x_wo, &problem.scenario.grip)
+}
+
+/// The contact model of a candidate's grasp with another grip force or friction than the scenario's.
+pub fn contact_model_with(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+    grip: &Grip,
+) -> Result<ContactModel, ContactModelError> {
     let object = placed_object(problem.scenario, *x_wo);
     let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
-        .iter()
+        .into_iter()
         .zip(&problem.robot.arms)
-        .map(|(own, arm)| HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, own, &object, grip.friction))
+        .map(|(own, arm)| {
+            let own = ArmHold { grip_force_n: grip.force_n, ..own };
+            HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, &own, &object, grip.friction)
+        })
         .collect();
-    Ok(ContactModel::from_hands(hands?, &object, &operation.rolled(candidate.work.roll_rad)))
+    let operation = problem.scenario.operation.rolled(candidate.work.roll_rad);
+    Ok(ContactModel::from_hands(hands?, &object, &operation))
 }
