@@ -46,7 +46,7 @@ pub struct Infeasible {
     /// Why the robot has no grasp of the board at all; `None` if it has.
     pub library: Option<EmptyLibrary>,
     /// The most stable of the grasps that kept every constraint but stability; `None` without such a grasp.
-    pub nearest: Option<NearMiss>,
+    pub nearest: Option<Box<NearMiss>>,
     /// What a person without limits of posture and place could work on; `None` if the scenario has no such limits.
     pub unnatural: Option<UnnaturalHolds>,
 }
@@ -348,7 +348,7 @@ mod tests {
             "the nearest grasp resists 0.79 times the load, 1.10 times is required (first limit: left upper pad: tilt); a \
              grip force of 42.3 N instead of 30 N or 72.1 % of the load, 21.6 N would do"
         );
-        let why = Infeasible { nearest: Some(nearest.clone()), ..why };
+        let why = Infeasible { nearest: Some(Box::new(nearest.clone())), ..why };
         assert_eq!(why.to_string(), format!("{text}; {nearest}"));
         let failed = vec![("the left arm does not reach the board".to_owned(), 3), ("a and b touch".to_owned(), 1)];
         let library = EmptyLibrary { failed, always: Some("a and b touch".into()) };

@@ -184,7 +184,7 @@ fn second_search(evaluator: &mut Evaluator<'_>, maps: &Maps) -> Option<Vec<Feasi
 /// Why a search found nothing.
 fn evidence(evaluator: Evaluator<'_>, maps: &Maps, searched_twice: bool) -> Result<Infeasible, PlanError> {
     let Evaluator { problem, stats, near_misses, .. } = evaluator;
-    let nearest = near_misses.nearest(&problem);
+    let nearest = near_misses.nearest(&problem).map(Box::new);
     let Maps { library, further, .. } = maps;
     let is_empty = library.entries.is_empty() && further.get().is_none_or(Vec::is_empty);
     let library = is_empty.then(|| library.failures.evidence(&library.robot.robot));

@@ -7,6 +7,7 @@ mod shared;
 
 mod check;
 mod comfort;
+mod infeasible;
 mod natural;
 mod planner;
 mod plans;

@@ -77,3 +77,33 @@ impl DrawFailures {
         EmptyLibrary { failed, always }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::paper;
+
+    /// Collisions that every draw has are told as such; their share is that of all draws.
+    #[test]
+    fn links_that_always_collide_are_named() {
+        let robot = paper::operations()[0].load().unwrap().robot;
+        let pair = DrawFailure::Collision { bodies: [Body::Link(1), Body::Link(2)] };
+        let mut failures = DrawFailures::default();
+        (0..93).for_each(|_| failures.count(pair));
+        (0..7).for_each(|_| failures.count(DrawFailure::Reach { arm: 1 }));
+        let evidence = failures.evidence(&robot);
+        let [one, other] = [1, 2].map(|link: usize| &robot.links[link].name);
+        assert_eq!(evidence.always, Some(format!("{one} and {other} touch or are too close")));
+        let text = evidence.to_string();
+        assert!(
+            text.contains(&format!("100 draws: 93.0 % {one} and {other} touch or are too close, 7.0 % the ")),
+            "{text}"
+        );
+        assert!(text.ends_with("too close in every draw in which all arms reach the board"), "{text}");
+        // Two pairs: neither is always the reason.
+        failures.count(DrawFailure::Collision { bodies: [Body::Link(1), Body::Board] });
+        assert_eq!(failures.evidence(&robot).always, None);
+        let by_reason: Vec<_> = failures.rejections().collect();
+        assert_eq!(by_reason, [(Rejection::Collision, 93), (Rejection::RobotReach, 7), (Rejection::Collision, 1)]);
+    }
+}
