@@ -49,22 +49,22 @@ impl NearMisses {
     /// The candidate that resists the largest multiple of the load; `None` if none was kept, or none resists less than is required.
     pub fn nearest(&self, problem: &Problem<'_>) -> Option<NearMiss> {
         let mut solver = Solver { problem, limits: problem.stability_limits(), stability: StabilityWorkspace::new() };
-        let mut best: Option<(&Miss, f64, String)> = None;
+        let mut best: Option<(f64, String)> = None;
         for miss in &self.kept {
             let Some((load_factor, limit)) = solver.resisted(miss) else { continue };
-            if best.as_ref().is_none_or(|&(_, most, _)| load_factor > most) {
-                best = Some((miss, load_factor, limit));
+            if best.as_ref().is_none_or(|&(most, _)| load_factor > most) {
+                best = Some((load_factor, limit));
             }
         }
-        let (miss, load_factor, first_limit) = best?;
+        let (load_factor, first_limit) = best?;
         let required = solver.limits.load_factor;
         (load_factor < required).then(|| NearMiss {
             load_factor,
             required,
             first_limit,
-            grip_force: solver.grip_force(miss),
-            friction: solver.friction(miss),
-            load_share: solver.load_share(miss),
+            grip_force: solver.grip_force(&self.kept),
+            friction: solver.friction(&self.kept),
+            load_share: solver.load_share(&self.kept),
             force_n: problem.scenario.operation.wrench_o.force_n.norm(),
         })
     }
@@ -99,68 +99,46 @@ impl Solver<'_> {
         Some((found.load_factor, limit))
     }
 
-    /// The smallest sufficient grip force up to the largest of every gripper.
-    fn grip_force(&mut self, miss: &Miss) -> Option<Remedy> {
+    /// The smallest grip force, up to the largest of every gripper, with which one of the grasps is stable enough.
+    fn grip_force(&mut self, misses: &[Miss]) -> Option<Remedy> {
         let Grip { force_n: now, .. } = self.problem.scenario.grip;
         let arms = self.problem.robot.robot.arms.iter();
         let most_n = arms.map(|arm| arm.gripper.max_force_n).fold(f64::INFINITY, f64::min);
-        self.least(miss, now, most_n, GRIP_STEP_N, |grip, force_n| Grip { force_n, ..grip })
+        self.least(misses, [now, most_n], GRIP_STEP_N, |grip, force_n| Grip { force_n, ..grip })
     }
 
-    /// The smallest sufficient friction.
-    fn friction(&mut self, miss: &Miss) -> Option<Remedy> {
+    /// The smallest friction with which one of the grasps is stable enough.
+    fn friction(&mut self, misses: &[Miss]) -> Option<Remedy> {
         let Grip { friction: now, .. } = self.problem.scenario.grip;
-        self.least(miss, now, MOST_FRICTION, FRICTION_STEP, |grip, friction| Grip { friction, ..grip })
+        self.least(misses, [now, MOST_FRICTION], FRICTION_STEP, |grip, friction| Grip { friction, ..grip })
     }
 
-    /// The smallest multiple of `step` from `now` to `most` with which the grasp is stable enough: that it is, is solved for
-    /// the value itself; that smaller ones are not, assumes that more is never worse.
+    /// The smallest multiple of `step` from `now` to `most` with which one of the grasps is stable enough.
     fn least(
         &mut self,
-        miss: &Miss,
-        now: f64,
-        most: f64,
+        misses: &[Miss],
+        [now, most]: [f64; 2],
         step: f64,
         with: impl Fn(Grip, f64) -> Grip,
     ) -> Option<Remedy> {
-        let value = |steps: u32| f64::from(steps) * step;
         let (problem, grip) = (self.problem, self.problem.scenario.grip);
-        let mut is_enough = |steps: u32| {
-            self.is_stable(contact_model_with(problem, &miss.candidate, &miss.x_wo, &with(grip, value(steps))))
-        };
-        let [mut too_few, mut enough] = [now, most].map(|value| (value / step).floor() as u32);
-        if too_few >= enough || !is_enough(enough) {
-            return None;
-        }
-        while enough - too_few > 1 {
-            let middle = too_few.midpoint(enough);
-            if is_enough(middle) {
-                enough = middle;
-            } else {
-                too_few = middle;
-            }
-        }
-        Some(Remedy { now, enough: value(enough) })
+        let [few, many] = [now, most].map(|value| (value / step).floor() as u32);
+        let enough = smallest(misses, [few, many], |miss, steps| {
+            let grip = with(grip, f64::from(steps) * step);
+            self.is_stable(contact_model_with(problem, &miss.candidate, &miss.x_wo, &grip))
+        });
+        enough.map(|enough| Remedy { now, enough: f64::from(enough) * step })
     }
 
-    /// The largest share of the load, in whole steps, with which the grasp is stable enough.
-    fn load_share(&mut self, miss: &Miss) -> Option<f64> {
-        let share = |steps: u32| f64::from(steps) / f64::from(LOAD_STEPS);
+    /// The largest share of the load, in whole steps, with which one of the grasps is stable enough.
+    fn load_share(&mut self, misses: &[Miss]) -> Option<f64> {
         let problem = self.problem;
-        let mut is_stable = |steps: u32| {
+        let share = |removed: u32| f64::from(LOAD_STEPS - removed) / f64::from(LOAD_STEPS);
+        let removed = smallest(misses, [0, LOAD_STEPS - 1], |miss, removed| {
             let model = contact_model(problem, &miss.candidate, &miss.x_wo);
-            self.is_stable(model.map(|model| ContactModel { load: model.load.scaled(share(steps)), ..model }))
-        };
-        let [mut few, mut too_many] = [0, LOAD_STEPS];
-        while too_many - few > 1 {
-            let middle = few.midpoint(too_many);
-            if is_stable(middle) {
-                few = middle;
-            } else {
-                too_many = middle;
-            }
-        }
-        (few > 0).then(|| share(few))
+            self.is_stable(model.map(|model| ContactModel { load: model.load.scaled(share(removed)), ..model }))
+        });
+        removed.map(share)
     }
 
     fn is_stable(&mut self, model: Result<ContactModel, ContactModelError>) -> bool {
@@ -168,4 +146,27 @@ impl Solver<'_> {
         let utilisation = model.and_then(|model| self.stability.utilisation(&model, &self.limits, kind));
         utilisation.is_ok_and(|utilisation| utilisation <= 1.0)
     }
+}
+
+/// The smallest number in `(too_few, most]` that is enough for one of the misses; `None` if `most` is enough for none. That
+/// it is enough is tested for the number itself; that smaller ones are not assumes that more is never worse.
+fn smallest(misses: &[Miss], [too_few, most]: [u32; 2], mut is_enough: impl FnMut(&Miss, u32) -> bool) -> Option<u32> {
+    let mut best = None;
+    for miss in misses {
+        let mut enough = best.map_or(most, |best: u32| best - 1);
+        if enough <= too_few || !is_enough(miss, enough) {
+            continue;
+        }
+        let mut less = too_few;
+        while enough - less > 1 {
+            let middle = less.midpoint(enough);
+            if is_enough(miss, middle) {
+                enough = middle;
+            } else {
+                less = middle;
+            }
+        }
+        best = Some(enough);
+    }
+    best
 }

@@ -69,11 +69,12 @@ pub struct NearMiss {
     pub required: f64,
     /// The limit that is crossed first as the load grows, such as `left upper pad: tilt`.
     pub first_limit: String,
-    /// The smallest grip force with which the same grasp is stable enough; `None` if the gripper's largest does not do.
+    /// The smallest grip force with which this or a grasp nearly as near is stable enough; `None` if the grippers' largest does not
+    /// do.
     pub grip_force: Option<Remedy>,
-    /// The smallest friction with which it is; `None` if a friction of [`MOST_FRICTION`] does not do.
+    /// The smallest friction with which one is; `None` if a friction of [`MOST_FRICTION`] does not do.
     pub friction: Option<Remedy>,
-    /// The largest load with which it is, as a share of the load; `None` if the weight alone is too much.
+    /// The largest load with which one is, as a share of the load; `None` if the weight alone is too much.
     pub load_share: Option<f64>,
     /// Magnitude of the load's force, N; zero for a moment alone.
     pub force_n: f64,

@@ -88,6 +88,9 @@ fn keep_best(pairs: &mut Vec<Pair<'_>>, count: usize) {
 fn evaluate_pairs(evaluator: &mut Evaluator<'_>, budget: &SearchBudget, pairs: &[Pair<'_>]) -> Vec<Feasible> {
     let mut aligned = Vec::with_capacity(budget.evaluated_pairs);
     for Pair { entry, posture, .. } in pairs {
+        if evaluator.stats.is_exhausted() {
+            break;
+        }
         let problem = &evaluator.problem;
         match align(problem, &entry.grasp, &posture.q_h_rad, &posture.x_bt) {
             Some(candidate) => {

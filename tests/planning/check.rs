@@ -44,7 +44,7 @@ fn each_fault_is_one_flaw_with_its_key() {
         (
             "operation.wrench_o",
             |plan| plan.operation.wrench_o.force_n.x = f64::INFINITY,
-            |flaw| matches!(flaw, Flaw::Wrench),
+            |flaw| matches!(flaw, Flaw::Wrench { .. }),
         ),
         (
             "operation.x_ot",
@@ -92,7 +92,7 @@ fn each_fault_is_one_flaw_with_its_key() {
         (
             "human.x_wb",
             |plan| plan.human.as_mut().unwrap().x_wb.translation.vector.x = f64::NAN,
-            |flaw| matches!(flaw, Flaw::PersonPose),
+            |flaw| matches!(flaw, Flaw::PersonPose { .. }),
         ),
         (
             "human.q_rad[3]",

@@ -13,8 +13,6 @@ fn near_a_corner(force_n: f64) -> Scenario {
     scenario.operation.x_ot.translation.x = 0.1;
     scenario.operation.x_ot.translation.y = 0.05;
     scenario.operation.wrench_o.force_n *= force_n / scenario.operation.wrench_o.force_n.norm();
-    let force_o = scenario.operation.wrench_o.force_n;
-    scenario.operation.wrench_o.moment_nm = scenario.operation.x_ot.translation.vector.cross(&force_o);
     scenario
 }
 
