@@ -26,7 +26,7 @@ pub struct NearMisses {
 #[derive(Clone)]
 pub struct Miss {
     /// Above 1, infinite if there is no equilibrium.
-    utilisation: f64,
+    pub utilisation: f64,
     pub candidate: Candidate,
     x_wo: Pose,
 }
@@ -41,9 +41,9 @@ impl NearMisses {
         }
     }
 
-    /// The candidates, the nearest first.
-    pub fn candidates(&self) -> impl Iterator<Item = &Candidate> {
-        self.kept.iter().map(|miss| &miss.candidate)
+    /// The candidates that are kept, the nearest first.
+    pub fn kept(&self) -> &[Miss] {
+        &self.kept
     }
 
     /// The candidate that resists the largest multiple of the load; `None` if none was kept, or none resists less than is required.

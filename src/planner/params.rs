@@ -88,6 +88,10 @@ pub mod second_search {
     pub const SEED_STEP: u64 = 0x9e37_79b9_7f4a_7c15;
     /// Grasps that are not stable enough and are paired with postures to be repaired, the nearest to stability first.
     pub const NEARLY_STABLE: usize = 1_500;
+    /// Repaired candidates after which no more are repaired: refinement needs only a few starts.
+    pub const REPAIRED: usize = 6;
+    /// Rounds of repair: the first leaves candidates that are a few percent from stability, the second closes that.
+    pub const REPAIR_ROUNDS: usize = 3;
 }
 
 /// Numbers of screening and of the warm starts.

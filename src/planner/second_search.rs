@@ -8,9 +8,10 @@ use super::{
     evaluate::{Evaluator, Feasible, utilisations},
     library::{GraspLibrary, LibraryEntry},
     natural_boards::{entries_for_place, natural_entries},
+    near_miss::Miss,
     params::{
         SearchBudget,
-        second_search::{NEARLY_STABLE, SEED_STEP},
+        second_search::{NEARLY_STABLE, REPAIR_ROUNDS, REPAIRED, SEED_STEP},
     },
     problem::{Problem, posture_map_of},
     refine, screen,
@@ -36,8 +37,26 @@ pub fn search_again(evaluator: &mut Evaluator<'_>, library: &GraspLibrary, furth
     if starts.is_empty() {
         let nearly = others.iter().take(NEARLY_STABLE).map(|(_, entry)| *entry);
         starts = screen::screen(evaluator, nearly, &postures, &budget);
-        let near: Vec<_> = evaluator.near_misses.candidates().cloned().collect();
-        starts.extend(near.into_iter().filter_map(|candidate| refine::repair(evaluator, candidate)));
+        starts.extend(repaired(evaluator));
     }
     refine::refine(evaluator, starts, &budget.rounds)
+}
+
+/// Feasible candidates near the nearest misses. What a failed repair comes to is a nearest miss itself and is repaired in the next
+/// round.
+fn repaired(evaluator: &mut Evaluator<'_>) -> Vec<Feasible> {
+    let mut tried: Vec<f64> = Vec::new();
+    let mut found = Vec::new();
+    for _ in 0..REPAIR_ROUNDS {
+        let near = evaluator.near_misses.kept().to_vec();
+        for Miss { utilisation, candidate, .. } in near {
+            // Equal to the last digit is the same candidate, or as good.
+            if found.len() == REPAIRED || tried.contains(&utilisation) {
+                continue;
+            }
+            tried.push(utilisation);
+            found.extend(refine::repair(evaluator, candidate));
+        }
+    }
+    found
 }
