@@ -1,4 +1,4 @@
-//! The largest values that a scenario or a plan may state (docs/method.md#12-bounds).
+//! The largest values that a scenario or a plan may state (docs/method.md#13-bounds-of-input).
 //!
 //! They exclude what cannot be meant: a wrong unit, a slip of the keyboard, a number near the end of the range of numbers,
 //! with which figures overflow. They are far beyond any hold that this program can judge, so a value below them may still

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     candidate::{Candidate, Placement},
+    contact::contact_model,
     library::{BoardGrasp, GraspingArm, posture_muscular, within_strength},
     near_miss::NearMisses,
     outcome::Rejection,
@@ -19,9 +20,9 @@ use crate::{
         frames::Pose,
         operation::Operation,
         plan::{ArmHold, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
-        scenario::{Grip, Scenario, StabilityKind},
+        scenario::StabilityKind,
     },
-    statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, StabilityWorkspace},
+    statics::{ContactModel, HandModel, LocalEquilibrium, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
@@ -255,52 +256,4 @@ pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComf
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
     let operation = problem.scenario.operation.rolled(found.candidate.work.roll_rad);
     comfort::mean_response(&response_query(problem, operation, link_poses, placement.x_wo, &points_w))
-}
-
-/// The arms of a candidate as a plan lists them.
-pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
-    let scenario = problem.scenario;
-    let arms = problem.robot.arms.iter().zip(&candidate.arms);
-    arms.map(|(arm, own)| ArmHold {
-        name: arm.name.clone(),
-        joints: arm.joints.clone(),
-        q_rad: own.q_rad.clone(),
-        x_og: own.grasp.x_og(scenario.object.size_m),
-        grip_force_n: scenario.grip.force_n,
-    })
-    .collect()
-}
-
-/// The board of a scenario at a pose.
-pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
-    PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo }
-}
-
-/// The contact model of a candidate's grasp.
-pub fn contact_model(
-    problem: &Problem<'_>,
-    candidate: &Candidate,
-    x_wo: &Pose,
-) -> Result<ContactModel, ContactModelError> {
-    contact_model_with(problem, candidate, x_wo, &problem.scenario.grip)
-}
-
-/// The contact model of a candidate's grasp with another grip force or friction than the scenario's.
-pub fn contact_model_with(
-    problem: &Problem<'_>,
-    candidate: &Candidate,
-    x_wo: &Pose,
-    grip: &Grip,
-) -> Result<ContactModel, ContactModelError> {
-    let object = placed_object(problem.scenario, *x_wo);
-    let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
-        .into_iter()
-        .zip(&problem.robot.arms)
-        .map(|(own, arm)| {
-            let own = ArmHold { grip_force_n: grip.force_n, ..own };
-            HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, &own, &object, grip.friction)
-        })
-        .collect();
-    let operation = problem.scenario.operation.rolled(candidate.work.roll_rad);
-    Ok(ContactModel::from_hands(hands?, &object, &operation))
 }

@@ -11,6 +11,7 @@
 mod assemble;
 mod candidate;
 mod configurations;
+mod contact;
 mod domain;
 mod evaluate;
 mod explain;

@@ -3,7 +3,7 @@
 
 use super::{
     candidate::Candidate,
-    evaluate::{contact_model, contact_model_with},
+    contact::{contact_model, contact_model_with},
     outcome::{MOST_FRICTION, NearMiss, Remedy},
     params::near_miss::{FRICTION_STEP, GRIP_STEP_N, KEPT, LOAD_STEPS},
     problem::Problem,

@@ -12,7 +12,7 @@ pub fn too_long<T: DeserializeOwned>(file: &serde_json::Value) -> Option<TooLong
     if !message.contains("expected fewer elements in array") {
         return None;
     }
-    let pointer = format!("/{}", key.replace('.', "/").replace('[', "/").replace(']', ""));
+    let pointer = format!("/{}", key.replace(['.', '['], "/").replace(']', ""));
     let mut file = file.clone();
     let array = file.pointer_mut(&pointer)?;
     let found = format!("an array of length {}", array.as_array()?.len());

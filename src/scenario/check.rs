@@ -89,19 +89,19 @@ impl<'a> Checker<'a> {
     /// Requires a number in `low..=high`.
     pub fn within(&self, key: &str, found: f64, low: f64, high: f64, unit: &str) -> Result<(), InputError> {
         let expected = format!("a number from {low} to {high} ({unit})");
-        self.that((low..=high).contains(&found), key, found.to_string(), &expected)
+        self.that((low..=high).contains(&found), key, number(found), &expected)
     }
 
     /// Requires a number greater than zero and at most `most`.
     pub fn positive(&self, key: &str, found: f64, most: f64, unit: &str) -> Result<(), InputError> {
-        self.that(found <= most || found.is_nan(), key, found.to_string(), &format!("at most {most} ({unit})"))?;
-        self.that(found > 0.0, key, found.to_string(), &format!("a positive number ({unit})"))
+        self.that(found <= most || found.is_nan(), key, number(found), &format!("at most {most} ({unit})"))?;
+        self.that(found > 0.0, key, number(found), &format!("a positive number ({unit})"))
     }
 
     /// Requires a number that is not negative and at most `most`.
     pub fn not_negative(&self, key: &str, found: f64, most: f64, unit: &str) -> Result<(), InputError> {
-        self.that(found <= most || found.is_nan(), key, found.to_string(), &format!("at most {most} ({unit})"))?;
-        self.that(found >= 0.0, key, found.to_string(), &format!("zero or a positive number ({unit})"))
+        self.that(found <= most || found.is_nan(), key, number(found), &format!("at most {most} ({unit})"))?;
+        self.that(found >= 0.0, key, number(found), &format!("zero or a positive number ({unit})"))
     }
 
     /// Requires forces and moments within their bounds.
@@ -181,4 +181,9 @@ impl<'a> Checker<'a> {
         let expected = format!("a point on the board: |x| <= {x} m, |y| <= {y} m");
         self.that(inside, key, format!("[{}, {}]", p_ot.x, p_ot.y), &expected)
     }
+}
+
+/// A number in a message: without the zeros of a huge one.
+fn number(found: f64) -> String {
+    if found.is_finite() && found.abs() >= 1e9 { format!("{found:e}") } else { found.to_string() }
 }

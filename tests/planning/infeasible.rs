@@ -75,7 +75,7 @@ fn the_nearest_miss_tells_the_load_that_would_do() {
 
 #[test]
 fn the_nearest_miss_tells_the_grip_and_the_friction_that_would_do() {
-    let mut scenario = near_a_corner(15.0);
+    let mut scenario = fast("quickstart");
     scenario.grip.force_n = 4.0;
     let why = infeasible(&scenario);
     let NearMiss { grip_force, friction, .. } = *nearest(&why);
