@@ -15,8 +15,9 @@ use crate::{
     },
     planner::Outcome,
     robot::Robot,
-    scenario::LoadedScenario,
+    scenario::{LoadedScenario, material::bending_properties},
     sim::{self, Conditions},
+    statics::bending_note,
 };
 
 /// A scenario or plan with its verdict.
@@ -72,7 +73,15 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
     let judgement = judge(&trace, &scenario.limits);
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
+    let verdict = Verdict { notes: notes(scenario, &plan), ..verdict };
     Ok(Run { verdict, posture, plan: Some(plan), simulated: Some((trace, judgement)) })
+}
+
+/// The assumptions of the simulation that a plan strains.
+fn notes(scenario: &Scenario, plan: &Plan) -> Vec<String> {
+    let material = &scenario.object.material;
+    let properties = bending_properties(material);
+    properties.and_then(|properties| bending_note(plan, material, &properties, &scenario.limits)).into_iter().collect()
 }
 
 /// The verdict on a scenario for which nothing was simulated.
@@ -88,6 +97,7 @@ fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason:
         first_failure: None,
         peak_torque_ratio: BTreeMap::new(),
         reason: Some(reason),
+        notes: Vec::new(),
         versions: versions(),
         seed: scenario.planner.seed,
         fingerprint: String::new(),

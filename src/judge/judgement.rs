@@ -52,6 +52,7 @@ impl Judgement {
             first_failure: self.first_failure.clone(),
             peak_torque_ratio: self.peak_torque_ratio.clone(),
             reason: self.reason.clone(),
+            notes: Vec::new(),
             versions,
             seed,
             fingerprint: self.fingerprint.clone(),

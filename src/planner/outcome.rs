@@ -151,7 +151,8 @@ impl std::fmt::Display for NearMiss {
         }
         if let Some(share) = self.load_share {
             let force = match self.force_n {
-                force_n if force_n > 0.0 => format!(", {:.1} N", share * force_n),
+                // Rounded down: a little more would be too much.
+                force_n if force_n > 0.0 => format!(", {:.1} N", (10.0 * share * force_n).floor() / 10.0),
                 _ => String::new(),
             };
             enough.push(format!("{:.1} % of the load{force}", 100.0 * share));

@@ -76,12 +76,12 @@ fn the_nearest_miss_tells_the_load_that_would_do() {
 #[test]
 fn the_nearest_miss_tells_the_grip_and_the_friction_that_would_do() {
     let mut scenario = fast("quickstart");
-    scenario.grip.force_n = 4.0;
+    scenario.grip.force_n = 1.5;
     let why = infeasible(&scenario);
     let NearMiss { grip_force, friction, .. } = *nearest(&why);
     let Remedy { now, enough } = grip_force.unwrap();
-    assert!(now == 4.0 && enough > 4.0, "{why}");
-    assert!(why.to_string().contains(&format!("a grip force of {enough:.1} N instead of 4 N")), "{why}");
+    assert!(now == 1.5 && enough > 1.5, "{why}");
+    assert!(why.to_string().contains(&format!("a grip force of {enough:.1} N instead of 1.5 N")), "{why}");
     let mut stronger = scenario.clone();
     stronger.grip.force_n = enough;
     verified(&plan(&stronger), &stronger);
