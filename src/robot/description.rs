@@ -129,3 +129,23 @@ impl Description {
         Ok(description)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_array_has_exactly_the_values_of_its_key() {
+        let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/baxter.toml")).unwrap();
+        let read = |text: &str| Description::read(&Source { file: "baxter.toml", text });
+        assert!(read(&text).is_ok());
+        let line = text.lines().find(|line| line.trim_start().starts_with("opening_m")).unwrap();
+        let number = 1 + text.lines().position(|other| other == line).unwrap();
+        for (values, found) in [("0.0, 0.01, 0.02, 0.03", 4), ("0.01", 1)] {
+            let key = line.split('[').next().unwrap();
+            let error = read(&text.replacen(line, &format!("{key}[{values}]"), 1)).err().unwrap().to_string();
+            let expected = format!("line {number}: invalid length {found}, expected an array of length 2");
+            assert!(error.contains(&expected), "{error}");
+        }
+    }
+}

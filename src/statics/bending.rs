@@ -111,7 +111,15 @@ pub fn bending_note(plan: &Plan, material: &str, properties: &BendingProperties,
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use nalgebra::Vector3;
+
     use super::*;
+    use crate::{
+        model::operation::{Operation, OperationKind},
+        scenario::read_plan,
+    };
 
     const STRIP: Strip = Strip { length_m: 0.4, width_m: 0.3, thickness_m: 0.006 };
 
@@ -137,5 +145,61 @@ mod tests {
         let stiffer = STRIP.supported(30.0, 28e6);
         assert!((stiffer.deflection_m / soft.deflection_m - 1.0).abs() < 1e-12);
         assert!((stiffer.stress_pa / soft.stress_pa - 2.0).abs() < 1e-12);
+    }
+
+    /// A plan with both hands on the board, at these places, and a force at the tool along the normal.
+    fn plan(hands_m: [[f64; 2]; 2], tool_m: [f64; 2], force_n: f64, size_m: [f64; 3]) -> Plan {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
+        let (mut plan, _) = read_plan(&path, None).unwrap();
+        for (hold, [x_m, y_m]) in plan.arms.iter_mut().zip(hands_m) {
+            hold.x_og.translation.vector = Vector3::new(x_m, y_m, 0.0);
+        }
+        plan.operation = Operation::drill(tool_m, force_n, size_m[2]);
+        plan.object.size_m = size_m;
+        plan
+    }
+
+    const FOAM: BendingProperties = BendingProperties { youngs_modulus_pa: 14e6, strength_pa: 0.3e6 };
+
+    #[test]
+    fn the_worse_beam_counts_and_only_the_force_along_the_normal() {
+        let size_m = [0.5, 0.4, 0.006];
+        // Between opposite hands, along x and along y.
+        let along_x = bending(&plan([[-0.2, 0.0], [0.2, 0.0]], [0.1, 0.0], 15.0, size_m), &FOAM).unwrap();
+        assert_eq!(along_x, Strip { length_m: 0.4, width_m: 0.4, thickness_m: 0.006 }.supported(15.0, 14e6));
+        let along_y = bending(&plan([[0.0, -0.15], [0.0, 0.15]], [0.0, 0.1], 15.0, size_m), &FOAM).unwrap();
+        assert_eq!(along_y, Strip { length_m: 0.3, width_m: 0.5, thickness_m: 0.006 }.supported(15.0, 14e6));
+        // Side by side on one edge, with the tool 0.3 m away.
+        let one_edge = plan([[-0.2, -0.1], [-0.2, 0.1]], [0.1, 0.05], 15.0, size_m);
+        let clamped = Strip { length_m: 0.3, width_m: 0.4, thickness_m: 0.006 }.clamped(15.0, 14e6);
+        let found = bending(&one_edge, &FOAM).unwrap();
+        // Rounding of the projection.
+        assert!((found.deflection_m / clamped.deflection_m - 1.0).abs() < 1e-12);
+        // One hand holds as a clamp through itself.
+        let mut one_hand = one_edge.clone();
+        one_hand.arms.truncate(1);
+        assert!(bending(&one_hand, &FOAM).unwrap().deflection_m > 0.0);
+        let mut along_face = one_edge;
+        along_face.operation.wrench_o.force_n = Vector3::new(3.0, 4.0, 0.0);
+        assert_eq!(bending(&along_face, &FOAM).unwrap().deflection_m, 0.0);
+    }
+
+    #[test]
+    fn a_note_states_bending_or_breaking_and_a_stiff_board_has_none() {
+        let limits = Limits::of(OperationKind::Drill);
+        let note = |thickness_m: f64, force_n: f64| {
+            let plan = plan([[-0.2, 0.0], [0.2, 0.0]], [0.0, 0.0], force_n, [0.5, 0.4, thickness_m]);
+            bending_note(&plan, "foam", &FOAM, &limits)
+        };
+        // By hand: 15 N x 0.064 m^3 / (48 x 14 MPa x 0.4 m x t^3 / 12) is 19.5 mm at t = 13 mm, 1.6 mm at 30 mm.
+        let expected = "the board bends by 19.5 mm (foam, 13 mm thick): the simulation assumes a rigid board";
+        assert_eq!(note(0.013, 15.0).unwrap(), expected);
+        assert_eq!(note(0.030, 15.0), None);
+        // 3 F L / (2 b t^2) = 0.625 MPa.
+        let broken = note(0.006, 15.0).unwrap();
+        assert!(
+            broken.starts_with("the board breaks (foam, 6 mm thick): a bending stress of 0.62 MPa, its strength is"),
+            "{broken}"
+        );
     }
 }
