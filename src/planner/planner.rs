@@ -170,8 +170,8 @@ fn best_plan<'a>(
     }
 }
 
-/// The candidates of the second search; `None` if there is none: the search has ended early, or the planner is the random one,
-/// which draws until it finds something.
+/// The candidates of the second search; `None` without one: the search has ended early, or the planner is the random one, which
+/// draws until it finds something.
 fn second_search(evaluator: &mut Evaluator<'_>, maps: &Maps) -> Option<Vec<Feasible>> {
     if evaluator.stats.is_exhausted() || evaluator.problem.scenario.planner.kind == PlannerKind::Random {
         return None;

@@ -164,17 +164,20 @@ mod tests {
     #[test]
     fn the_worse_beam_counts_and_only_the_force_along_the_normal() {
         let size_m = [0.5, 0.4, 0.006];
+        // Rounding of differences of places and of the projection.
+        let same = |found: &Bending, expected: &Bending| {
+            (found.deflection_m / expected.deflection_m - 1.0).abs() < 1e-12
+                && (found.stress_pa / expected.stress_pa - 1.0).abs() < 1e-12
+        };
         // Between opposite hands, along x and along y.
         let along_x = bending(&plan([[-0.2, 0.0], [0.2, 0.0]], [0.1, 0.0], 15.0, size_m), &FOAM).unwrap();
-        assert_eq!(along_x, Strip { length_m: 0.4, width_m: 0.4, thickness_m: 0.006 }.supported(15.0, 14e6));
+        assert!(same(&along_x, &Strip { length_m: 0.4, width_m: 0.4, thickness_m: 0.006 }.supported(15.0, 14e6)));
         let along_y = bending(&plan([[0.0, -0.15], [0.0, 0.15]], [0.0, 0.1], 15.0, size_m), &FOAM).unwrap();
-        assert_eq!(along_y, Strip { length_m: 0.3, width_m: 0.5, thickness_m: 0.006 }.supported(15.0, 14e6));
+        assert!(same(&along_y, &Strip { length_m: 0.3, width_m: 0.5, thickness_m: 0.006 }.supported(15.0, 14e6)));
         // Side by side on one edge, with the tool 0.3 m away.
         let one_edge = plan([[-0.2, -0.1], [-0.2, 0.1]], [0.1, 0.05], 15.0, size_m);
         let clamped = Strip { length_m: 0.3, width_m: 0.4, thickness_m: 0.006 }.clamped(15.0, 14e6);
-        let found = bending(&one_edge, &FOAM).unwrap();
-        // Rounding of the projection.
-        assert!((found.deflection_m / clamped.deflection_m - 1.0).abs() < 1e-12);
+        assert!(same(&bending(&one_edge, &FOAM).unwrap(), &clamped));
         // One hand holds as a clamp through itself.
         let mut one_hand = one_edge.clone();
         one_hand.arms.truncate(1);

@@ -119,3 +119,18 @@ fn an_empty_library_says_which_test_emptied_it() {
         assert!(library.failed.iter().map(|(_, draws)| draws).sum::<u64>() == 40_000, "{why}");
     }
 }
+
+/// Files cannot ask for it, a program that uses the library can.
+#[test]
+fn a_force_at_the_end_of_the_range_of_numbers_is_infeasible() {
+    for name in ["quickstart", "cut-rim"] {
+        for force_n in [1e150, 1e300, f64::MAX] {
+            let mut scenario = fast(name);
+            let direction_o = scenario.operation.wrench_o.force_n.normalize();
+            scenario.operation.wrench_o.force_n = direction_o * force_n;
+            let why = infeasible(&scenario);
+            assert_eq!(why.removed[0].0, "person's strength", "{why}");
+            has_whole_shares(&why);
+        }
+    }
+}
