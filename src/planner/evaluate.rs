@@ -1,11 +1,14 @@
 //! The evaluation of a candidate: every constraint in order of cost, and the objective.
 
 use nalgebra::Point3;
+use rayon::prelude::*;
 
 use super::{
     candidate::{Candidate, Placement},
-    library::{GraspingArm, posture_muscular, within_strength},
+    contact::contact_model,
+    library::{BoardGrasp, GraspingArm, posture_muscular, within_strength},
     load_shift::{Held, LoadShift},
+    near_miss::NearMisses,
     outcome::Rejection,
     problem::Problem,
     stats::SearchStats,
@@ -18,15 +21,17 @@ use crate::{
         frames::Pose,
         operation::Operation,
         plan::{ArmHold, Clearance, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
-        scenario::{Scenario, StabilityKind},
+        scenario::StabilityKind,
     },
-    statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, ResponseOutcome, StabilityWorkspace},
+    statics::{ContactModel, HandModel, LocalEquilibrium, ResponseOutcome, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
 pub struct Evaluator<'a> {
     pub problem: Problem<'a>,
     pub stats: SearchStats<'a>,
+    /// The candidates that kept every constraint but stability and came nearest to it.
+    pub near_misses: NearMisses,
     stability: StabilityWorkspace,
 }
 
@@ -100,7 +105,7 @@ impl Configuration {
 impl<'a> Evaluator<'a> {
     /// An evaluator of a problem.
     pub fn new(problem: Problem<'a>, stats: SearchStats<'a>) -> Self {
-        Self { problem, stats, stability: StabilityWorkspace::new() }
+        Self { problem, stats, near_misses: NearMisses::default(), stability: StabilityWorkspace::new() }
     }
 
     /// Tests every constraint, the cheapest first, and computes the objective.
@@ -111,6 +116,9 @@ impl<'a> Evaluator<'a> {
         }
         let stability = self.assess(&candidate, &configuration.placement.x_wo);
         if let Err(why) = test_stability(&self.problem, &candidate, &configuration.placement.x_wo, &stability) {
+            if why == Rejection::Stability {
+                self.near_misses.add(stability.utilisation, &candidate, &configuration.placement.x_wo);
+            }
             return Err(Box::new(Rejected { why, candidate, configuration, stability }));
         }
         let comfort = comfort(&self.problem, &candidate, &configuration);
@@ -146,18 +154,7 @@ impl<'a> Evaluator<'a> {
 
     /// How a grasp resists its load.
     pub fn assess(&mut self, candidate: &Candidate, x_wo: &Pose) -> Assessment {
-        let keeps_clear = self.problem.scenario.limits.clearance_mm > 0.0;
-        contact_model(&self.problem, candidate, x_wo)
-            .and_then(|model| {
-                let limits = self.problem.stability_limits();
-                self.stability.assess(&model, &limits, self.problem.scenario.planner.stability)
-            })
-            .map(|(utilisation, response)| {
-                let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
-                Assessment { utilisation, shift }
-            })
-            // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
-            .unwrap_or(Assessment { utilisation: f64::INFINITY, shift: None })
+        assess(&self.problem, &mut self.stability, candidate, x_wo)
     }
 
     /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
@@ -188,6 +185,27 @@ impl<'a> Evaluator<'a> {
         let held = Held { robot: &robot.robot, collision: &robot.collision, arms, object };
         Some((stability, held.clearance(shift.as_ref())))
     }
+}
+
+/// See [`Evaluator::assess`].
+fn assess(problem: &Problem<'_>, workspace: &mut StabilityWorkspace, candidate: &Candidate, x_wo: &Pose) -> Assessment {
+    let keeps_clear = problem.scenario.limits.clearance_mm > 0.0;
+    contact_model(problem, candidate, x_wo)
+        .and_then(|model| workspace.assess(&model, &problem.stability_limits(), problem.scenario.planner.stability))
+        .map(|(utilisation, response)| {
+            let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
+            Assessment { utilisation, shift }
+        })
+        // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
+        .unwrap_or(Assessment { utilisation: f64::INFINITY, shift: None })
+}
+
+/// The utilisation of each grasp with the roll of the scenario's tool, see [`Assessment`].
+pub fn utilisations(problem: &Problem<'_>, grasps: &[&BoardGrasp]) -> Vec<f64> {
+    let of_grasp = |workspace: &mut StabilityWorkspace, grasp: &&BoardGrasp| {
+        assess(problem, workspace, &Candidate::without_person(grasp), &grasp.x_wo).utilisation
+    };
+    grasps.par_iter().map_init(StabilityWorkspace::new, of_grasp).collect()
 }
 
 /// Where the load at load factor 1 moves arms and board; `None` unless stability is compliant, or without an equilibrium.
@@ -295,39 +313,4 @@ pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComf
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
     let operation = problem.scenario.operation.rolled(found.candidate.work.roll_rad);
     comfort::mean_response(&response_query(problem, operation, link_poses, placement.x_wo, &points_w))
-}
-
-/// The arms of a candidate as a plan lists them.
-pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
-    let scenario = problem.scenario;
-    let arms = problem.robot.arms.iter().zip(&candidate.arms);
-    arms.map(|(arm, own)| ArmHold {
-        name: arm.name.clone(),
-        joints: arm.joints.clone(),
-        q_rad: own.q_rad.clone(),
-        x_og: own.grasp.x_og(scenario.object.size_m),
-        grip_force_n: scenario.grip.force_n,
-    })
-    .collect()
-}
-
-/// The board of a scenario at a pose.
-pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
-    PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo }
-}
-
-/// The contact model of a candidate's grasp.
-pub fn contact_model(
-    problem: &Problem<'_>,
-    candidate: &Candidate,
-    x_wo: &Pose,
-) -> Result<ContactModel, ContactModelError> {
-    let Scenario { operation, grip, .. } = problem.scenario;
-    let object = placed_object(problem.scenario, *x_wo);
-    let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
-        .iter()
-        .zip(&problem.robot.arms)
-        .map(|(own, arm)| HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, own, &object, grip.friction))
-        .collect();
-    Ok(ContactModel::from_hands(hands?, &object, &operation.rolled(candidate.work.roll_rad)))
 }

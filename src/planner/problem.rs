@@ -62,6 +62,11 @@ pub fn wrench_t(operation: &Operation) -> Wrench {
 
 /// The posture map of a scenario's person.
 pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
+    posture_map_of(scenario, human, &SearchBudget::of(scenario))
+}
+
+/// The posture map of a scenario's person, as large as a budget says.
+pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget) -> PostureMap {
     let operation = &scenario.operation;
     PostureMap::new(
         human,
@@ -71,7 +76,7 @@ pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
             roll_is_free: operation.kind.roll_is_free(),
         },
         &scenario.planner.kind.objective(scenario.comfort),
-        &SearchBudget::of(scenario),
+        budget,
         scenario.planner.seed,
     )
 }

@@ -34,6 +34,7 @@ fn holding() -> Verdict {
         peak_torque_ratio: BTreeMap::from([("left_s0".into(), 0.25), ("left_w1".into(), 0.75)]),
         confirmation: None,
         reason: None,
+        notes: Vec::new(),
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into())]),
         seed: 1,
         fingerprint: "00ff".into(),
@@ -61,6 +62,7 @@ fn infeasible() -> Verdict {
         checks: Vec::new(),
         peak_torque_ratio: BTreeMap::new(),
         reason: Some("no candidate of 400 is stable".into()),
+        notes: Vec::new(),
         ..holding()
     }
 }

@@ -5,7 +5,7 @@ use std::{fs, process::Output};
 
 use crate::process::{benchdog, folder, stderr, text_of_both};
 
-const SCENARIO: &str = "format = 1
+pub const SCENARIO: &str = "format = 1
 name = \"bad\"
 
 [object]
@@ -33,7 +33,7 @@ fn benchdog_on(file: &str, text: &str, arguments: &[&str]) -> (Output, Vec<Strin
 
 /// Asserts that a scenario with one replacement is refused with this message.
 #[track_caller]
-fn assert_scenario_refused(replace: &str, with: &str, message: &str) {
+pub fn assert_scenario_refused(replace: &str, with: &str, message: &str) {
     assert!(SCENARIO.contains(replace));
     let (output, left) =
         benchdog_on("bad.toml", &SCENARIO.replacen(replace, with, 1), &["run", "bad.toml", "--junit", "junit.xml"]);
@@ -42,7 +42,7 @@ fn assert_scenario_refused(replace: &str, with: &str, message: &str) {
 }
 
 #[track_caller]
-fn assert_refused(output: &Output, message: &str) {
+pub fn assert_refused(output: &Output, message: &str) {
     assert_eq!(stderr(output), format!("error: {message}\n"));
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
@@ -161,11 +161,11 @@ fn a_format_from_the_future() {
     );
 }
 
-const PLAN: &str = include_str!("../../scenarios/plans/cut-rim.json");
+pub const PLAN: &str = include_str!("../../scenarios/plans/cut-rim.json");
 
 /// Asserts that a plan with one replacement is refused with this message.
 #[track_caller]
-fn assert_plan_refused(replace: &str, with: &str, message: &str) {
+pub fn assert_plan_refused(replace: &str, with: &str, message: &str) {
     assert!(PLAN.contains(replace), "the plan has no {replace}");
     let (output, left) =
         benchdog_on("bad.json", &PLAN.replacen(replace, with, 1), &["simulate", "bad.json", "--junit", "junit.xml"]);

@@ -20,7 +20,7 @@ use baxter::{BOARD_KG, welded_displacement_m};
 use bench::{Bench, Grip, Hinge, PAD_HALF_M, THICKNESS_M, fingers_level};
 use benchdog::{
     model::{
-        operation::Operation,
+        operation::{Operation, OperationKind},
         plan::Plan,
         scenario::SimulationSettings,
         trace::{Phase, Sample, Trace},
@@ -196,6 +196,7 @@ fn a_free_arm_deflects_by_its_compliance() {
     let mut plan = baxter::plan(robot, drill(0.0), 0.01, 30.0);
     plan.arms.truncate(1);
     plan.operation.x_ot.translation = plan.arms[0].x_og.translation;
+    plan.operation.kind = OperationKind::Wrench;
     for force_o in [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * 0.5) {
         plan.operation.wrench_o = Wrench::from_force(force_o);
         let settings = SimulationSettings { settle_s: 2.0, ramp_s: 1.0, hold_s: 2.0, ..QUICK };
