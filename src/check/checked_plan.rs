@@ -209,7 +209,7 @@ fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
     let pushes_n = (x_ot.rotation.inverse() * wrench_o.force_n).z;
     if !bounds::wrench_is_within(&found) {
         flaws.push(Flaw::Wrench { found });
-    } else if kind == OperationKind::Drill && pushes_n <= 0.0 {
+    } else if kind == OperationKind::Drill && pushes_n < 0.0 {
         flaws.push(Flaw::Pull { found_n: pushes_n });
     }
     let found_m: [f64; 3] = x_ot.translation.vector.into();

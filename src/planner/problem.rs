@@ -50,7 +50,7 @@ impl<'a> Problem<'a> {
     pub fn stability_limits(&self) -> Limits {
         let Scenario { limits, planner, .. } = self.scenario;
         let factor = if planner.stability == StabilityKind::Compliant { COMPLIANT_SAFETY_FACTOR } else { 1.0 };
-        Limits { load_factor: factor * limits.load_factor, ..*limits }
+        Limits { load_factor: factor * limits.load_factor, torque_ratio: limits.torque_ratio / factor, ..*limits }
     }
 }
 

@@ -9,12 +9,12 @@ use super::{
     conditions::Conditions,
     error::SimError,
     feed_forward::FeedForward,
-    gripper::{SimGripper, drive_inertia_kg},
+    gripper::SimGripper,
     hand_over::HandOver,
     pad::PadContact,
     pad_shape::{GraspingHand, PadLoading},
     servo::Servo,
-    world::contact_softness_s2,
+    world::{contact_softness_s2, drive_inertia_kg},
 };
 use crate::{
     check::CheckedArm,

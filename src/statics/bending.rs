@@ -1,5 +1,5 @@
 //! How far a board bends under an operation, if it is not rigid: an estimate by the beam of Euler and Bernoulli
-//! (docs/method.md#77-rigid-board).
+//! (docs/method.md#78-rigid-board).
 //!
 //! Two beams are considered, and the worse one counts: a strip that is simply supported by the two hands farthest apart, with
 //! the force in its middle, and a strip that is clamped along the line through these hands and carries the force at the tool.

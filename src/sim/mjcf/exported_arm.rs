@@ -6,8 +6,8 @@ use super::super::{
     bodies::{ArmBodies, MovingBody},
     conditions::Conditions,
     feed_forward::FeedForward,
-    gripper::drive_inertia_kg,
     pad_shape::{GraspingHand, PadLoading, PadPart, pad_parts},
+    world::drive_inertia_kg,
 };
 use crate::{
     check::{CheckedArm, CheckedPlan},
