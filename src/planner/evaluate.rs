@@ -1,13 +1,13 @@
 //! The evaluation of a candidate: every constraint in order of cost, and the objective.
 
 use nalgebra::Point3;
-use rayon::prelude::*;
 
 use super::{
+    assessment::{self, Assessment, load_shift, test_stability},
     candidate::{Candidate, Placement},
     contact::contact_model,
-    library::{BoardGrasp, GraspingArm, posture_muscular, within_strength},
-    load_shift::{Held, LoadShift},
+    library::{GraspingArm, posture_muscular, within_strength},
+    load_shift::Held,
     near_miss::NearMisses,
     outcome::Rejection,
     problem::Problem,
@@ -23,7 +23,7 @@ use crate::{
         plan::{ArmHold, Clearance, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
         scenario::StabilityKind,
     },
-    statics::{ContactModel, HandModel, LocalEquilibrium, ResponseOutcome, StabilityWorkspace},
+    statics::{ContactModel, HandModel, LocalEquilibrium, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
@@ -55,16 +55,6 @@ pub struct Feasible {
     pub objective: f64,
     /// Its stability; the utilisation is at most 1.
     pub stability: Assessment,
-}
-
-/// How a grasp resists its load.
-#[derive(Clone, Debug, Default)]
-pub struct Assessment {
-    /// The share of the limits of stability that it uses, safety factor included: at most 1 if it is stable, infinite if there is
-    /// no equilibrium.
-    pub utilisation: f64,
-    /// Where the load at the required load factor moves arms and board; `None` unless the clearance is kept under the load.
-    pub shift: Option<LoadShift>,
 }
 
 /// A candidate that violates a constraint, with what was computed before that was found.
@@ -154,7 +144,7 @@ impl<'a> Evaluator<'a> {
 
     /// How a grasp resists its load.
     pub fn assess(&mut self, candidate: &Candidate, x_wo: &Pose) -> Assessment {
-        assess(&self.problem, &mut self.stability, candidate, x_wo)
+        assessment::assess(&self.problem, &mut self.stability, candidate, x_wo)
     }
 
     /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
@@ -185,55 +175,6 @@ impl<'a> Evaluator<'a> {
         let held = Held { robot: &robot.robot, collision: &robot.collision, arms, object };
         Some((stability, held.clearance(shift.as_ref())))
     }
-}
-
-/// See [`Evaluator::assess`].
-fn assess(problem: &Problem<'_>, workspace: &mut StabilityWorkspace, candidate: &Candidate, x_wo: &Pose) -> Assessment {
-    let keeps_clear = problem.scenario.limits.clearance_mm > 0.0;
-    contact_model(problem, candidate, x_wo)
-        .and_then(|model| workspace.assess(&model, &problem.stability_limits(), problem.scenario.planner.stability))
-        .map(|(utilisation, response)| {
-            let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
-            Assessment { utilisation, shift }
-        })
-        // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
-        .unwrap_or(Assessment { utilisation: f64::INFINITY, shift: None })
-}
-
-/// The utilisation of each grasp with the roll of the scenario's tool, see [`Assessment`].
-pub fn utilisations(problem: &Problem<'_>, grasps: &[&BoardGrasp]) -> Vec<f64> {
-    let of_grasp = |workspace: &mut StabilityWorkspace, grasp: &&BoardGrasp| {
-        assess(problem, workspace, &Candidate::without_person(grasp), &grasp.x_wo).utilisation
-    };
-    grasps.par_iter().map_init(StabilityWorkspace::new, of_grasp).collect()
-}
-
-/// Where the load at load factor 1 moves arms and board; `None` unless stability is compliant, or without an equilibrium.
-pub fn load_shift(workspace: &mut StabilityWorkspace, model: &ContactModel, kind: StabilityKind) -> Option<LoadShift> {
-    if kind != StabilityKind::Compliant {
-        return None;
-    }
-    match workspace.response(model, 1.0) {
-        Ok(ResponseOutcome::Found(response)) => Some(LoadShift::of(&response)),
-        _ => None,
-    }
-}
-
-/// Tests that a grasp resists the load, and that the robot keeps its clearance under it.
-pub fn test_stability(
-    problem: &Problem<'_>,
-    candidate: &Candidate,
-    x_wo: &Pose,
-    stability: &Assessment,
-) -> Result<(), Rejection> {
-    if stability.utilisation > 1.0 {
-        return Err(Rejection::Stability);
-    }
-    let Some(shift) = &stability.shift else { return Ok(()) };
-    let link_poses = problem.robot.link_poses(&shift.arms(&candidate.arms));
-    let scene = problem.robot.scene(&link_poses, shift.board(x_wo));
-    let violation = problem.robot.collision.first_violation(&scene);
-    if violation.is_none() { Ok(()) } else { Err(Rejection::LoadedCollision) }
 }
 
 /// Tests what depends on the person and the board's pose alone.

@@ -9,6 +9,7 @@
 //! This module never sees the result of a simulation.
 
 mod assemble;
+mod assessment;
 mod candidate;
 mod configurations;
 mod contact;

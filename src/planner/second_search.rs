@@ -5,7 +5,8 @@
 //! pairs the stable ones with postures. Without success it repairs the candidates that came nearest to stability.
 
 use super::{
-    evaluate::{Evaluator, Feasible, utilisations},
+    assessment::utilisations,
+    evaluate::{Evaluator, Feasible},
     library::{GraspLibrary, LibraryEntry},
     natural_boards::{entries_for_place, natural_entries},
     near_miss::Miss,

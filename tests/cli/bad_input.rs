@@ -236,7 +236,7 @@ fn a_quaternion_not_of_unit_length() {
     assert_plan_refused(
         "0.6682085045902386",
         "0.7",
-        "bad.json:36: object.x_wo: found a quaternion of length 1.0215172022013517, expected unit length",
+        "bad.json:49: object.x_wo: found a quaternion of length 1.0215172022013517, expected unit length",
     );
 }
 

@@ -111,14 +111,14 @@ fn a_plan_with_a_person_in_the_robot_touches() {
 }
 
 #[test]
-fn a_board_too_heavy_for_its_grip_slips_before_the_load() {
+fn a_board_too_heavy_for_its_grip_is_lost_before_the_load() {
     // Four pads of 0.1 N with a friction of 0.6 hold 0.24 N; the plank weighs 38 N.
     let (verdict, exit) = verdict_on_changed_plan(LEVER, |plan| {
         for arm in plan["arms"].as_array_mut().unwrap() {
             arm["grip_force_n"] = 0.1.into();
         }
     });
-    assert_eq!((verdict["verdict"].as_str(), exit), (Some("slips"), Some(1)), "{verdict:#}");
+    assert_eq!((verdict["verdict"].as_str(), exit), (Some("opens"), Some(1)), "{verdict:#}");
     assert_eq!(verdict["first_failure"]["load_factor"], 0.0);
     // It falls, but nothing is judged once it is lost.
     let slip_mm = verdict["checks"][0]["value"].as_f64().unwrap();

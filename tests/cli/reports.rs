@@ -112,8 +112,8 @@ fn assert_page(out: &Path, scenarios: usize) {
     let plots = |section: &roxmltree::Node| {
         section.descendants().filter(|node| node.attribute("class") == Some("plot")).count()
     };
-    // Slip, rotation, deflection, torque and load of each simulated scenario.
-    assert_eq!(sections.iter().map(plots).collect::<Vec<_>>(), [5, 5, 0]);
+    // Slip, rotation, sag, deflection, torque, clearance and load of each simulated scenario.
+    assert_eq!(sections.iter().map(plots).collect::<Vec<_>>(), [7, 7, 0]);
     // Only the section of the failure is open.
     assert_eq!(sections.iter().filter(|node| node.has_attribute("open")).count(), 1);
 }
