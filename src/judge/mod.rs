@@ -43,8 +43,8 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
         return no_verdict(trace, Measures::default(), Vec::new(), reason);
     }
     let ValidPart { samples, ends_because } = valid_part(trace);
-    let hand_over = last_of(samples, Phase::Grip);
-    let settled = last_of(samples, Phase::Settle).max(hand_over);
+    let hand_over = hand_over(samples);
+    let settled = last_of(samples, Phase::Settle).unwrap_or(0).max(hand_over);
     let mut measures = measure::measures(trace, &samples[hand_over..], settled - hand_over);
     let Judged { samples: judged, is_lost } = judged(&samples[hand_over..], &measures);
     measures.judged = judged.len();
@@ -98,9 +98,15 @@ fn not_finite(sample: &Sample) -> String {
     format!("found a number that is not finite in the sample at {} s", sample.time_s)
 }
 
-/// Index of the last sample of a phase; 0 without one.
-fn last_of(samples: &[Sample], phase: Phase) -> usize {
-    samples.iter().rposition(|sample| sample.phase == phase).unwrap_or(0)
+/// Index of the hand-over: the end of the closing of the grippers or, if that is shorter than a step, the first sample with
+/// contact, since there are no forces before the first step.
+fn hand_over(samples: &[Sample]) -> usize {
+    last_of(samples, Phase::Grip).or_else(|| samples.iter().position(Sample::has_contact)).unwrap_or(0)
+}
+
+/// Index of the last sample of a phase.
+fn last_of(samples: &[Sample], phase: Phase) -> Option<usize> {
+    samples.iter().rposition(|sample| sample.phase == phase)
 }
 
 /// The judged samples.

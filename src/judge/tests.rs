@@ -225,6 +225,16 @@ fn a_board_that_was_never_held_drops_at_the_hand_over() {
 }
 
 #[test]
+fn without_a_grip_phase_the_first_forces_are_the_hand_over() {
+    let mut trace = still();
+    // There are no forces before the first step.
+    trace.samples[0].arms.iter_mut().flat_map(|arm| &mut arm.pads).for_each(|pad| pad.normal_force_n = 0.0);
+    trace.samples.iter_mut().filter(|sample| sample.phase == Phase::Grip).for_each(|s| s.phase = Phase::Settle);
+    let judgement = judge(&trace, &limits());
+    assert_eq!((judgement.verdict, judgement.measures.time_s[0]), (VerdictKind::Holds, STEP_S));
+}
+
+#[test]
 fn a_board_lost_while_settling_drops_though_the_load_never_acted() {
     let lost_at = SETTLE - 20;
     let mut trace =

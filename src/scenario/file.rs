@@ -306,31 +306,19 @@ pub struct LimitsSection {
 impl Default for LimitsSection {
     /// The default limits (`docs/method.md#810-default-limits`).
     fn default() -> Self {
-        let Limits {
-            slip_mm,
-            slip_deg,
-            sag_mm,
-            creep_mm_s,
-            torque_ratio,
-            load_factor,
-            clearance_mm,
-            rula,
-            rula_arm,
-            reba,
-            ..
-        } = Limits::USUAL;
+        const USUAL: Limits = Limits::USUAL;
         Self {
-            slip_mm,
-            slip_deg,
+            slip_mm: USUAL.slip_mm,
+            slip_deg: USUAL.slip_deg,
             deflection_mm: None,
-            sag_mm,
-            creep_mm_s,
-            torque_ratio,
-            load_factor,
-            clearance_mm,
-            rula,
-            rula_arm,
-            reba,
+            sag_mm: USUAL.sag_mm,
+            creep_mm_s: USUAL.creep_mm_s,
+            torque_ratio: USUAL.torque_ratio,
+            load_factor: USUAL.load_factor,
+            clearance_mm: USUAL.clearance_mm,
+            rula: USUAL.rula,
+            rula_arm: USUAL.rula_arm,
+            reba: USUAL.reba,
         }
     }
 }

@@ -42,7 +42,7 @@
 //! | tilt about either axis of the pad | `N (2 b + mu t)` | less than 2 % |
 //! | creep at 50 % and 90 % of the slip load | 0 | less than 1e-6 mm/s |
 //! | a free arm under 0.5 N | `J (K + dg/dq)^-1 J' f` | less than 0.5 % |
-//! | two arms and a board of 0.5 kg, of 0.21 kg, a tenth of the load | `K_O^-1 w` | 4 %, 8 % (0.008 mm) |
+//! | two arms and a board of 0.5 kg, of 0.21 kg, a tenth of the load | `K_O^-1 w` | less than 5 % (0.005 mm) |
 //! | drift without a load in the last 1.7 s of 5 s | 0 | less than 1e-8 m |
 //! | slip at 0 to 90 degrees in the pad's plane | Coulomb cone | 0.2 % (the bisection's width) |
 //! | force and torsion together, in five directions | limit surface of a uniform patch | -4.5 to +4 % |
@@ -54,20 +54,30 @@
 //! | largest translation of their hands | | -2.9 to +0.9 %, 0.001 mm where they stick |
 //!
 //! # The hand-over
-//! The board's weight is applied to the arms over the first 0.15 s of settling. A weight applied at once makes the arms
-//! overshoot; hands that slide then keep an offset and rotate less under the load than hands that were loaded slowly.
-//! This, and not the pads, explained the difference from the statics.
+//! The grippers close over 0.05 s on a supported board, then the board's weight is applied to the arms, and to their
+//! feed-forward, over 0.15 s (`hand_over.rs`). A weight applied at once makes the arms overshoot; hands that slide then keep
+//! an offset and rotate less under the load than hands that were loaded slowly. This, and not the pads, explained the
+//! difference from the statics. Grippers that close at once knock light boards and small pads.
+//!
+//! # Time steps
+//! The engine scales a contact's stiffness with the effective mass of the two bodies, and its sweeps converge slowly
+//! between bodies of very different mass. Boards of 30 to 120 g rang between the hands. What was tried on a strip of 79 g,
+//! a board of 31 g, a hand that slides and a Panda's hand of small pads, at steps of 2, 1 and 0.5 ms:
+//!
+//! | change | effect |
+//! |---|---|
+//! | inertia of the board of at least 0.2, 0.5, 1, 2 kg, weight unchanged | ringing ends with 0.2; pads on light boards are as stiff as on heavy ones with 1 |
+//! | six sweeps in the biased part of a substep in place of one | the slip of a hand at its limit, 0.88 mm at 2 ms and 0.40 at 0.5, becomes 0.46 and 0.44 |
+//! | two substeps in place of four | half the time of a step; with one, slips at 2 ms are three times too large |
+//! | critical damping of contacts in place of ten times that | hands at their limit converge from 5 % to 2 % between the steps |
+//! | drives of the fingers of 0.3 of the board's inertia in place of 1 | light hands do not shake; with 4, they lose the board |
+//! | closing over 0.05 s | no knock: penetration in the first 20 ms from 0.6 to 0.01 mm |
+//! | softer contacts (500 Hz), fewer stabilisation sweeps (2) | small pads yield by 10 % more; self-checks fail |
 //!
 //! # Performance
-//! A step of two arms takes about 180 us, 11 times real time on one core, a step of one arm 51 us. Of its 2.5 million
-//! instructions 99 % are the engine's: 43 % mass matrices and Coriolis terms with their factorisation, repeated in each
-//! of four substeps, 37 % contact rows and sweeps, 7 % forward kinematics. Reading the state and the balance take 0.3 %
-//! each, the person's distance at most 0.5 %, the robot's from itself about 3 %;
-//! the judge adds 2 %, nearly all of it the fingerprint. Three substeps
-//! would take a quarter less time, but small deflections would exceed the bounds above; with four sweeps instead of
-//! six, hands slide at a release. `benches/sim.rs` measures it.
-//!
-//! The engine scales a contact's stiffness with the mass of the lighter body, so light boards have softer contacts.
+//! Nearly all of a step is the engine's: mass matrices and Coriolis terms with their factorisation in each of the two
+//! substeps, contact rows and sweeps, forward kinematics. Reading the state and the balance take below 1 %, the person's
+//! distance at most 1 %, the robot's from itself about 3 %. `benches/sim.rs` measures it.
 
 mod arm;
 mod balance;
