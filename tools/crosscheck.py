@@ -4,19 +4,17 @@
     tools/crosscheck.py SCENARIO_OR_PLAN [...] [--benchdog FILE] [--failing-load] [--tolerance SHARE] [--json]
 
 Each argument is a scenario (.toml), a plan (.json) or a folder: of scenarios, or of plans such as the output folder
-of `benchdog run`. Benchdog plans what has no plan, simulates it and gives its verdict. Then `benchdog export --mjcf`
-writes the scene, MuJoCo plays it here, and the motion is judged by the same limits and in the same order
-(docs/method.md, section 8). Slip and rotation count from the hand-over of the board's weight, the sag of the tool
-point from there to the end of settling. Everything that is played and judged is in the exported file; section 7.7
-describes it. Both results are printed side by side: the verdict, the first check that failed, the largest deflection,
-slip, rotation and torque ratio.
+of `benchdog run`. Benchdog plans what has no plan, simulates it and gives its verdict, confirmed at shorter time steps
+where it is near to a limit. Then `benchdog export --mjcf` writes the scene, MuJoCo plays it here, and the motion is
+judged by the same limits and in the same order (docs/method.md, section 8). Everything that is played and judged is in
+the exported file; section 7.7 describes it. Both results are printed side by side.
 
 `--failing-load` also searches the multiple of the load at which the hold fails: in MuJoCo here, by bisection to 0.1
 %, and with `benchdog margin`.
 
-Benchdog's verdict is the final one, confirmed at shorter time steps where it is near to a limit. Not compared are plans
-that Benchdog does not simulate (nothing found, bodies that touch, a person who would not stand so), and holds that it
-judges by what is not in the exported file: `touches`, by the person, and `collides`, by the robot's clearance.
+Not compared are plans that Benchdog does not simulate (nothing found, bodies that touch, a person who would not stand
+so), and holds that it judges by what is not in the exported file: `touches`, by the person, and `collides`, by the
+robot's clearance.
 
 The exit code is 0 if both engines agree, 1 if a verdict differs, or a deflection where both hold by more than the
 tolerance, and 2 for invalid input.
@@ -58,7 +56,7 @@ VERDICTS = {
 # Verdicts by distances that are not in the exported file: the person's, and the robot's from itself and the board.
 BY_DISTANCE = {"touches", "collides"}
 # Limits that no scenario states (docs/method.md, section 8.6).
-DROP_MM, PAD_OPEN_MS, CONTACT_LOST_MS = 50.0, 30.0, 0.0
+LIMITS = {"drop": 50.0, "pad_open": 30.0, "contact_lost": 0.0}
 # A pad is open below this share of the grip force.
 OPEN_SHARE = 0.05
 # A board that no pad has touched for so long is lost, and the rest is not played, s.
@@ -117,19 +115,16 @@ class Scene:
         for index, pad in enumerate(self.pads):
             for part in ("core", "ball", "face"):
                 self.pad_of_geom[model.geom(f"{pad} {part}").id] = index
-        self.limits = {"drop": DROP_MM, "pad_open": PAD_OPEN_MS, "contact_lost": CONTACT_LOST_MS}
-        fields = {"slip": "slip_mm", "slip_rotation": "slip_deg", "deflection": "deflection_mm", "sag": "sag_mm"}
+        self.limits = dict(LIMITS)
+        fields = {"slip": "slip_mm", "slip_rotation": "slip_deg", "sag": "sag_mm", "deflection": "deflection_mm"}
         fields.update(creep="creep_mm_s", torque_ratio="torque_ratio")
-        for check, name in fields.items():
-            if self.has_numbers(f"limit_{name}"):
-                self.limits[check] = float(self.numbers(f"limit_{name}")[0])
+        self.limits.update({check: float(self.numbers(f"limit_{name}")[0]) for check, name in fields.items()})
 
     def numbers(self, name: str) -> np.ndarray:
         """A numeric field."""
-        try:
-            return np.array(self.model.numeric(name).data)
-        except KeyError as error:
-            raise InputError(f"{self.path}: found no numeric field {name}, expected an export of Benchdog") from error
+        if not self.has_numbers(name):
+            raise InputError(f"{self.path}: found no numeric field {name}, expected an export of Benchdog")
+        return np.array(self.model.numeric(name).data)
 
     def has_numbers(self, name: str) -> bool:
         """Whether there is a numeric field of this name."""
@@ -191,9 +186,7 @@ def play(scene: Scene, factor: float = 1.0) -> Motion:
         data.ctrl[scene.motors] = np.concatenate([force, moment])
         data.xfrc_applied[scene.board, :3] = supported * weight_n
         mujoco.mj_step(model, data, scene.steps_per_sample)
-        if any(data.warning[kind].number for kind in (mujoco.mjtWarning.mjWARN_BADQPOS,
-                                                      mujoco.mjtWarning.mjWARN_BADQVEL,
-                                                      mujoco.mjtWarning.mjWARN_BADQACC)):
+        if np.any(data.warning.number):
             motion.broke_down = True
             break
         observe(scene, data, motion)
@@ -251,15 +244,13 @@ def judge(scene: Scene, motion: Motion) -> Result:
     """Judges a motion: the check whose limit is crossed first gives the verdict."""
     series = measure(scene, motion)
     crossings = []
-    for order, check in enumerate(VERDICTS):
-        if check in series and check in scene.limits:
-            crossed = np.flatnonzero(~(series[check] <= scene.limits[check]))
-            crossings += [(int(crossed[0]), order, check)] if crossed.size else []
+    for order, check in enumerate(check for check in VERDICTS if check in series):
+        crossed = np.flatnonzero(~(series[check] <= scene.limits[check]))
+        crossings += [(int(crossed[0]), order, check)] if crossed.size else []
     values = {check: float(np.max(of)) for check, of in series.items()}
     first = min(crossings)[2] if crossings else None
-    if first is None and motion.broke_down:
-        return Result("no_verdict", None, values)
-    return Result(VERDICTS[first] if first else "holds", first, values)
+    unfailed = "no_verdict" if motion.broke_down else "holds"
+    return Result(VERDICTS[first] if first else unfailed, first, values)
 
 
 def measure(scene: Scene, motion: Motion) -> Dict[str, np.ndarray]:
@@ -269,17 +260,15 @@ def measure(scene: Scene, motion: Motion) -> Dict[str, np.ndarray]:
     touched = np.array([np.any(force_n > 0) for force_n in motion.pads_n[start:]])
     slip_mm = 1e3 * np.linalg.norm(hands_p - hands_p[0], axis=2).max(axis=1)
     # What follows the loss of the board tells nothing about the hold.
-    lost = np.flatnonzero(~touched | (slip_mm > DROP_MM))
+    lost = np.flatnonzero(~touched | (slip_mm > LIMITS["drop"]))
     count = int(lost[0]) + 1 if lost.size else len(touched)
     settled = min(scene.settled - start, count - 1)
     judged = slice(start, start + count)
     board_p, board_r = np.array(motion.board_p[judged]), np.array(motion.board_r[judged])
     points = scene.points_o[judged]
-    turned = hands_r[0].transpose(0, 2, 1) @ hands_r
-    axis = np.stack([turned[..., 2, 1] - turned[..., 1, 2], turned[..., 0, 2] - turned[..., 2, 0],
-                     turned[..., 1, 0] - turned[..., 0, 1]], axis=-1)
-    cosine = (np.trace(turned, axis1=-2, axis2=-1) - 1) / 2
-    slip_deg = np.degrees(np.arctan2(np.linalg.norm(axis, axis=-1) / 2, cosine)).max(axis=1)
+    # Rotations that differ by an angle have a difference of the Frobenius norm `sqrt(8) sin(angle / 2)`.
+    half_sine = np.linalg.norm(hands_r - hands_r[0], axis=(2, 3)).max(axis=1) / np.sqrt(8)
+    slip_deg = np.degrees(2 * np.arcsin(np.minimum(half_sine, 1)))
 
     def moved_mm(since: int) -> np.ndarray:
         now = board_p + np.einsum("tij,tj->ti", board_r, points)
@@ -364,11 +353,10 @@ def inputs(paths: List[Path]) -> List[Path]:
     found: List[Path] = []
     for path in paths:
         if path.is_dir():
-            inside = next((files for pattern in ("*.toml", "*/plan.json", "*.json")
-                           if (files := sorted(path.glob(pattern)))), [])
-            if not inside:
+            inside = [sorted(path.glob(pattern)) for pattern in ("*.toml", "*/plan.json", "*.json")]
+            if not any(inside):
                 raise InputError(f"{path}: found no scenario and no plan in this folder")
-            found += inside
+            found += next(filter(None, inside))
         elif path.suffix in (".toml", ".json") and path.is_file():
             found.append(path)
         else:
@@ -401,7 +389,7 @@ class Comparison:
     benchdog: Result
     mujoco: Optional[Result]
     agrees: bool
-    # Why MuJoCo's result is missing or not compared.
+    # Why MuJoCo's result is missing, or not compared.
     note: str = ""
 
 
@@ -424,7 +412,7 @@ def compare(file: Path, folder: Path, options: argparse.Namespace) -> Comparison
         ours.fails_at = NEVER_FAILS if margin["fails_at"] is None else margin["fails_at"]
         theirs.fails_at = failing_load(scene, ours.fails_at)
     if ours.verdict in BY_DISTANCE:
-        return Comparison(verdict["name"], ours, theirs, True, f"not compared: {first} is not in the exported file")
+        return Comparison(verdict["name"], ours, theirs, True, f"not compared: {first} is not judged in MuJoCo")
     agrees = ours.verdict == theirs.verdict
     if agrees and ours.verdict == "holds":
         off_mm = abs(theirs.values["deflection"] - values["deflection"])
@@ -447,9 +435,8 @@ def table(comparisons: List[Comparison], failing: bool) -> str:
     rows = [["name", "engine", "verdict", "first failed", *(title for _, title, _ in COLUMNS)]]
     rows[0] += ["fails at"] if failing else []
     for one in comparisons:
-        for engine, result in (("Benchdog", one.benchdog), ("MuJoCo", one.mujoco)):
-            if result is None:
-                continue
+        engines = [("Benchdog", one.benchdog), ("MuJoCo", one.mujoco)]
+        for engine, result in engines[: 1 if one.mujoco is None else 2]:
             row = [one.name if engine == "Benchdog" else "", engine, result.verdict, result.first_check or "-"]
             row += [f"{result.values[key]:.{digits}f}" if key in result.values else "-" for key, _, digits in COLUMNS]
             row += [("-" if result.fails_at is None else f"{result.fails_at:.3f}")] if failing else []
@@ -459,9 +446,9 @@ def table(comparisons: List[Comparison], failing: bool) -> str:
     rows[0].append("")
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
-    played = [one for one in comparisons if one.mujoco is not None]
-    agreed = sum(one.agrees for one in played)
-    return "\n".join([*lines, f"{agreed} of {len(played)} agree, {len(comparisons) - len(played)} not played"])
+    compared = [one for one in comparisons if not one.note]
+    agreed = sum(one.agrees for one in compared)
+    return "\n".join([*lines, f"{agreed} of {len(compared)} agree, {len(comparisons) - len(compared)} not compared"])
 
 
 def arguments() -> argparse.Namespace:
