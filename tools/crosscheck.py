@@ -4,18 +4,17 @@
     tools/crosscheck.py SCENARIO_OR_PLAN [...] [--benchdog FILE] [--failing-load] [--tolerance SHARE] [--json]
 
 Each argument is a scenario (.toml), a plan (.json) or a folder: of scenarios, or of plans such as the output folder
-of `benchdog run`. Benchdog plans what has no plan, simulates it and gives its verdict. Then `benchdog export --mjcf`
-writes the scene, MuJoCo plays it here, and the motion is judged by the same limits and in the same order
-(docs/method.md, section 8). Slip and rotation count from the hand-over of the board's weight, the sag of the tool
-point from there to the end of settling. Everything that is played and judged is in the exported file; section 7.7
-describes it. Both results are printed side by side: the verdict, the first check that failed, the largest deflection,
-slip, rotation and torque ratio.
+of `benchdog run`. Benchdog plans what has no plan, simulates it and gives its verdict, confirmed at shorter time steps
+where it is near to a limit. Then `benchdog export --mjcf` writes the scene, MuJoCo plays it here, and the motion is
+judged by the same limits and in the same order (docs/method.md, section 8). Everything that is played and judged is in
+the exported file; section 7.7 describes it. Both results are printed side by side.
 
 `--failing-load` also searches the multiple of the load at which the hold fails: in MuJoCo here, by bisection to 0.1
 %, and with `benchdog margin`.
 
 Not compared are plans that Benchdog does not simulate (nothing found, bodies that touch, a person who would not stand
-so) and holds that fail because robot or board touch the person, who is not in the exported file.
+so), and holds that it judges by what is not in the exported file: `touches`, by the person, and `collides`, by the
+robot's clearance.
 
 The exit code is 0 if both engines agree, 1 if a verdict differs, or a deflection where both hold by more than the
 tolerance, and 2 for invalid input.
@@ -50,12 +49,14 @@ VERDICTS = {
     "slip": "slips",
     "slip_rotation": "pivots",
     "torque_ratio": "saturates",
-    "deflection": "deflects",
     "sag": "sags",
+    "deflection": "deflects",
     "creep": "creeps",
 }
+# Verdicts by distances that are not in the exported file: the person's, and the robot's from itself and the board.
+BY_DISTANCE = {"touches", "collides"}
 # Limits that no scenario states (docs/method.md, section 8.6).
-DROP_MM, PAD_OPEN_MS, CONTACT_LOST_MS = 50.0, 30.0, 0.0
+LIMITS = {"drop": 50.0, "pad_open": 30.0, "contact_lost": 0.0}
 # A pad is open below this share of the grip force.
 OPEN_SHARE = 0.05
 # A board that no pad has touched for so long is lost, and the rest is not played, s.
@@ -92,9 +93,13 @@ class Scene:
         self.wrenches_o = self.table("tool_wrench_o").reshape(-1, 6)
         self.points_o = self.table("tool_point_o").reshape(-1, 3)
         self.turns_with_board = self.text("tool_frame") == "board"
-        self.settle, self.ramp, self.hold, _ = (int(count) for count in self.numbers("phase_samples"))
+        self.grip, settle, ramp, hold, _ = (int(count) for count in self.numbers("phase_samples"))
+        # The last sample of settling, that of the hold, and the number of the hold's samples.
+        self.settled, self.end, self.hold = self.grip + settle, self.grip + settle + ramp + hold, hold
         self.hand_over = int(self.numbers("hand_over_samples")[0])
-        self.grip_n = self.numbers("grip_force_n")
+        self.board_control = self.table("board_control")
+        # The force below which a pad is open, two pads a hand, N.
+        self.least_n = OPEN_SHARE * np.repeat(self.numbers("grip_force_n"), 2)
         self.hands = self.text("hands").split("; ")
         self.pads = self.text("pads").split("; ")
         joints = [name for names in self.text("joints").split("; ") for name in names.split()]
@@ -104,24 +109,22 @@ class Scene:
         self.q_index = np.array([model.joint(name).qposadr[0] for name in joints], dtype=int)
         self.v_index = np.array([model.joint(name).dofadr[0] for name in joints], dtype=int)
         self.motors = [model.actuator(f"tool_{axis}").id for axis in ("fx", "fy", "fz", "mx", "my", "mz")]
+        self.fingers = np.setdiff1d(np.arange(self.model.nu), [*self.servos, *self.motors])
         # The pad of each geom; geoms that are no part of a pad count as one more.
         self.pad_of_geom = np.full(model.ngeom, len(self.pads))
         for index, pad in enumerate(self.pads):
             for part in ("core", "ball", "face"):
                 self.pad_of_geom[model.geom(f"{pad} {part}").id] = index
-        self.limits = {"drop": DROP_MM, "pad_open": PAD_OPEN_MS, "contact_lost": CONTACT_LOST_MS}
-        fields = {"slip": "slip_mm", "slip_rotation": "slip_deg", "deflection": "deflection_mm", "sag": "sag_mm"}
+        self.limits = dict(LIMITS)
+        fields = {"slip": "slip_mm", "slip_rotation": "slip_deg", "sag": "sag_mm", "deflection": "deflection_mm"}
         fields.update(creep="creep_mm_s", torque_ratio="torque_ratio")
-        for check, name in fields.items():
-            if self.has_numbers(f"limit_{name}"):
-                self.limits[check] = float(self.numbers(f"limit_{name}")[0])
+        self.limits.update({check: float(self.numbers(f"limit_{name}")[0]) for check, name in fields.items()})
 
     def numbers(self, name: str) -> np.ndarray:
         """A numeric field."""
-        try:
-            return np.array(self.model.numeric(name).data)
-        except KeyError as error:
-            raise InputError(f"{self.path}: found no numeric field {name}, expected an export of Benchdog") from error
+        if not self.has_numbers(name):
+            raise InputError(f"{self.path}: found no numeric field {name}, expected an export of Benchdog")
+        return np.array(self.model.numeric(name).data)
 
     def has_numbers(self, name: str) -> bool:
         """Whether there is a numeric field of this name."""
@@ -161,27 +164,29 @@ class Motion:
 
 
 def play(scene: Scene, factor: float = 1.0) -> Motion:
-    """Plays settling, ramp and hold under a multiple of the load."""
+    """Plays grip, settling, ramp and hold under a multiple of the load."""
     model, data, motion = scene.model, mujoco.MjData(scene.model), Motion()
     mujoco.mj_resetDataKeyframe(model, data, model.key("planned").id)
     mujoco.mj_forward(model, data)
     planned_r = data.xmat[scene.board].reshape(3, 3).copy()
     weight_n = -model.opt.gravity * model.body_mass[scene.board]
+    held = data.ctrl.copy()
     observe(scene, data, motion)
     untouched_s = 0.0
-    for sample in range(1, scene.settle + scene.ramp + scene.hold + 1):
+    for sample in range(1, scene.end + 1):
         board_r = data.xmat[scene.board].reshape(3, 3)
         force, moment = np.split(factor * scene.wrenches_o[sample], 2)
         if not scene.turns_with_board:
             force, moment = board_r.T @ planned_r @ force, board_r.T @ planned_r @ moment
         moment = moment + np.cross(scene.points_o[sample] - scene.points_o[0], force)
+        # The grippers close while the board is supported, then the arms take over its weight.
+        supported = 1 - share(sample - scene.grip, scene.hand_over)
+        data.ctrl = held - supported * scene.board_control
+        data.ctrl[scene.fingers] *= share(sample, scene.grip)
         data.ctrl[scene.motors] = np.concatenate([force, moment])
-        support = 1 - (sample - 1) / scene.hand_over if sample <= scene.hand_over else 0.0
-        data.xfrc_applied[scene.board, :3] = support * weight_n
+        data.xfrc_applied[scene.board, :3] = supported * weight_n
         mujoco.mj_step(model, data, scene.steps_per_sample)
-        if any(data.warning[kind].number for kind in (mujoco.mjtWarning.mjWARN_BADQPOS,
-                                                      mujoco.mjtWarning.mjWARN_BADQVEL,
-                                                      mujoco.mjtWarning.mjWARN_BADQACC)):
+        if np.any(data.warning.number):
             motion.broke_down = True
             break
         observe(scene, data, motion)
@@ -189,6 +194,11 @@ def play(scene: Scene, factor: float = 1.0) -> Motion:
         if untouched_s > LOST_AFTER_S:
             break
     return motion
+
+
+def share(sample: int, samples: int) -> float:
+    """The share of `samples` that are over after a sample: 0 before the first one."""
+    return min(max(sample, 0) / samples, 1.0) if samples else 1.0
 
 
 def observe(scene: Scene, data: mujoco.MjData, motion: Motion) -> None:
@@ -234,60 +244,50 @@ def judge(scene: Scene, motion: Motion) -> Result:
     """Judges a motion: the check whose limit is crossed first gives the verdict."""
     series = measure(scene, motion)
     crossings = []
-    for order, check in enumerate(VERDICTS):
-        if check in series and check in scene.limits:
-            crossed = np.flatnonzero(~(series[check] <= scene.limits[check]))
-            crossings += [(int(crossed[0]), order, check)] if crossed.size else []
+    for order, check in enumerate(check for check in VERDICTS if check in series):
+        crossed = np.flatnonzero(~(series[check] <= scene.limits[check]))
+        crossings += [(int(crossed[0]), order, check)] if crossed.size else []
     values = {check: float(np.max(of)) for check, of in series.items()}
     first = min(crossings)[2] if crossings else None
-    if first is None and motion.broke_down:
-        return Result("no_verdict", None, values)
-    return Result(VERDICTS[first] if first else "holds", first, values)
+    unfailed = "no_verdict" if motion.broke_down else "holds"
+    return Result(VERDICTS[first] if first else unfailed, first, values)
 
 
 def measure(scene: Scene, motion: Motion) -> Dict[str, np.ndarray]:
-    """One value a sample for each check; -inf where it is not judged."""
-    count = len(motion.board_p)
-    board_p, board_r = np.array(motion.board_p), np.array(motion.board_r)
-    hands_p, hands_r = np.array(motion.hands_p), np.array(motion.hands_r)
-    touched = np.array([np.any(force_n > 0) for force_n in motion.pads_n])
-    settled = scene.settle
-    if count <= settled:
-        # Lost while settling: from the first sample without contact.
-        settled = min(int(np.flatnonzero(touched)[-1]) + 1 if touched.any() else 0, count - 1)
-    index = np.arange(count)
+    """One value a sample for each check, from the hand-over to the end or the loss of the board."""
+    start = min(scene.grip, len(motion.board_p) - 1)
+    hands_p, hands_r = np.array(motion.hands_p[start:]), np.array(motion.hands_r[start:])
+    touched = np.array([np.any(force_n > 0) for force_n in motion.pads_n[start:]])
     slip_mm = 1e3 * np.linalg.norm(hands_p - hands_p[0], axis=2).max(axis=1)
-    cosine = (np.einsum("hij,thij->th", hands_r[0], hands_r) - 1) / 2
-    turned = hands_r[0].transpose(0, 2, 1) @ hands_r
-    axis = np.stack([turned[..., 2, 1] - turned[..., 1, 2], turned[..., 0, 2] - turned[..., 2, 0],
-                     turned[..., 1, 0] - turned[..., 0, 1]], axis=-1)
-    slip_deg = np.degrees(np.arctan2(np.linalg.norm(axis, axis=-1) / 2, cosine)).max(axis=1)
-    points = scene.points_o[:count]
+    # What follows the loss of the board tells nothing about the hold.
+    lost = np.flatnonzero(~touched | (slip_mm > LIMITS["drop"]))
+    count = int(lost[0]) + 1 if lost.size else len(touched)
+    settled = min(scene.settled - start, count - 1)
+    judged = slice(start, start + count)
+    board_p, board_r = np.array(motion.board_p[judged]), np.array(motion.board_r[judged])
+    points = scene.points_o[judged]
+    # Rotations that differ by an angle have a difference of the Frobenius norm `sqrt(8) sin(angle / 2)`.
+    half_sine = np.linalg.norm(hands_r - hands_r[0], axis=(2, 3)).max(axis=1) / np.sqrt(8)
+    slip_deg = np.degrees(2 * np.arcsin(np.minimum(half_sine, 1)))
 
     def moved_mm(since: int) -> np.ndarray:
         now = board_p + np.einsum("tij,tj->ti", board_r, points)
         return 1e3 * np.linalg.norm(now - board_p[since] - points @ board_r[since].T, axis=1)
 
-    open_n = OPEN_SHARE * np.repeat(scene.grip_n, 2)
-    pads_open = [open_ms(scene, force_n < least) for force_n, least in zip(np.array(motion.pads_n)[settled:].T, open_n)]
-    not_judged = np.full(settled, -np.inf)
-
-    def from_settled(values: np.ndarray) -> np.ndarray:
-        return np.concatenate([not_judged, values])
-
+    is_settling = np.arange(count) <= settled
+    pads_n = np.array(motion.pads_n[judged])
     series = {
-        "slip": slip_mm,
-        "slip_rotation": slip_deg,
-        "sag": np.where(index <= settled, moved_mm(0), -np.inf),
-        "deflection": from_settled(moved_mm(settled)[settled:]),
-        "torque_ratio": from_settled(np.array(motion.torque_ratio).max(axis=1)[settled:]),
-        "pad_open": from_settled(np.max(pads_open, axis=0)),
-        "contact_lost": from_settled(open_ms(scene, ~touched[settled:])),
-        "drop": slip_mm,
+        "slip": slip_mm[:count],
+        "slip_rotation": slip_deg[:count],
+        "sag": np.where(is_settling, moved_mm(0), 0.0),
+        "deflection": np.where(is_settling, 0.0, moved_mm(settled)),
+        "torque_ratio": np.array(motion.torque_ratio[judged]).max(axis=1),
+        "pad_open": np.max([open_ms(scene, of_pad) for of_pad in (pads_n < scene.least_n).T], axis=0),
+        "contact_lost": open_ms(scene, ~touched[:count]),
+        "drop": slip_mm[:count],
     }
-    rate_mm_s = None if motion.broke_down else creep_mm_s(scene, hands_p)
-    if rate_mm_s is not None:
-        series["creep"] = np.where(index == count - 1, rate_mm_s, -np.inf)
+    if not lost.size and not motion.broke_down and (rate_mm_s := creep_mm_s(scene, hands_p)) is not None:
+        series["creep"] = np.where(np.arange(count) == count - 1, rate_mm_s, 0.0)
     return series
 
 
@@ -301,14 +301,13 @@ def open_ms(scene: Scene, condition: np.ndarray) -> np.ndarray:
 
 
 def creep_mm_s(scene: Scene, hands_p: np.ndarray) -> Optional[float]:
-    """The slope of the hands' positions in the second half of the hold; None if it ended early or the load changes."""
-    end, half = scene.settle + scene.ramp + scene.hold, (scene.hold - 1) // 2
-    first = end - half
-    load = np.hstack([scene.wrenches_o, scene.points_o])[first : end + 1]
-    if len(hands_p) <= end or half < 1 or np.any(load != load[0]):
+    """The slope of the hands' positions in the second half of a whole hold; None if the load changes in it."""
+    half = (scene.hold - 1) // 2
+    load = np.hstack([scene.wrenches_o, scene.points_o])[scene.end - half : scene.end + 1]
+    if half < 1 or np.any(load != load[0]):
         return None
     time_s = scene.sample_s * (np.arange(half + 1) - half / 2)
-    moved_m = hands_p[first : end + 1] - hands_p[first]
+    moved_m = hands_p[-half - 1 :] - hands_p[-half - 1]
     return float(1e3 * np.linalg.norm(np.einsum("t,thi->hi", time_s, moved_m) / (time_s @ time_s), axis=1).max())
 
 
@@ -354,11 +353,10 @@ def inputs(paths: List[Path]) -> List[Path]:
     found: List[Path] = []
     for path in paths:
         if path.is_dir():
-            inside = next((files for pattern in ("*.toml", "*/plan.json", "*.json")
-                           if (files := sorted(path.glob(pattern)))), [])
-            if not inside:
+            inside = [sorted(path.glob(pattern)) for pattern in ("*.toml", "*/plan.json", "*.json")]
+            if not any(inside):
                 raise InputError(f"{path}: found no scenario and no plan in this folder")
-            found += inside
+            found += next(filter(None, inside))
         elif path.suffix in (".toml", ".json") and path.is_file():
             found.append(path)
         else:
@@ -391,7 +389,7 @@ class Comparison:
     benchdog: Result
     mujoco: Optional[Result]
     agrees: bool
-    # Why MuJoCo's result is missing or not compared.
+    # Why MuJoCo's result is missing, or not compared.
     note: str = ""
 
 
@@ -413,8 +411,8 @@ def compare(file: Path, folder: Path, options: argparse.Namespace) -> Comparison
         margin = json.loads(benchdog(options.benchdog, "margin", plan, *scenario, "--format", "json"))
         ours.fails_at = NEVER_FAILS if margin["fails_at"] is None else margin["fails_at"]
         theirs.fails_at = failing_load(scene, ours.fails_at)
-    if first == "person_overlap":
-        return Comparison(verdict["name"], ours, theirs, True, "not compared: the person is not in the scene")
+    if ours.verdict in BY_DISTANCE:
+        return Comparison(verdict["name"], ours, theirs, True, f"not compared: {first} is not judged in MuJoCo")
     agrees = ours.verdict == theirs.verdict
     if agrees and ours.verdict == "holds":
         off_mm = abs(theirs.values["deflection"] - values["deflection"])
@@ -437,9 +435,8 @@ def table(comparisons: List[Comparison], failing: bool) -> str:
     rows = [["name", "engine", "verdict", "first failed", *(title for _, title, _ in COLUMNS)]]
     rows[0] += ["fails at"] if failing else []
     for one in comparisons:
-        for engine, result in (("Benchdog", one.benchdog), ("MuJoCo", one.mujoco)):
-            if result is None:
-                continue
+        engines = [("Benchdog", one.benchdog), ("MuJoCo", one.mujoco)]
+        for engine, result in engines[: 1 if one.mujoco is None else 2]:
             row = [one.name if engine == "Benchdog" else "", engine, result.verdict, result.first_check or "-"]
             row += [f"{result.values[key]:.{digits}f}" if key in result.values else "-" for key, _, digits in COLUMNS]
             row += [("-" if result.fails_at is None else f"{result.fails_at:.3f}")] if failing else []
@@ -449,9 +446,9 @@ def table(comparisons: List[Comparison], failing: bool) -> str:
     rows[0].append("")
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
-    played = [one for one in comparisons if one.mujoco is not None]
-    agreed = sum(one.agrees for one in played)
-    return "\n".join([*lines, f"{agreed} of {len(played)} agree, {len(comparisons) - len(played)} not played"])
+    compared = [one for one in comparisons if not one.note]
+    agreed = sum(one.agrees for one in compared)
+    return "\n".join([*lines, f"{agreed} of {len(compared)} agree, {len(comparisons) - len(compared)} not compared"])
 
 
 def arguments() -> argparse.Namespace:

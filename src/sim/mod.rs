@@ -67,15 +67,15 @@
 //! | change | effect |
 //! |---|---|
 //! | inertia of the board of at least 0.2, 0.5, 1, 2 kg, weight unchanged | ringing ends with 0.2; pads on light boards are as stiff as on heavy ones with 1 |
-//! | six sweeps in the biased part of a substep in place of one | the slip of a hand at its limit, 0.88 mm at 2 ms and 0.40 at 0.5, becomes 0.46 and 0.44 |
-//! | two substeps in place of four | half the time of a step; with one, slips at 2 ms are three times too large |
+//! | four sweeps in the biased part of a substep in place of one | the slip of a hand at its limit, 0.88 mm at 2 ms and 0.40 at 0.5, becomes 0.35 and 0.33 |
+//! | three substeps in place of four | three quarters of the time; with two, one sliding hand in twenty moves too far at 2 ms, with one slips are three times too large |
 //! | critical damping of contacts in place of ten times that | hands at their limit converge from 5 % to 2 % between the steps |
 //! | drives of the fingers of 0.3 of the board's inertia in place of 1 | light hands do not shake; with 4, they lose the board |
 //! | closing over 0.05 s | no knock: penetration in the first 20 ms from 0.6 to 0.01 mm |
 //! | softer contacts (500 Hz), fewer stabilisation sweeps (2) | small pads yield by 10 % more; self-checks fail |
 //!
 //! # Performance
-//! Nearly all of a step is the engine's: mass matrices and Coriolis terms with their factorisation in each of the two
+//! Nearly all of a step is the engine's: mass matrices and Coriolis terms with their factorisation in each of the three
 //! substeps, contact rows and sweeps, forward kinematics. Reading the state and the balance take below 1 %, the person's
 //! distance at most 1 %, the robot's from itself about 3 %. `benches/sim.rs` measures it.
 

@@ -2,7 +2,11 @@
 
 use std::fs;
 
-use benchdog::{model::GRAVITY_W, robot::Robot, scenario::read_plan};
+use benchdog::{
+    model::GRAVITY_W,
+    robot::{Chain, Robot},
+    scenario::read_plan,
+};
 use quick_xml::{Reader, events::Event};
 use serde_json::Value;
 
@@ -176,15 +180,16 @@ fn an_exported_scene_says_what_its_player_needs() {
     let (plan, scenario) = ("scenarios/plans/cut-rim.json", "scenarios/fails-slippery-pads.toml");
     let scene = Exported::of(plan, &["--scenario", scenario]);
     let (plan, _) = read_plan(&root().join(plan), None).unwrap();
-    // 0.5 s settle, 1 s ramp, 1 s hold, 0.5 s release and 0.15 s hand-over at 2 ms (docs/method.md#74-phases).
+    // 0.05 s grip and 0.45 s settle, 1 s ramp, 1 s hold, 0.5 s release and 0.15 s hand-over at 2 ms
+    // (docs/method.md#74-phases).
     assert_eq!(scene.field("tool_timestep_s"), [0.002]);
-    assert_eq!(scene.field("phase_samples"), [250.0, 500.0, 500.0, 250.0]);
+    assert_eq!(scene.field("phase_samples"), [25.0, 225.0, 500.0, 500.0, 250.0]);
     assert_eq!(scene.field("hand_over_samples"), [75.0]);
     assert_eq!(scene.field("grip_force_n"), [30.0, 30.0]);
     // The default limits of a cut (docs/method.md#810-default-limits).
-    let limits = ["slip_mm", "slip_deg", "deflection_mm", "creep_mm_s", "torque_ratio"];
+    let limits = ["slip_mm", "slip_deg", "sag_mm", "deflection_mm", "creep_mm_s", "torque_ratio"];
     let limits = limits.map(|name| scene.field(&format!("limit_{name}"))[0]);
-    assert_eq!(limits, [1.0, 2.0, 15.0, 0.1, 1.0]);
+    assert_eq!(limits, [1.0, 2.0, 10.0, 15.0, 0.1, 1.0]);
     assert_eq!(get(scene.named("text", "tool_frame"), "data"), "board");
     let hands: Vec<&str> = get(scene.named("text", "hands"), "data").split("; ").collect();
     assert_eq!(hands, plan.arms.iter().map(|arm| arm.name.as_str()).collect::<Vec<_>>());
@@ -198,6 +203,40 @@ fn an_exported_scene_says_what_its_player_needs() {
     // The tool's motors come last; the key frame `loaded` has the full load.
     let controls = numbers(get(scene.named("key", "loaded"), "ctrl"));
     assert_eq!(controls[controls.len() - 6..], <[f64; 6]>::from(plan.operation.wrench_o));
+}
+
+/// Before the hand-over the servos carry the arms alone, after it the board too: the difference is what a player
+/// subtracts.
+#[test]
+fn an_exported_scene_says_what_the_board_adds_to_the_controls() {
+    let scene = Exported::of("scenarios/plans/cut-rim.json", &[]);
+    let (plan, robot) = read_plan(&root().join("scenarios/plans/cut-rim.json"), None).unwrap();
+    let controls = numbers(get(scene.named("key", "planned"), "ctrl"));
+    let board_control = scene.field("board_control 0");
+    // Two arms of seven joints and two fingers, and the tool's motors.
+    assert_eq!((controls.len(), board_control.len()), (24, 24));
+    let mut not_carried_n = GRAVITY_W * -plan.object.mass_kg;
+    for (hold, start) in plan.arms.iter().zip([0, 9]) {
+        let index = robot.arm_index(&hold.name).unwrap();
+        let (arm, chain) = (&robot.arms[index], Chain::new(&robot, index, 0.0));
+        let weight_nm = chain.gravity_torque_nm(&hold.q_rad);
+        let mut board_nm = weight_nm.clone();
+        for k in 0..7 {
+            let stiffness_nm_rad = arm.stiffness_nm_rad[k];
+            let fed_nm = stiffness_nm_rad * (controls[start + k] - hold.q_rad[k]);
+            board_nm[k] = stiffness_nm_rad * board_control[start + k];
+            // Rounding of angles of a radian times 843 N m/rad.
+            assert!((fed_nm - board_nm[k] - weight_nm[k]).abs() < 1e-11, "{} {k}", hold.name);
+        }
+        assert_eq!(board_control[start + 7..start + 9], [0.0; 2]);
+        // The wrench of the hand on the board with these torques; there are more joints than its components.
+        let jacobian = chain.jacobian_w(&hold.q_rad);
+        let wrench = (&jacobian * jacobian.transpose()).try_inverse().unwrap() * &jacobian * &board_nm;
+        not_carried_n -= wrench.fixed_rows::<3>(0);
+    }
+    assert_eq!(board_control[18..], [0.0; 6]);
+    // Rounding of torques of a newton metre, divided by arms of a decimetre.
+    assert!(not_carried_n.norm() < 1e-11, "{not_carried_n}");
 }
 
 /// Every body is seen, also those that do not move, and nothing collides but the pairs of pads and board.
@@ -246,9 +285,9 @@ fn the_recess_of_exported_pads_is_that_of_their_contacts() {
             let pairs = scene.all("pair");
             let pair = pairs.iter().find(|pair| get(pair, "geom1") == format!("{pad} core")).unwrap();
             let (t, d) = (numbers(get(pair, "solref"))[0], numbers(get(pair, "solimp"))[0]);
-            // 0.83 / 4 of 30 N; MuJoCo's inverse mass of a Baxter finger with a drive of 0.21 kg is 2.316 1/kg, which MuJoCo
+            // 0.83 / 4 of 30 N; MuJoCo's inverse mass of a Baxter finger with a drive of 0.3 kg is 1.944 1/kg, which MuJoCo
             // reports as `body_invweight0`; the estimate in the file differs by a per cent.
-            let penetration_m = 0.83 / 4.0 * 30.0 * (1.0 - d) * t * t * (2.316 + 1.0 / board_kg);
+            let penetration_m = 0.83 / 4.0 * 30.0 * (1.0 - d) * t * t * (1.944 + 1.0 / board_kg);
             assert!((recess_m / (3.0 * penetration_m) - 1.0).abs() < 0.01, "{pad}: {recess_m} {penetration_m}");
         }
     }

@@ -3,7 +3,7 @@
 use std::io;
 
 use super::{
-    super::conditions::Conditions,
+    super::{conditions::Conditions, feed_forward::FeedForward},
     exported_arm::ExportedArm,
     xml::{Xml, empty, numbers},
 };
@@ -36,14 +36,23 @@ pub(super) fn actuators(
     Ok(())
 }
 
-/// The controls of an arm in the planned state.
+/// The controls of an arm that carries its share of the board: of its servos, then of its fingers.
 pub(super) fn controls(arm: &ExportedArm<'_>, conditions: &Conditions) -> Vec<f64> {
-    let servos = (0..arm.arm.joints.len()).map(|k| {
-        arm.hold.q_rad[k]
-            + (arm.feed_forward.arm_nm[k] + arm.feed_forward.board_nm[k]) / stiffness_nm_rad(arm, k, conditions)
-    });
+    let FeedForward { arm_nm, board_nm } = &arm.feed_forward;
+    let servos = (0..arm.arm.joints.len())
+        .map(|k| arm.hold.q_rad[k] + (arm_nm[k] + board_nm[k]) / stiffness_nm_rad(arm, k, conditions));
     let fingers = arm.arm.gripper.fingers.iter().map(|finger| -finger.opening_sign * arm.grip_force_n);
     servos.chain(fingers).collect()
+}
+
+/// What the board's weight adds to the control of every actuator, in the order of [`actuators`].
+pub(super) fn board_controls(arms: &[ExportedArm<'_>], conditions: &Conditions) -> Vec<f64> {
+    let of_arm = |arm: &ExportedArm<'_>| {
+        let board_nm = arm.feed_forward.board_nm.iter().enumerate();
+        let servos: Vec<f64> = board_nm.map(|(k, board_nm)| board_nm / stiffness_nm_rad(arm, k, conditions)).collect();
+        [servos, vec![0.0; arm.finger_m.len()]].concat()
+    };
+    arms.iter().flat_map(of_arm).chain([0.0; TOOL_MOTORS.len()]).collect()
 }
 
 fn stiffness_nm_rad(arm: &ExportedArm<'_>, joint: usize, conditions: &Conditions) -> f64 {

@@ -7,11 +7,17 @@
 //! | `tool_point_o 0`, ... | three a sample: the tool point in O, m |
 //! | `tool_frame` | `board` if the wrench turns with the board, `world` if it keeps the direction that it has at the planned pose |
 //! | `phase_samples` | samples in which the grippers close, of settling, ramp, hold and release |
-//! | `hand_over_samples` | samples in which the support of the board's weight falls linearly to zero |
+//! | `hand_over_samples` | samples after those of closing in which the arms take over the board's weight |
+//! | `board_control 0`, ... | one an actuator: what the board's weight adds to its control in the key frames |
 //! | `limit_*` | the scenario's limits |
 //! | `hands`, `pads` | names of the hands, and of their pads, two a hand, separated by `; ` |
 //! | `joints` | the joints of each hand's arm; hands are separated by `; ` |
 //! | `grip_force_n` | one a hand |
+//!
+//! While the grippers close, `s` samples after the start, the controls of the fingers are the share `s / n` of those of
+//! the key frame `planned`, with `n` the samples of closing, and the board is supported from outside. In the hand-over
+//! that follows the arms carry the share `c`, which increases linearly from 0 to 1: the support is `1 - c` times the
+//! board's weight at its centre, and the controls are those of the key frame less `1 - c` times `board_control`.
 //!
 //! Sample 0 is the initial state; the wrench of a sample acts in the steps before it. Long tables are in several numbered
 //! fields, one after the other.
@@ -20,6 +26,7 @@ use std::io;
 
 use super::{
     super::{conditions::Conditions, hand_over::HandOver, tool_load::ToolLoad},
+    actuators::board_controls,
     exported_arm::ExportedArm,
     xml::{Xml, empty, numbers},
 };
@@ -57,7 +64,8 @@ pub(super) fn custom(
         ("limit_creep_mm_s", vec![limits.creep_mm_s]),
         ("limit_torque_ratio", vec![limits.torque_ratio]),
     ];
-    let tables: [(&str, Vec<f64>); 2] = [
+    let tables: [(&str, Vec<f64>); 3] = [
+        ("board_control", board_controls(arms, conditions)),
         ("tool_wrench_o", states.iter().flat_map(|state| <[f64; 6]>::from(state.wrench_o)).collect()),
         ("tool_point_o", states.iter().flat_map(|state| <[f64; 3]>::from(state.p_ot_m)).collect()),
     ];

@@ -8,10 +8,11 @@
 //! Contents beyond the model:
 //! - solver settings and the compliance of every contact, the same as here (`contacts.rs`);
 //! - six motors at the board's site `tool`, in O axes, that apply the tool's wrench (`actuators.rs`);
-//! - the key frame `planned`: the planned state; its controls are the servos' rest angles `q + tau_ff / K` with the fed
-//!   forward torque, and the grip forces; `loaded`: the same under the largest load;
-//! - the load over time, phases, limits and names as `<custom>` fields (`data.rs`), which MuJoCo stores without
-//!   interpreting them;
+//! - the key frame `planned`: the planned state; its controls are those after the hand-over of the board: the servos'
+//!   rest angles `q + tau_ff / K` with the torque that they feed forward for arm and board, and the grip forces;
+//!   `loaded`: the same under the largest load;
+//! - the load over time, phases, what the hand-over changes in the controls, limits and names as `<custom>` fields
+//!   (`data.rs`), which MuJoCo stores without interpreting them;
 //! - the robot's shapes, a floor, a light and a camera, which do not collide (`scenery.rs`).
 
 mod actuators;
