@@ -42,7 +42,8 @@ pub struct Equilibrium {
     pub joint_displacement_rad: Vec<DVector<f64>>,
     /// Displacement of the board at O's origin.
     pub board: Twist,
-    /// Displacement of each hand at its grasp point, `-C w`.
+    /// Displacement of the faces of each hand's pads at its grasp point, `-C w`. That of the palm is smaller by what the
+    /// pads yield, `-C_pads w`.
     pub hands: Vec<Twist>,
 }
 
@@ -60,15 +61,18 @@ impl Equilibrium {
         for (hand, pads) in model.hands.iter().zip(&pad_wrenches_p) {
             let torque = hand.joint_torque_nm(pads);
             let deflection_rad = hand.joint_deflection_rad(&(&torque - &hand.gravity_torque_nm));
-            let moved = &hand.jacobian_o * &deflection_rad;
-            hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
+            let mut moved = (&hand.jacobian_o * &deflection_rad).fixed_rows::<6>(0).into_owned();
+            if let Some(compliance) = hand.pad_compliance() {
+                moved += compliance * hand.wrench_about_grasp_point(pads).to_vector();
+            }
+            hands.push(Twist::from_vector(&-moved));
             joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * &deflection_rad);
             joint_displacement_rad.push(-deflection_rad);
         }
         Self { load_factor, pad_wrenches_p, joint_torque_nm, joint_displacement_rad, board, hands }
     }
 
-    /// Displacement of the board relative to a hand at the grasp point, `Ad d + C w`.
+    /// Displacement of the board relative to the faces of a hand's pads at the grasp point, `Ad d + C w`.
     fn slip(&self, model: &ContactModel, hand: usize) -> Twist {
         self.board.at(&model.hands[hand].grasp_point_o) - self.hands[hand]
     }

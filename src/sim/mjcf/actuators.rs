@@ -38,8 +38,10 @@ pub(super) fn actuators(
 
 /// The controls of an arm in the planned state.
 pub(super) fn controls(arm: &ExportedArm<'_>, conditions: &Conditions) -> Vec<f64> {
-    let servos = (0..arm.arm.joints.len())
-        .map(|k| arm.hold.q_rad[k] + (arm.feed_forward.arm_nm[k] + arm.feed_forward.board_nm[k]) / stiffness_nm_rad(arm, k, conditions));
+    let servos = (0..arm.arm.joints.len()).map(|k| {
+        arm.hold.q_rad[k]
+            + (arm.feed_forward.arm_nm[k] + arm.feed_forward.board_nm[k]) / stiffness_nm_rad(arm, k, conditions)
+    });
     let fingers = arm.arm.gripper.fingers.iter().map(|finger| -finger.opening_sign * arm.grip_force_n);
     servos.chain(fingers).collect()
 }
