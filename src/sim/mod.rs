@@ -83,6 +83,7 @@ mod hand_over;
 mod mjcf;
 mod pad;
 mod pad_shape;
+mod pad_springs;
 mod phases;
 mod scene;
 mod servo;
