@@ -207,4 +207,38 @@ mod tests {
         assert!(merged.com_b.norm() < 1e-15, "{}", merged.com_b);
         assert!((merged.inertia_b - whole.inertia_l).norm() < 1e-15, "{}", merged.inertia_b);
     }
+
+    #[test]
+    fn a_hand_on_its_pads_leaves_mass_and_inertia_of_the_whole_as_they_are() {
+        let robot = Robot::load("baxter", std::path::Path::new(".")).unwrap();
+        let arm = &robot.arms[0];
+        let x_gd = Isometry3::from_parts(
+            Vector3::new(0.01, 0.0, -0.02).into(),
+            UnitQuaternion::from_euler_angles(0.3, -1.0, 0.2),
+        );
+        let whole = ArmBodies::new(&robot, arm, None);
+        let mut split = ArmBodies::new(&robot, arm, Some(&x_gd));
+        let hand = split.hand.unwrap();
+        assert_eq!(split.bodies.len(), whole.bodies.len() + 1);
+        assert_eq!(split.placements[arm.gripper.frame_link].body, Some(hand));
+        // The hand carries the fingers; the last joint of the arm carries the hand.
+        let last = split.body_of_joint[arm.joints.len() - 1];
+        assert_eq!(split.bodies[hand].parent, Some(last));
+        assert!(
+            split.body_of_joint[arm.joints.len()..].iter().all(|&finger| split.bodies[finger].parent == Some(hand))
+        );
+        let expected = whole.bodies[whole.body_of_joint[arm.joints.len() - 1]].mass;
+        for _ in 0..2 {
+            let found = split.bodies[last].mass.with(&split.bodies[hand].mass, &split.bodies[hand].x_pj);
+            // Rounding of kilograms and decimetres.
+            assert!((found.mass_kg - expected.mass_kg).abs() < 1e-14 && (found.com_b - expected.com_b).norm() < 1e-14);
+            assert!((found.inertia_b - expected.inertia_b).norm() < 1e-14, "{}", found.inertia_b - expected.inertia_b);
+            // Once more with all of the mass in the hand, which is then shared.
+            let (x_ph, sum) = (split.bodies[hand].x_pj, expected);
+            split.bodies[last].mass = CompositeInertia::ZERO;
+            split.bodies[hand].mass = sum.moved(&x_ph.inverse());
+            split.share_mass(hand);
+            assert_eq!(split.bodies[last].mass.mass_kg, expected.mass_kg / 2.0);
+        }
+    }
 }

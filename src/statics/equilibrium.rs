@@ -1,6 +1,7 @@
 //! The equilibrium of compliant, position-controlled arms (docs/method.md#68-compliant-equilibrium).
 //!
-//! The joints are springs about their commanded angles, the pads are rigid-plastic. Of all pad wrenches that balance
+//! The joints are springs about their commanded angles, the pads are rigid-plastic, or elastic-plastic if they have a
+//! stiffness (`pad_layer.rs`), which adds `1/2 w_i' C_pads w_i` to the energy. Of all pad wrenches that balance
 //! the object within the pads' limits, the equilibrium minimises the complementary energy `sum_i 1/2 u_i' K_i^-1 u_i`,
 //! `u_i = J_i' w_i`, with `w_i` the hand's wrench on the object and `K_i = K_q + dg/dq`. The arms' gravity torque `g`
 //! is compensated by their controllers at the commanded angles and is not part of `u`; away from these it changes by
@@ -8,8 +9,8 @@
 //! K_q K_i^-1 u`.
 //!
 //! # Signs
-//! The object exerts `-w_i` on the hand, so the hand moves by `-C_i w_i`, `C_i = J_i K_i^-1 J_i'`. For a hand within
-//! its pads' limits the first-order condition is `C_i w_i + Ad_i y = 0`, with `y` the multiplier of the balance `sum
+//! The object exerts `-w_i` on the hand, so the faces of its pads move by `-C_i w_i`, `C_i = J_i K_i^-1 J_i' + C_pads`.
+//! For a hand within its pads' limits the first-order condition is `C_i w_i + Ad_i y = 0`, with `y` the multiplier of the balance `sum
 //! w_i + weight + lambda load = 0`. Hence `y` is the board's displacement `d`, in the direction of the load. A hand at
 //! its limits slips: the board moves relative to it by `Ad_i d + C_i w_i`.
 

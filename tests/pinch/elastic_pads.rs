@@ -1,7 +1,7 @@
 //! Elastic pads (docs/method.md#612-pad-compliance) against closed forms and the statics.
 
 use benchdog::{
-    model::{frames::Pose, plan::Plan, wrench::Wrench},
+    model::{frames::Pose, plan::Plan, scenario::SimulationSettings, wrench::Wrench},
     robot::Robot,
     sim::Conditions,
     statics::{ContactModel, ResponseOutcome, StabilityWorkspace},
@@ -11,6 +11,7 @@ use nalgebra::{Point3, Vector3};
 use crate::{
     bench::{self, Bench, Grip, Hinge, PAD_HALF_M, THICKNESS_M, fingers_level},
     common::{baxter, checked, ten_plans},
+    force_along_x_g,
     holds::{FRICTION, SETTINGS, judged_grasp, limits},
     moment_g, simulate,
 };
@@ -40,8 +41,8 @@ fn displaced(robot: &Robot, wrench_g: Wrench) -> Pose {
 }
 
 /// The part of the displacement that elastic pads add to that of the engine's contacts.
-fn added_by_pads(hinge: Option<Hinge>, wrench_g: Wrench) -> [Vector3<f64>; 2] {
-    let rigid = bench::robot(fingers_level(), hinge);
+fn added_by_pads(wrench_g: Wrench) -> [Vector3<f64>; 2] {
+    let rigid = bench::robot(fingers_level(), None);
     let elastic = with_pads(rigid.clone(), STIFFNESS_N_M);
     let [rigid, elastic] = [rigid, elastic].map(|robot| displaced(&robot, wrench_g));
     let centre_g = Point3::new(0.0, 0.0, -0.0149);
@@ -55,8 +56,7 @@ fn a_block_in_a_fixed_hand_moves_as_in_closed_form() {
         (Vector3::y(), 2.0 * STIFFNESS_N_M),
         (Vector3::z(), 2.0 * TANGENTIAL_N_M),
     ] {
-        let [moved_m, _] = added_by_pads(None, Wrench::from_force(axis * 15.0));
-        println!("{axis:?} {moved_m:?} {}", 15.0 / stiffness_n_m);
+        let [moved_m, _] = added_by_pads(Wrench::from_force(axis * 15.0));
         // The springs are exact; the engine's contacts, 1e-8 m/N, yield differently under a hand with inertia.
         assert!((moved_m - axis * (15.0 / stiffness_n_m)).norm() < 0.01 * 15.0 / stiffness_n_m, "{axis}: {moved_m}");
     }
@@ -71,8 +71,7 @@ fn a_block_in_a_fixed_hand_turns_as_in_closed_form() {
         (Vector3::y(), 2.0 * TANGENTIAL_N_M * (a + b)),
         (Vector3::z(), 2.0 * (STIFFNESS_N_M * a + shear)),
     ] {
-        let [_, turned_rad] = added_by_pads(None, moment_g(axis, 0.5));
-        println!("{axis:?} {turned_rad:?} {}", 0.5 / stiffness_nm_rad);
+        let [_, turned_rad] = added_by_pads(moment_g(axis, 0.5));
         let expected_rad = 0.5 / stiffness_nm_rad;
         assert!((turned_rad - axis * expected_rad).norm() < 0.01 * expected_rad, "{axis}: {turned_rad}");
     }
@@ -104,7 +103,38 @@ fn small_deflections_of_baxter_with_elastic_pads_are_predicted() {
             predicted_mm(baxter(), &plan),
             100.0 * off
         );
-        // As with rigid pads.
+        // As with rigid pads: contact compliance and pads of five contacts.
         assert!(off.abs() < 0.05, "{name}: {predicted} and {found}");
+        assert!(predicted > 1.02 * predicted_mm(baxter(), &plan), "{name}: the pads do not yield");
+        // A thousandth of the work of a tenth of the load: 0.1 x 30 N x 1 mm / 2. The springs' work is part of the balance.
+        assert!(gained_j < 1.5e-6, "{name}: gained {gained_j} J");
     }
+}
+
+#[test]
+fn a_quarter_of_the_time_step_changes_little_with_elastic_pads() {
+    let elastic = with_pads(baxter().clone(), STIFFNESS_N_M);
+    for plan in ten_plans().into_iter().step_by(5) {
+        let at = |timestep_s| {
+            let settings = SimulationSettings { timestep_s, ..SETTINGS };
+            let trace = simulate(&elastic, &plan, &Conditions::new(FRICTION, settings).scaled(0.5)).unwrap();
+            *judged_grasp(trace, &limits(plan.operation.kind)).measures.deflection_mm.last().unwrap()
+        };
+        let (coarse, fine) = (at(1.0 / 500.0), at(1.0 / 2000.0));
+        // As with rigid pads, see `holds.rs`.
+        assert!((coarse / fine - 1.0).abs() < 0.03, "{}: {coarse} and {fine}", plan.name);
+    }
+}
+
+#[test]
+fn a_hand_and_arm_of_one_link_share_its_mass() {
+    // The palm is the hinge's only link. The load is along the hinge's axis, so only the pads yield.
+    let hinge = Hinge { effort_nm: 100.0, stiffness_nm_rad: 1e5, damping_nm_s_rad: 50.0 };
+    let rigid = bench::robot(fingers_level(), Some(hinge));
+    let elastic = with_pads(rigid.clone(), STIFFNESS_N_M);
+    let [rigid, elastic] = [rigid, elastic].map(|robot| displaced(&robot, force_along_x_g(15.0)));
+    let added_m = (elastic.translation.vector - rigid.translation.vector).x;
+    let expected_m = 15.0 / (2.0 * TANGENTIAL_N_M);
+    // As for a fixed hand.
+    assert!((added_m - expected_m).abs() < 0.01 * expected_m, "{added_m} {expected_m}");
 }
