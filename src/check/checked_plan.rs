@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use nalgebra::Vector3;
 
 use super::{
+    bounds,
     flaw::{Flaw, Flaws},
     tolerances::{BOARD_SIDE_M, EXACT, GIVEN, LIMIT_RAD, ON_BOARD_M},
 };
@@ -13,6 +14,7 @@ use crate::{
     human::{ArmRanges, Human, ranges},
     model::{
         frames::Pose,
+        operation::{Operation, OperationKind},
         plan::{ArmHold, HumanPosture, Plan},
         scenario::{Person, Tool},
         verdict::VerdictKind,
@@ -199,18 +201,31 @@ fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
         }
     }
     let found_kg = object.mass_kg;
-    if !(found_kg.is_finite() && found_kg > 0.0) {
+    if !(found_kg > 0.0 && found_kg <= bounds::MOST_MASS_KG) {
         flaws.push(Flaw::BoardMass { found_kg });
     }
-    if !plan.operation.wrench_o.is_finite() {
-        flaws.push(Flaw::Wrench);
+    let Operation { kind, wrench_o, x_ot } = plan.operation;
+    let found: [f64; 6] = wrench_o.into();
+    let pushes_n = (x_ot.rotation.inverse() * wrench_o.force_n).z;
+    if !bounds::wrench_is_within(&found) {
+        flaws.push(Flaw::Wrench { found });
+    } else if kind == OperationKind::Drill && pushes_n < 0.0 {
+        flaws.push(Flaw::Pull { found_n: pushes_n });
     }
-    let found_m: [f64; 3] = plan.operation.x_ot.translation.vector.into();
+    let found_m: [f64; 3] = x_ot.translation.vector.into();
     let half_sides_m = object.size_m.map(|side_m| side_m / 2.0);
     let is_on_board = found_m.iter().zip(half_sides_m).all(|(p_m, half_m)| p_m.abs() - half_m <= ON_BOARD_M);
     // Of a board without size only the size is at fault.
-    if object.size_m.iter().all(|&side_m| is_board_side(side_m)) && !is_on_board {
-        flaws.push(Flaw::ToolPoint { found_m, half_sides_m });
+    if !object.size_m.iter().all(|&side_m| is_board_side(side_m)) {
+        return;
+    }
+    if !is_on_board {
+        return flaws.push(Flaw::ToolPoint { found_m, half_sides_m });
+    }
+    let depths_m = found_m.iter().zip(half_sides_m).map(|(p_m, half_m)| half_m - p_m.abs());
+    let depth_m = depths_m.fold(f64::INFINITY, f64::min);
+    if kind != OperationKind::Wrench && depth_m > GIVEN.position_m {
+        flaws.push(Flaw::TipInside { depth_m });
     }
 }
 
@@ -290,8 +305,9 @@ fn check_person<'a>(
     tool: &Tool,
     flaws: &mut Vec<Flaw>,
 ) -> Option<CheckedPerson<'a>> {
-    if !posture.x_wb.translation.vector.iter().all(|x| x.is_finite()) {
-        flaws.push(Flaw::PersonPose);
+    let found_m: [f64; 3] = posture.x_wb.translation.vector.into();
+    if !found_m.iter().all(|x_m| x_m.abs() <= bounds::MOST_PLACE_M) {
+        flaws.push(Flaw::PersonPose { found_m });
     }
     let human = Human::new(&posture.person(rules), tool).map_err(|error| flaws.push(Flaw::Person(error))).ok()?;
     check_person_limits(&human, posture, LIMIT_RAD, flaws);

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use super::tolerances::{GIVEN, ON_BOARD_M, PoseTolerance};
+use super::{
+    bounds,
+    tolerances::{GIVEN, ON_BOARD_M, PoseTolerance},
+};
 use crate::{
     human::{HumanError, Standing},
     model::plan::{ExceededScore, PostureConstraint, PostureFigure},
@@ -26,8 +29,21 @@ pub enum Flaw {
         /// The mass, kg.
         found_kg: f64,
     },
-    /// The operation's wrench is not finite.
-    Wrench,
+    /// A component of the operation's wrench is not finite or beyond [`bounds`].
+    Wrench {
+        /// Force, N, and moment, N m.
+        found: [f64; 6],
+    },
+    /// A drill whose force does not push along its axis into the board.
+    Pull {
+        /// The force along z_T, N.
+        found_n: f64,
+    },
+    /// The tip of a drill or of a knife is on no face of the board.
+    TipInside {
+        /// Its depth below the nearest face, m.
+        depth_m: f64,
+    },
     /// The tool point is off the board.
     ToolPoint {
         /// The point in O, m.
@@ -131,7 +147,10 @@ pub enum Flaw {
     /// The person or the tool is invalid.
     Person(HumanError),
     /// The person's pose is not finite.
-    PersonPose,
+    PersonPose {
+        /// The position, m.
+        found_m: [f64; 3],
+    },
     /// An angle of the person's arm beyond its limits, or not a number.
     PersonAngle {
         /// Index of the joint.
@@ -239,8 +258,8 @@ impl Flaw {
             Self::BoardSide { axis, .. } => format!("object.size_m[{axis}]"),
             Self::Thickness { .. } => "object.size_m[2]".into(),
             Self::BoardMass { .. } => "object.mass_kg".into(),
-            Self::Wrench => "operation.wrench_o".into(),
-            Self::ToolPoint { .. } => "operation.x_ot".into(),
+            Self::Wrench { .. } | Self::Pull { .. } => "operation.wrench_o".into(),
+            Self::ToolPoint { .. } | Self::TipInside { .. } => "operation.x_ot".into(),
             Self::NoArm => "arms".into(),
             Self::UnknownArm { arm, .. } | Self::ArmTwice { arm, .. } => format!("arms[{arm}].name"),
             Self::Joints { arm, .. } => format!("arms[{arm}].joints"),
@@ -249,7 +268,7 @@ impl Flaw {
             Self::GripForce { arm, .. } => format!("arms[{arm}].grip_force_n"),
             Self::FingersAcross { arm, .. } | Self::Hand { arm, .. } => format!("arms[{arm}].x_og"),
             Self::Person(_) => "human".into(),
-            Self::PersonPose | Self::Standing { .. } => "human.x_wb".into(),
+            Self::PersonPose { .. } | Self::Standing { .. } => "human.x_wb".into(),
             Self::PersonAngle { joint, .. } => format!("human.q_rad[{joint}]"),
             Self::Tool { .. } | Self::PersonShoulder { .. } => "human.q_rad".into(),
             Self::Contact(_) => "object.x_wo".into(),
@@ -283,7 +302,9 @@ impl Flaw {
         match self {
             Self::BoardSide { found_m, .. } | Self::Thickness { found_m, .. } => found_m.to_string(),
             Self::BoardMass { found_kg } => found_kg.to_string(),
-            Self::Wrench => "a wrench that is not finite".into(),
+            Self::Wrench { found } => format!("{found:?}"),
+            Self::Pull { found_n } => format!("{found_n} N along the drill's axis z_T"),
+            Self::TipInside { depth_m } => format!("a tool tip {:.2} mm inside the board", depth_m * 1e3),
             Self::ToolPoint { found_m: [x, y, z], half_sides_m } => {
                 if is_off(*z, half_sides_m[2]) {
                     format!("z = {z}")
@@ -305,7 +326,7 @@ impl Flaw {
                 format!("the gripper {} from where q_rad puts it", tolerance.deviation([*off_m, *off_rad]))
             }
             Self::Person(error) => error.to_string(),
-            Self::PersonPose => "a pose that is not finite".into(),
+            Self::PersonPose { found_m } => format!("a position of {found_m:?}"),
             Self::PersonShoulder { what, found_rad, .. } => {
                 format!("the upper arm at {found_rad} rad of {what}")
             }
@@ -337,8 +358,10 @@ impl Flaw {
             Self::Thickness { name, opening_m: [closed, open], .. } => {
                 format!("a thickness that the {name} gripper closes on: {closed} to {open} m")
             }
-            Self::BoardMass { .. } => "a positive number (kg)".into(),
-            Self::Wrench => "finite numbers (N, N m)".into(),
+            Self::BoardMass { .. } => format!("a positive number up to {} (kg)", bounds::MOST_MASS_KG),
+            Self::Wrench { .. } => bounds::wrench_in_words(),
+            Self::Pull { .. } => "a force that pushes into the board: more than 0".into(),
+            Self::TipInside { .. } => format!("a tip on a face of the board, within {:.0} mm", GIVEN.position_m * 1e3),
             Self::ToolPoint { found_m, half_sides_m: [x, y, z] } => {
                 if is_off(found_m[2], *z) {
                     format!("a point on the board: |z| <= {z} m")
@@ -364,7 +387,7 @@ impl Flaw {
                 format!("x_wo x_og to equal the arm's forward kinematics within {tolerance}")
             }
             Self::Person(_) => "a valid person and tool".into(),
-            Self::PersonPose => "finite numbers (m)".into(),
+            Self::PersonPose { .. } => format!("numbers from -{0} to {0} (m)", bounds::MOST_PLACE_M),
             Self::PersonAngle { joint, limits_rad: [low, high], .. } => {
                 format!("{low} to {high} rad, the limits of the person's joint q{}", joint + 1)
             }

@@ -4,6 +4,7 @@
 //! the planner's own verification do not validate a plan again. Each fault is a typed [`Flaw`] that names its key. The
 //! module does not know comfort, stability or files.
 
+pub mod bounds;
 mod checked_plan;
 mod flaw;
 mod posture;

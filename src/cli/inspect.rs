@@ -56,7 +56,7 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
         return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
     }
     if verdict.verdict == VerdictKind::NoVerdict && given == scenario.limits {
-        // Why there is none may not be in the trace: other time steps, or the statics.
+        // The reason may not be in the trace: other time steps, or the statics.
         (judgement.verdict, judgement.reason) = (verdict.verdict, verdict.reason.clone());
     }
     if given == scenario.limits {

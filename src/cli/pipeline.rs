@@ -16,9 +16,9 @@ use crate::{
     },
     planner::Outcome,
     robot::Robot,
-    scenario::LoadedScenario,
+    scenario::{LoadedScenario, material::bending_properties},
     sim::{self, Conditions},
-    statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace},
+    statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace, bending_note},
 };
 
 /// A scenario or plan with its verdict.
@@ -73,6 +73,7 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, C
     let (trace, judgement) = simulated_and_judged(&checked, scenario)?;
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
+    let verdict = Verdict { notes: notes(scenario, &plan), ..verdict };
     Ok(Run { verdict, posture, plan: Some(plan), simulated: Some((trace, judgement)) })
 }
 
@@ -111,6 +112,13 @@ fn cannot_carry_the_weight(checked: &CheckedPlan<'_>, scenario: &Scenario) -> bo
     }
 }
 
+/// The assumptions of the simulation that a plan strains.
+fn notes(scenario: &Scenario, plan: &Plan) -> Vec<String> {
+    let material = &scenario.object.material;
+    let properties = bending_properties(material);
+    properties.and_then(|properties| bending_note(plan, material, &properties, &scenario.limits)).into_iter().collect()
+}
+
 /// The verdict on a scenario for which nothing was simulated.
 fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
     Verdict {
@@ -125,6 +133,7 @@ fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason:
         peak_torque_ratio: BTreeMap::new(),
         confirmation: None,
         reason: Some(reason),
+        notes: Vec::new(),
         versions: versions(),
         seed: scenario.planner.seed,
         fingerprint: String::new(),

@@ -23,7 +23,7 @@ const TOGETHER_S: f64 = 0.05;
 ///
 /// - If half the step gives the same verdict, it stands, with the figures of the first run.
 /// - Otherwise a quarter decides: if it agrees with the half, that verdict stands, with the figures of the half.
-/// - Otherwise the verdict depends on the time step: there is none.
+/// - Otherwise the verdict depends on the time step, and there is no verdict.
 ///
 /// # Errors
 /// The first error of `run`.

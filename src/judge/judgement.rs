@@ -55,6 +55,7 @@ impl Judgement {
             peak_torque_ratio: self.peak_torque_ratio.clone(),
             confirmation: self.confirmation.clone(),
             reason: self.reason.clone(),
+            notes: Vec::new(),
             versions,
             seed,
             fingerprint: self.fingerprint.clone(),

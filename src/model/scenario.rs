@@ -105,6 +105,15 @@ pub struct Tool {
     pub rotation_xyzw: [f64; 4],
 }
 
+/// Elasticity and strength of a board's material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BendingProperties {
+    /// Young's modulus in bending, Pa.
+    pub youngs_modulus_pa: f64,
+    /// Bending strength (modulus of rupture), Pa.
+    pub strength_pa: f64,
+}
+
 /// The board, a box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

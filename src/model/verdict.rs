@@ -93,6 +93,9 @@ pub struct Verdict {
     /// Why there is no plan or no valid simulation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// Assumptions of the simulation that this plan strains, such as that of a rigid board. They do not influence the verdict.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Versions of Benchdog and of the engines that the verdict depends on.
     pub versions: BTreeMap<String, String>,
     /// Seed of the planner.

@@ -2,7 +2,8 @@
 
 use super::{
     candidate::{Candidate, Placement},
-    evaluate::{self, Configuration, Evaluator, Feasible},
+    contact::{placed_object, plan_arms},
+    evaluate::{Configuration, Evaluator, Feasible},
     outcome::Rejection,
     scores::{self, scored},
     verify::verify,
@@ -34,8 +35,8 @@ pub fn assemble_placed(
     let (scenario, robot) = (problem.scenario, problem.robot);
     let PlannerSettings { kind, seed, .. } = scenario.planner;
     let operation = scenario.operation.rolled(candidate.work.roll_rad);
-    let object = evaluate::placed_object(scenario, x_wo);
-    let arms = evaluate::plan_arms(problem, candidate);
+    let object = placed_object(scenario, x_wo);
+    let arms = plan_arms(problem, candidate);
     let free_share = Configuration { placement: Placement { x_wo, x_wb }, ..Configuration::new(problem, candidate) }
         .free_share_of_sight(problem);
     let figures = problem.human.posture_figures(&candidate.work.q_h_rad, &problem.normal_t, free_share);

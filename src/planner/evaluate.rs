@@ -3,9 +3,12 @@
 use nalgebra::Point3;
 
 use super::{
+    assessment::{self, Assessment, load_shift, test_stability},
     candidate::{Candidate, Placement},
+    contact::contact_model,
     library::{GraspingArm, posture_muscular, within_strength},
-    load_shift::{Held, LoadShift},
+    load_shift::Held,
+    near_miss::NearMisses,
     outcome::Rejection,
     problem::Problem,
     stats::SearchStats,
@@ -18,15 +21,17 @@ use crate::{
         frames::Pose,
         operation::Operation,
         plan::{ArmHold, Clearance, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
-        scenario::{Scenario, StabilityKind},
+        scenario::StabilityKind,
     },
-    statics::{ContactModel, ContactModelError, HandModel, LocalEquilibrium, ResponseOutcome, StabilityWorkspace},
+    statics::{ContactModel, HandModel, LocalEquilibrium, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
 pub struct Evaluator<'a> {
     pub problem: Problem<'a>,
     pub stats: SearchStats<'a>,
+    /// The candidates that kept every constraint but stability and came nearest to it.
+    pub near_misses: NearMisses,
     stability: StabilityWorkspace,
 }
 
@@ -50,16 +55,6 @@ pub struct Feasible {
     pub objective: f64,
     /// Its stability; the utilisation is at most 1.
     pub stability: Assessment,
-}
-
-/// How a grasp resists its load.
-#[derive(Clone, Debug, Default)]
-pub struct Assessment {
-    /// The share of the limits of stability that it uses, safety factor included: at most 1 if it is stable, infinite if there is
-    /// no equilibrium.
-    pub utilisation: f64,
-    /// Where the load at the required load factor moves arms and board; `None` unless the clearance is kept under the load.
-    pub shift: Option<LoadShift>,
 }
 
 /// A candidate that violates a constraint, with what was computed before that was found.
@@ -100,7 +95,7 @@ impl Configuration {
 impl<'a> Evaluator<'a> {
     /// An evaluator of a problem.
     pub fn new(problem: Problem<'a>, stats: SearchStats<'a>) -> Self {
-        Self { problem, stats, stability: StabilityWorkspace::new() }
+        Self { problem, stats, near_misses: NearMisses::default(), stability: StabilityWorkspace::new() }
     }
 
     /// Tests every constraint, the cheapest first, and computes the objective.
@@ -111,6 +106,9 @@ impl<'a> Evaluator<'a> {
         }
         let stability = self.assess(&candidate, &configuration.placement.x_wo);
         if let Err(why) = test_stability(&self.problem, &candidate, &configuration.placement.x_wo, &stability) {
+            if why == Rejection::Stability {
+                self.near_misses.add(stability.utilisation, &candidate, &configuration.placement.x_wo);
+            }
             return Err(Box::new(Rejected { why, candidate, configuration, stability }));
         }
         let comfort = comfort(&self.problem, &candidate, &configuration);
@@ -146,18 +144,7 @@ impl<'a> Evaluator<'a> {
 
     /// How a grasp resists its load.
     pub fn assess(&mut self, candidate: &Candidate, x_wo: &Pose) -> Assessment {
-        let keeps_clear = self.problem.scenario.limits.clearance_mm > 0.0;
-        contact_model(&self.problem, candidate, x_wo)
-            .and_then(|model| {
-                let limits = self.problem.stability_limits();
-                self.stability.assess(&model, &limits, self.problem.scenario.planner.stability)
-            })
-            .map(|(utilisation, response)| {
-                let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
-                Assessment { utilisation, shift }
-            })
-            // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
-            .unwrap_or(Assessment { utilisation: f64::INFINITY, shift: None })
+        assessment::assess(&self.problem, &mut self.stability, candidate, x_wo)
     }
 
     /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
@@ -188,34 +175,6 @@ impl<'a> Evaluator<'a> {
         let held = Held { robot: &robot.robot, collision: &robot.collision, arms, object };
         Some((stability, held.clearance(shift.as_ref())))
     }
-}
-
-/// Where the load at load factor 1 moves arms and board; `None` unless stability is compliant, or without an equilibrium.
-pub fn load_shift(workspace: &mut StabilityWorkspace, model: &ContactModel, kind: StabilityKind) -> Option<LoadShift> {
-    if kind != StabilityKind::Compliant {
-        return None;
-    }
-    match workspace.response(model, 1.0) {
-        Ok(ResponseOutcome::Found(response)) => Some(LoadShift::of(&response)),
-        _ => None,
-    }
-}
-
-/// Tests that a grasp resists the load, and that the robot keeps its clearance under it.
-pub fn test_stability(
-    problem: &Problem<'_>,
-    candidate: &Candidate,
-    x_wo: &Pose,
-    stability: &Assessment,
-) -> Result<(), Rejection> {
-    if stability.utilisation > 1.0 {
-        return Err(Rejection::Stability);
-    }
-    let Some(shift) = &stability.shift else { return Ok(()) };
-    let link_poses = problem.robot.link_poses(&shift.arms(&candidate.arms));
-    let scene = problem.robot.scene(&link_poses, shift.board(x_wo));
-    let violation = problem.robot.collision.first_violation(&scene);
-    if violation.is_none() { Ok(()) } else { Err(Rejection::LoadedCollision) }
 }
 
 /// Tests what depends on the person and the board's pose alone.
@@ -295,39 +254,4 @@ pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComf
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
     let operation = problem.scenario.operation.rolled(found.candidate.work.roll_rad);
     comfort::mean_response(&response_query(problem, operation, link_poses, placement.x_wo, &points_w))
-}
-
-/// The arms of a candidate as a plan lists them.
-pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
-    let scenario = problem.scenario;
-    let arms = problem.robot.arms.iter().zip(&candidate.arms);
-    arms.map(|(arm, own)| ArmHold {
-        name: arm.name.clone(),
-        joints: arm.joints.clone(),
-        q_rad: own.q_rad.clone(),
-        x_og: own.grasp.x_og(scenario.object.size_m),
-        grip_force_n: scenario.grip.force_n,
-    })
-    .collect()
-}
-
-/// The board of a scenario at a pose.
-pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
-    PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo }
-}
-
-/// The contact model of a candidate's grasp.
-pub fn contact_model(
-    problem: &Problem<'_>,
-    candidate: &Candidate,
-    x_wo: &Pose,
-) -> Result<ContactModel, ContactModelError> {
-    let Scenario { operation, grip, .. } = problem.scenario;
-    let object = placed_object(problem.scenario, *x_wo);
-    let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
-        .iter()
-        .zip(&problem.robot.arms)
-        .map(|(own, arm)| HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, own, &object, grip.friction))
-        .collect();
-    Ok(ContactModel::from_hands(hands?, &object, &operation.rolled(candidate.work.roll_rad)))
 }

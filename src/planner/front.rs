@@ -10,7 +10,7 @@ use super::{
     evaluate::{Evaluator, Feasible},
     library::GraspLibrary,
     natural_boards::natural_entries,
-    outcome::{Infeasible, Outcome, PlanError},
+    outcome::{Infeasible, Outcome, PlanError, Rejection},
     params::{SearchBudget, select::FRONT_SHARES},
     problem::Problem,
     refine,
@@ -99,11 +99,7 @@ pub fn front(
     }
     Ok(match points.first().cloned() {
         Some(own) => Outcome::Found(Front { optima, points: non_dominated(points), own }),
-        None => Outcome::Infeasible(sweep.infeasible.unwrap_or(Infeasible {
-            candidates: 0,
-            removed: Vec::new(),
-            unnatural: None,
-        })),
+        None => Outcome::Infeasible(sweep.infeasible.unwrap_or_default()),
     })
 }
 
@@ -208,10 +204,13 @@ impl Sweep<'_> {
     fn best(&mut self, scenario: &Scenario) -> Result<Option<Plan>, PlanError> {
         let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot)?, SearchStats::unlimited());
         while let Some(index) = self.index_of_best(scenario) {
-            if let Some(plan) = assemble(&mut evaluator, &self.pool[index], 0)
-                && let Some(plan) = accepted(&mut evaluator, plan)
-            {
-                return Ok(Some(plan));
+            match assemble(&mut evaluator, &self.pool[index], 0) {
+                Some(plan) => {
+                    if let Some(plan) = accepted(&mut evaluator, plan) {
+                        return Ok(Some(plan));
+                    }
+                }
+                None => evaluator.stats.reject(Rejection::Stability),
             }
             evaluator.stats.count();
             self.pool.swap_remove(index);

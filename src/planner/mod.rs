@@ -9,8 +9,10 @@
 //! This module never sees the result of a simulation.
 
 mod assemble;
+mod assessment;
 mod candidate;
 mod configurations;
+mod contact;
 mod domain;
 mod evaluate;
 mod explain;
@@ -18,6 +20,7 @@ mod front;
 mod library;
 mod load_shift;
 mod natural_boards;
+mod near_miss;
 mod normalise;
 mod outcome;
 mod params;
@@ -31,6 +34,7 @@ mod refine;
 mod scores;
 mod screen;
 mod search;
+mod second_search;
 mod select;
 mod stats;
 mod task_family;
@@ -38,7 +42,7 @@ mod verify;
 mod warm_starts;
 
 pub use front::{Front, FrontPoint};
-pub use outcome::{Infeasible, Outcome, PlanError, UnnaturalHolds};
+pub use outcome::{EmptyLibrary, Infeasible, MOST_FRICTION, NearMiss, Outcome, PlanError, Remedy, UnnaturalHolds};
 pub use planner::{Planner, Search};
 pub use select::differ;
 pub use stats::{Observer, Progress};

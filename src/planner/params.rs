@@ -15,6 +15,8 @@ pub const COMPLIANT_SAFETY_FACTOR: f64 = 1.1;
 pub mod library {
     /// Grasps of a library: enough that each of the usual orientations of a board has some dozen.
     pub const GRASPS: usize = 4_000;
+    /// Further grasps that are drawn for a search that found nothing among those.
+    pub const FURTHER_GRASPS: usize = 8_000;
     /// Seed of the library; it does not depend on the scenario.
     pub const SEED: u128 = 0x0b0a_7d00_ba4c_0001;
     /// Attempts to draw a gripper's grasp whose pads are on the board.
@@ -65,6 +67,31 @@ pub mod explanation {
     pub const GRASPS: usize = 1_000;
     /// Postures that are tried with each.
     pub const PAIRS_PER_GRASP: usize = 2;
+}
+
+/// Numbers of the nearest miss ([`super::near_miss`]).
+pub mod near_miss {
+    /// Candidates that are kept: their utilisations order them only roughly by the load that they resist.
+    pub const KEPT: usize = 64;
+    /// Step of a suggested grip force, N.
+    pub const GRIP_STEP_N: f64 = 0.1;
+    /// Step of a suggested friction.
+    pub const FRICTION_STEP: f64 = 0.01;
+    /// Steps of a suggested share of the load.
+    pub const LOAD_STEPS: u32 = 1_000;
+}
+
+/// Numbers of the second search ([`super::second_search`]).
+pub mod second_search {
+    /// Added to the scenario's seed, so that no random stream of the first search is drawn again: the golden ratio of 2^64, as in
+    /// SplitMix64.
+    pub const SEED_STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+    /// Grasps that are not stable enough and are paired with postures to be repaired, the nearest to stability first.
+    pub const NEARLY_STABLE: usize = 1_500;
+    /// Repaired candidates after which no more are repaired: refinement needs only a few starts.
+    pub const REPAIRED: usize = 6;
+    /// Rounds of repair: the first leaves candidates that are a few percent from stability, the second closes that.
+    pub const REPAIR_ROUNDS: usize = 3;
 }
 
 /// Numbers of screening and of the warm starts.
@@ -285,6 +312,24 @@ impl SearchBudget {
             Self { warm_starts: 16, warm_rounds: Some(rounds(&[[16, 4], [6, 8], [2, 25]])), ..usual }
         } else {
             usual
+        }
+    }
+
+    /// The numbers of the second search, after the first has found nothing: several times those of the default budget whatever
+    /// the scenario's own, so that all budgets agree on what is feasible.
+    pub fn of_second_search() -> Self {
+        Self {
+            postures: 400_000,
+            natural_postures: 1_000_000,
+            natural_boards: 6_000,
+            postures_per_cell: 8,
+            evaluated_pairs: 12_000,
+            starts: 48,
+            starts_per_pattern: 6,
+            rounds: rounds(&[[48, 6], [12, 8], [2, 25]]),
+            warm_starts: 0,
+            warm_rounds: None,
+            ..Self::unrestricted(Budget::Default)
         }
     }
 

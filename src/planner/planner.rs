@@ -1,19 +1,20 @@
 //! The planner: the maps that it keeps, and the searches on them.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::{
     assemble::verified,
-    evaluate::Evaluator,
+    evaluate::{Evaluator, Feasible},
     explain::explained,
     front::{self, Front},
-    library::GraspLibrary,
+    library::{GraspLibrary, LibraryEntry},
     normalise::{alone, needs_optima, with_optima},
-    outcome::{Outcome, PlanError},
+    outcome::{Infeasible, Outcome, PlanError},
     params::SearchBudget,
     path::{self, CirclePlans},
     problem::Problem,
-    search::search,
+    search::{rank, search},
+    second_search::search_again,
     select,
     stats::{Observer, SearchStats, reborrow},
     task_family::TaskFamily,
@@ -39,6 +40,8 @@ struct Maps {
     size_m: [f64; 3],
     clearance_mm: f64,
     library: GraspLibrary,
+    /// Further grasps, made when a search finds nothing.
+    further: OnceLock<Vec<LibraryEntry>>,
     warm_starts: Mutex<Vec<Arc<WarmStarts>>>,
 }
 
@@ -85,7 +88,7 @@ impl Planner {
             return maps;
         }
         let library = GraspLibrary::new(&self.robot, size_m, scenario.limits.clearance_m());
-        let made = Maps { size_m, clearance_mm, library, warm_starts: Mutex::default() };
+        let made = Maps { size_m, clearance_mm, library, further: OnceLock::new(), warm_starts: Mutex::default() };
         let mut maps = lock(&self.maps);
         kept(&maps).unwrap_or_else(|| {
             maps.push(Arc::new(made));
@@ -134,7 +137,7 @@ impl Planner {
         let mut optima = [0.0; 2];
         for (scenario, optimum) in alone(scenario).iter().zip(&mut optima) {
             let warm = self.warm_starts(maps, scenario)?;
-            match best_plan(scenario, maps, &warm, None)? {
+            match best_plan(scenario, maps, &warm, true, None)? {
                 // One of the weights is 1 and the other 0.
                 Outcome::Found(plan) => *optimum = plan.comfort.map_or(0.0, |comfort| comfort.objective),
                 Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
@@ -144,29 +147,51 @@ impl Planner {
     }
 }
 
-/// The best plan of a scenario whose objective needs no optima.
+/// The best plan of a scenario whose objective needs no optima; `twice` allows a second search if the first finds nothing.
 fn best_plan<'a>(
     scenario: &'a Scenario,
     maps: &'a Maps,
     warm: &WarmStarts,
+    twice: bool,
     observer: Option<&'a mut Observer<'a>>,
 ) -> Result<Outcome<Plan>, PlanError> {
     let mut evaluator = evaluator(scenario, maps, observer)?;
     let budget = SearchBudget::of(scenario);
-    for found in search(&mut evaluator, &maps.library, warm, &budget) {
-        if let Some(plan) = verified(&mut evaluator, &found) {
-            return Ok(Outcome::Found(plan));
-        }
+    let best = |evaluator: &mut Evaluator<'_>, found: Vec<Feasible>| -> Option<Plan> {
+        found.iter().find_map(|found| verified(evaluator, found))
+    };
+    let found = search(&mut evaluator, &maps.library, warm, &budget);
+    if let Some(plan) = best(&mut evaluator, found) {
+        return Ok(Outcome::Found(plan));
     }
-    explained_if_infeasible(Outcome::Infeasible(evaluator.stats.into_infeasible()), scenario, maps)
+    let again = if twice { second_search(&mut evaluator, maps) } else { None };
+    let searched_twice = again.is_some();
+    match again.and_then(|found| best(&mut evaluator, found)) {
+        Some(plan) => Ok(Outcome::Found(plan)),
+        None => Ok(Outcome::Infeasible(evidence(evaluator, maps, searched_twice)?)),
+    }
 }
 
-/// What was found, or why nothing was, with the limits of posture and place that are in the way.
-fn explained_if_infeasible<T>(found: Outcome<T>, scenario: &Scenario, maps: &Maps) -> Result<Outcome<T>, PlanError> {
-    match found {
-        Outcome::Found(_) => Ok(found),
-        Outcome::Infeasible(why) => Ok(Outcome::Infeasible(explained(scenario, &maps.library, why)?)),
+/// The candidates of the second search; `None` without one: the search has ended early, or the planner is the random one, which
+/// draws until it finds something.
+fn second_search(evaluator: &mut Evaluator<'_>, maps: &Maps) -> Option<Vec<Feasible>> {
+    if evaluator.stats.is_exhausted() || evaluator.problem.scenario.planner.kind == PlannerKind::Random {
+        return None;
     }
+    let further = maps.further.get_or_init(|| maps.library.further_entries());
+    let found = search_again(evaluator, &maps.library, further);
+    Some(rank(evaluator, found))
+}
+
+/// Why a search found nothing.
+fn evidence(evaluator: Evaluator<'_>, maps: &Maps, searched_twice: bool) -> Result<Infeasible, PlanError> {
+    let Evaluator { problem, stats, near_misses, .. } = evaluator;
+    let nearest = near_misses.nearest(&problem).map(Box::new);
+    let Maps { library, further, .. } = maps;
+    let is_empty = library.entries.is_empty() && further.get().is_none_or(Vec::is_empty);
+    let library = is_empty.then(|| library.failures.evidence(&library.robot.robot));
+    let why = Infeasible { searched_twice, nearest, library, ..stats.into_infeasible() };
+    explained(problem.scenario, &maps.library, why)
 }
 
 fn evaluator<'a>(
@@ -207,7 +232,7 @@ impl<'a> Search<'a> {
         let maps = planner.maps(scenario);
         let warm = planner.warm_starts(&maps, scenario)?;
         match planner.normalised(&maps, scenario)? {
-            Outcome::Found(scenario) => best_plan(&scenario, &maps, &warm, reborrow(&mut observer)),
+            Outcome::Found(scenario) => best_plan(&scenario, &maps, &warm, true, reborrow(&mut observer)),
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }
     }
@@ -223,8 +248,19 @@ impl<'a> Search<'a> {
         match planner.normalised(&maps, scenario)? {
             Outcome::Found(scenario) => {
                 let warm = planner.warm_starts(&maps, &scenario)?;
-                let evaluator = evaluator(&scenario, &maps, reborrow(&mut observer))?;
-                explained_if_infeasible(select::top(evaluator, &maps.library, &warm, wanted), &scenario, &maps)
+                let mut evaluator = evaluator(&scenario, &maps, reborrow(&mut observer))?;
+                let plans = select::top(&mut evaluator, &maps.library, &warm, wanted);
+                if !plans.is_empty() {
+                    return Ok(Outcome::Found(plans));
+                }
+                let again = second_search(&mut evaluator, &maps);
+                let searched_twice = again.is_some();
+                let plans =
+                    again.map_or_else(Vec::new, |found| select::best_that_differ(&mut evaluator, found, wanted));
+                if plans.is_empty() {
+                    return Ok(Outcome::Infeasible(evidence(evaluator, &maps, searched_twice)?));
+                }
+                Ok(Outcome::Found(plans))
             }
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }
@@ -242,8 +278,10 @@ impl<'a> Search<'a> {
         match planner.normalised(&maps, &Scenario { planner: settings, ..scenario.clone() })? {
             Outcome::Found(scenario) => {
                 let warm = planner.warm_starts(&maps, &front::own_weights(&scenario))?;
-                let found = front::front(&scenario, &maps.library, &warm, reborrow(&mut observer))?;
-                explained_if_infeasible(found, &scenario, &maps)
+                match front::front(&scenario, &maps.library, &warm, reborrow(&mut observer))? {
+                    Outcome::Found(front) => Ok(Outcome::Found(front)),
+                    Outcome::Infeasible(why) => Ok(Outcome::Infeasible(explained(&scenario, &maps.library, why)?)),
+                }
             }
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }
@@ -267,7 +305,8 @@ impl<'a> Search<'a> {
         let mut separate = Vec::with_capacity(points.len());
         for point in &points {
             let warm = planner.warm_starts(&maps, point)?;
-            separate.push(best_plan(point, &maps, &warm, reborrow(&mut observer))?.found());
+            // A point of a circle has neighbours that are searched too.
+            separate.push(best_plan(point, &maps, &warm, false, reborrow(&mut observer))?.found());
         }
         Ok(Outcome::Found(CirclePlans { continuous, separate }))
     }

@@ -50,7 +50,7 @@ impl<'a> Problem<'a> {
     pub fn stability_limits(&self) -> Limits {
         let Scenario { limits, planner, .. } = self.scenario;
         let factor = if planner.stability == StabilityKind::Compliant { COMPLIANT_SAFETY_FACTOR } else { 1.0 };
-        Limits { load_factor: factor * limits.load_factor, ..*limits }
+        Limits { load_factor: factor * limits.load_factor, torque_ratio: limits.torque_ratio / factor, ..*limits }
     }
 }
 
@@ -62,6 +62,11 @@ pub fn wrench_t(operation: &Operation) -> Wrench {
 
 /// The posture map of a scenario's person.
 pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
+    posture_map_of(scenario, human, &SearchBudget::of(scenario))
+}
+
+/// The posture map of a scenario's person, as large as a budget says.
+pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget) -> PostureMap {
     let operation = &scenario.operation;
     PostureMap::new(
         human,
@@ -71,7 +76,7 @@ pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
             roll_is_free: operation.kind.roll_is_free(),
         },
         &scenario.planner.kind.objective(scenario.comfort),
-        &SearchBudget::of(scenario),
+        budget,
         scenario.planner.seed,
     )
 }

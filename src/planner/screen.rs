@@ -31,21 +31,15 @@ struct Pair<'a> {
     estimate: f64,
 }
 
-/// The best pairs of the entries and the postures that satisfy every constraint, the best first. `draws` is the number of
-/// draws that the entries took: the evidence if there are none.
+/// The best pairs of the entries and the postures that satisfy every constraint, the best first.
 pub fn screen<'e>(
     evaluator: &mut Evaluator<'_>,
     entries: impl Iterator<Item = &'e LibraryEntry>,
-    draws: u64,
     postures: &PostureMap,
     budget: &SearchBudget,
 ) -> Vec<Feasible> {
     let Evaluator { problem, stats, .. } = evaluator;
     let place_is_given = problem.human.place_is_given();
-    let mut entries = entries.peekable();
-    if entries.peek().is_none() {
-        stats.count_rejected(draws, Rejection::RobotReach);
-    }
     let mut pairs = Vec::new();
     for entry in entries {
         if stats.is_exhausted() {
@@ -94,6 +88,9 @@ fn keep_best(pairs: &mut Vec<Pair<'_>>, count: usize) {
 fn evaluate_pairs(evaluator: &mut Evaluator<'_>, budget: &SearchBudget, pairs: &[Pair<'_>]) -> Vec<Feasible> {
     let mut aligned = Vec::with_capacity(budget.evaluated_pairs);
     for Pair { entry, posture, .. } in pairs {
+        if evaluator.stats.is_exhausted() {
+            break;
+        }
         let problem = &evaluator.problem;
         match align(problem, &entry.grasp, &posture.q_h_rad, &posture.x_bt) {
             Some(candidate) => {

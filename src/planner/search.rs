@@ -6,6 +6,7 @@ use super::{
     evaluate::{self, Evaluator, Feasible},
     library::{GraspLibrary, LibraryEntry, PostureMap},
     natural_boards::entries_for_place,
+    outcome::Rejection,
     params::{SearchBudget, screening::MEAN_RESPONSES},
     problem::{self, Problem},
     random, refine, screen,
@@ -53,8 +54,11 @@ pub fn screened(
 ) -> Vec<Feasible> {
     let Problem { scenario, human, robot, .. } = &evaluator.problem;
     let of_place = entries_for_place(scenario, human, robot, postures, budget.natural_boards);
-    let entries = library.entries.iter().chain(natural).chain(&of_place);
-    screen::screen(evaluator, entries, library.draws, postures, budget)
+    let entries: Vec<_> = library.entries.iter().chain(natural).chain(&of_place).collect();
+    if entries.is_empty() {
+        evaluator.stats.count_failed_draws(library.failures.rejections());
+    }
+    screen::screen(evaluator, entries.into_iter(), postures, budget)
 }
 
 /// The posture map of the scenario's task family.
@@ -67,8 +71,8 @@ pub fn own_postures(human: &Human, scenario: &Scenario) -> PostureMap {
 /// With the best response they stay as they are: the search optimises it together with the grasp. With the mean response
 /// the search has optimised the best response too; the first few candidates are ranked by the mean over all responses, and
 /// the others are dropped. So the result is the best of those few.
-fn rank(evaluator: &Evaluator<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
-    let problem = &evaluator.problem;
+pub fn rank(evaluator: &mut Evaluator<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
+    let Evaluator { problem, stats, .. } = evaluator;
     if problem.objective.person == ResponseKind::Best {
         return found;
     }
@@ -76,7 +80,10 @@ fn rank(evaluator: &Evaluator<'_>, found: Vec<Feasible>) -> Vec<Feasible> {
         .into_iter()
         .take(MEAN_RESPONSES)
         .filter_map(|mut found| {
-            let mean = evaluate::mean_response(problem, &found)?;
+            let Some(mean) = evaluate::mean_response(problem, &found) else {
+                stats.reject(Rejection::PersonReach);
+                return None;
+            };
             comfort::use_mean_response(&mut found.comfort, mean, &problem.objective);
             found.objective = found.comfort.objective;
             Some(found)

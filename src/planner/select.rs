@@ -5,7 +5,7 @@ use super::{
     configurations::other_configurations,
     evaluate::{Evaluator, Feasible},
     library::GraspLibrary,
-    outcome::Outcome,
+    outcome::Rejection,
     params::{
         RefinementRound, SearchBudget,
         select::{CONFIGURATION_STEPS, STARTS_PER_PLAN},
@@ -40,35 +40,38 @@ pub fn differ(one: &Plan, other: &Plan) -> bool {
     apart || turned || one.arms.len() != other.arms.len() || one.arms.iter().zip(&other.arms).any(arms_differ)
 }
 
-/// The best `wanted` plans that [`differ`] from one another, at least one, perhaps fewer than wanted. The search is that of one
+/// The best `wanted` plans that [`differ`] from one another, perhaps fewer than wanted. The search is that of one
 /// plan with more starts; the best grasps are also tried with other configurations of the arms. Every plan is checked.
-pub fn top(
-    mut evaluator: Evaluator<'_>,
-    library: &GraspLibrary,
-    warm: &WarmStarts,
-    wanted: usize,
-) -> Outcome<Vec<Plan>> {
+pub fn top(evaluator: &mut Evaluator<'_>, library: &GraspLibrary, warm: &WarmStarts, wanted: usize) -> Vec<Plan> {
     let budget = SearchBudget::of(evaluator.problem.scenario);
     let starts = budget.starts.max(STARTS_PER_PLAN.saturating_mul(wanted));
     let mut budget = SearchBudget { starts, warm_rounds: None, ..budget };
     for round in &mut budget.rounds {
         round.candidates = round.candidates.max(2 * wanted) + budget.warm_starts;
     }
-    let found = search(&mut evaluator, library, warm, &budget);
-    let found = with_other_configurations(&mut evaluator, found, wanted);
+    let found = search(evaluator, library, warm, &budget);
+    best_that_differ(evaluator, found, wanted)
+}
+
+/// The best `wanted` plans that [`differ`] from one another among candidates, each also with other configurations of the arms.
+pub fn best_that_differ(evaluator: &mut Evaluator<'_>, found: Vec<Feasible>, wanted: usize) -> Vec<Plan> {
+    let found = with_other_configurations(evaluator, found, wanted);
     let mut plans: Vec<Plan> = Vec::with_capacity(wanted);
     for found in found {
         if plans.len() == wanted {
             break;
         }
         let evaluations = evaluator.stats.candidates();
-        let Some(plan) = assemble(&mut evaluator, &found, evaluations) else { continue };
+        let Some(plan) = assemble(evaluator, &found, evaluations) else {
+            evaluator.stats.reject(Rejection::Stability);
+            continue;
+        };
         // The comparison is cheap beside the check.
         if plans.iter().all(|other| differ(other, &plan)) {
-            plans.extend(accepted(&mut evaluator, plan));
+            plans.extend(accepted(evaluator, plan));
         }
     }
-    if plans.is_empty() { Outcome::Infeasible(evaluator.stats.into_infeasible()) } else { Outcome::Found(plans) }
+    plans
 }
 
 /// The candidates, the best `wanted` of them also with other configurations of the arms, refined; the best first.

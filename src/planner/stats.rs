@@ -72,10 +72,12 @@ impl<'a> SearchStats<'a> {
         self.candidates += 1;
     }
 
-    /// Counts a number of candidates that were all rejected for one reason.
-    pub fn count_rejected(&mut self, candidates: u64, why: Rejection) {
-        self.candidates += candidates;
-        *self.removed.entry(why).or_default() += candidates;
+    /// Counts draws of the grasp library that all failed, by what rejected them.
+    pub fn count_failed_draws(&mut self, rejections: impl Iterator<Item = (Rejection, u64)>) {
+        for (why, draws) in rejections {
+            self.candidates += draws;
+            *self.removed.entry(why).or_default() += draws;
+        }
     }
 
     /// Counts a rejection; candidates that were not evaluated are left out.
@@ -102,12 +104,14 @@ impl<'a> SearchStats<'a> {
         }
     }
 
-    /// The evidence that nothing was found.
+    /// The evidence that nothing was found: every rejected candidate under the one constraint that rejected it. Grasps that
+    /// led to candidates, and feasible candidates that the search left for better ones, are not among them.
     pub fn into_infeasible(self) -> Infeasible {
-        let candidates = self.candidates();
+        let ended_early = self.is_exhausted();
         let mut removed: Vec<_> = self.removed.into_iter().map(|(why, count)| (why.name(), count)).collect();
         removed.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
-        Infeasible { candidates, removed, unnatural: None }
+        let candidates = removed.iter().map(|(_, count)| count).sum();
+        Infeasible { candidates, removed, ended_early, ..Infeasible::default() }
     }
 
     fn report(&mut self, better: Option<&Comfort>) {

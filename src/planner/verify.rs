@@ -4,7 +4,7 @@
 //! plan states; reach, joint limits, strength, standing and collisions are tested. It serves plans of other planners as well.
 //! Metrics, collision model and stability program are those of the search; its way of choosing and placing is not.
 
-use super::{evaluate::load_shift, load_shift::Held, scores::scored};
+use super::{assessment::load_shift, load_shift::Held, scores::scored};
 use crate::{
     check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
     comfort,

@@ -140,7 +140,7 @@ impl WarmStarts {
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
         if let Some(postures) = &self.postures {
             let entries = entries.iter().copied().chain(of_place);
-            starts.extend(screen::screen(&mut evaluator, entries, 0, postures, budget));
+            starts.extend(screen::screen(&mut evaluator, entries, postures, budget));
         }
         let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds));
         let p_ot_m = task.operation.x_ot.translation.vector.into();

@@ -112,7 +112,7 @@ fn log_series(
     messages.log_columns(&path, times_s, scalars.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-/// Logs a horizontal line at the limit, from the reference state to the end of the trace.
+/// Logs a horizontal line at the limit, from the hand-over to the end of the trace.
 fn log_limit(messages: &mut Messages, input: &RecordingInput, plot: &str, kind: CheckKind) -> Result<(), RecordError> {
     let (Some(check), [first_s, .., last_s]) = (input.verdict.check(kind), input.measures.time_s.as_slice()) else {
         return Ok(());

@@ -28,7 +28,7 @@ pub struct RecordedSummary {
     pub end_s: f64,
 }
 
-/// The largest values of the series, from the reference state until the load is released.
+/// The largest values of the series, from the hand-over until the load is released.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     /// Slip of each hand, mm.

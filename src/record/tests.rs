@@ -266,6 +266,7 @@ fn verdict(trace: &Trace, measures: &Measures) -> Verdict {
         peak_torque_ratio: measures.joints.iter().map(|j| (j.name.clone(), peak(&j.torque_ratio))).collect(),
         confirmation: None,
         reason: None,
+        notes: Vec::new(),
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into()), ("rapier3d-f64".into(), "0.36.1".into())]),
         seed: 1,
         fingerprint: format!("{:064x}", trace.samples.len()),

@@ -20,6 +20,10 @@ const META: &str = "<meta charset=\"utf-8\"/><meta name=\"viewport\" content=\"w
 /// The cell of a figure that does not exist.
 const NO_FIGURE: &str = "–";
 
+/// The checks in the table of all scenarios.
+const FIGURES: [CheckKind; 5] =
+    [CheckKind::Slip, CheckKind::SlipRotation, CheckKind::Sag, CheckKind::Deflection, CheckKind::TorqueRatio];
+
 /// Number of joints in the torque plot: those with the highest torque ratios.
 const JOINTS_SHOWN: usize = 3;
 
@@ -58,7 +62,7 @@ fn table(outcomes: &[Outcome]) -> Markup {
             table {
                 tr {
                     @for head in ["scenario", "result", "verdict", "expected"] { th { (head) } }
-                    @for head in ["slip mm", "slip deg", "deflection mm", "torque ratio", "predicted load factor"] {
+                    @for head in ["slip mm", "slip deg", "sag mm", "deflection mm", "torque ratio", "predicted load factor"] {
                         th.n { (head) }
                     }
                     th { "recording" }
@@ -84,7 +88,7 @@ fn row(outcome: &Outcome) -> Markup {
             td class=(status.name()) { (status.mark()) }
             td { (text(verdict.map(|verdict| verdict.verdict.to_string()))) }
             td { (text(verdict.map(|verdict| verdict.expected.to_string()))) }
-            @for kind in [CheckKind::Slip, CheckKind::SlipRotation, CheckKind::Deflection, CheckKind::TorqueRatio] {
+            @for kind in FIGURES {
                 td.n { (checked(kind)) }
             }
             td.n { (figure(load)) }

@@ -176,10 +176,16 @@ fn number_of(outcomes: &[Outcome], status: Status) -> usize {
     outcomes.iter().filter(|outcome| outcome.status() == status).count()
 }
 
-/// The check that decided the verdict, such as `deflection 16.20 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of the
-/// load`.
+/// The check that decided the verdict as [`deciding`] states it, and the notes.
 #[must_use]
 pub fn explanation(verdict: &Verdict) -> String {
+    let notes = verdict.notes.iter().map(|note| format!("; note: {note}"));
+    std::iter::once(deciding(verdict)).chain(notes).collect()
+}
+
+/// The check that decided the verdict, such as `deflection 16.20 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of the
+/// load`.
+fn deciding(verdict: &Verdict) -> String {
     if let Some(reason) = &verdict.reason {
         return reason.clone();
     }

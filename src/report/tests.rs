@@ -34,6 +34,7 @@ fn holding() -> Verdict {
         peak_torque_ratio: BTreeMap::from([("left_s0".into(), 0.25), ("left_w1".into(), 0.75)]),
         confirmation: None,
         reason: None,
+        notes: Vec::new(),
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into())]),
         seed: 1,
         fingerprint: "00ff".into(),
@@ -61,6 +62,7 @@ fn infeasible() -> Verdict {
         checks: Vec::new(),
         peak_torque_ratio: BTreeMap::new(),
         reason: Some("no candidate of 400 is stable".into()),
+        notes: Vec::new(),
         ..holding()
     }
 }
@@ -87,12 +89,12 @@ fn outcomes() -> Vec<Outcome> {
 #[test]
 fn the_table_lists_complains_and_counts() {
     let expected = "\
-scenario      verdict     expected  result   slip mm  slip deg  deflection mm  torque  load  time s
-drill-center  holds       holds     ok          0.12      0.50           1.50    0.75  3.70     2.3
-cut-03        deflects    holds     FAIL        0.12      0.50          16.25    0.75     -    10.0
-too-heavy     infeasible  holds     FAIL           -         -              -       -     -       -
-bad.toml      -           -         ERROR          -         -              -       -     -       -
-cut-04        -           -         skipped        -         -              -       -     -       -
+scenario      verdict     expected  result   slip mm  slip deg  sag mm  deflection mm  torque  load  time s
+drill-center  holds       holds     ok          0.12      0.50       -           1.50    0.75  3.70     2.3
+cut-03        deflects    holds     FAIL        0.12      0.50       -          16.25    0.75     -    10.0
+too-heavy     infeasible  holds     FAIL           -         -       -              -       -     -       -
+bad.toml      -           -         ERROR          -         -       -              -       -     -       -
+cut-04        -           -         skipped        -         -       -              -       -     -       -
 FAIL cut-03: expected holds, found deflects: deflection 16.25 mm, limit 15 mm, first crossed at 1.320 s under 0.82 of \
          the load
 FAIL too-heavy: expected holds, found infeasible: no candidate of 400 is stable

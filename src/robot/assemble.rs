@@ -175,12 +175,12 @@ impl Context<'_> {
             return Err(self.error(&entry.palm_link, "palm_link", entry.palm_link.get_ref(), expected));
         }
         self.positive("max_force_n", &entry.max_force_n, &[*entry.max_force_n.get_ref()])?;
-        self.positive("pad_size_m", &entry.pad_size_m, entry.pad_size_m.get_ref())?;
-        if !entry.pad_centre_m.get_ref().iter().all(|v| v.is_finite()) {
+        self.positive("pad_size_m", &entry.pad_size_m, &entry.pad_size_m.get_ref().0)?;
+        if !entry.pad_centre_m.get_ref().0.iter().all(|v| v.is_finite()) {
             return Err(self.error(&entry.pad_centre_m, "pad_centre_m", "a number that is not finite", "m"));
         }
         let hand = Hand { frame_link, palm_link, entry, x_wl: robot.link_poses(&robot.positions(&[])) };
-        let [first, second] = entry.fingers.get_ref();
+        let [first, second] = &entry.fingers.get_ref().0;
         let (first, first_side) = self.finger(robot, &hand, first)?;
         let (second, second_side) = self.finger(robot, &hand, second)?;
         if first_side == second_side {
@@ -191,7 +191,7 @@ impl Context<'_> {
             frame_link,
             palm_link,
             fingers,
-            opening_m: *entry.opening_m.get_ref(),
+            opening_m: entry.opening_m.get_ref().0,
             max_force_n: *entry.max_force_n.get_ref(),
             pad_stiffness_n_m: self.pad_stiffness(entry)?,
         };
@@ -260,8 +260,8 @@ impl Context<'_> {
         let pad = Pad {
             name: entry.name.clone(),
             link,
-            size_m: *hand.entry.pad_size_m.get_ref(),
-            centre_m: *hand.entry.pad_centre_m.get_ref(),
+            size_m: hand.entry.pad_size_m.get_ref().0,
+            centre_m: hand.entry.pad_centre_m.get_ref().0,
             offset_m,
         };
         let max_travel_m = joint.upper - joint.lower;
@@ -271,7 +271,7 @@ impl Context<'_> {
     fn allowed_collisions(&self, robot: &Robot, description: &Description) -> Result<Vec<[usize; 2]>, RobotError> {
         let mut pairs = self.rigid_pairs(robot);
         for entry in &description.allowed_collisions {
-            let [a, b] = entry.get_ref();
+            let [a, b] = &entry.get_ref().0;
             for [a, b] in expand(robot, [a, b]) {
                 let a = self.link_named(robot, "allowed_collisions", &a, entry.span())?;
                 let b = self.link_named(robot, "allowed_collisions", &b, entry.span())?;
@@ -308,7 +308,7 @@ impl Context<'_> {
             return Err(self.source.error(description.body_points.span(), problem));
         }
         for entry in entries {
-            let p_m = *entry.p_m.get_ref();
+            let p_m = entry.p_m.get_ref().0;
             if !p_m.iter().all(|v| v.is_finite()) {
                 return Err(self.error(&entry.p_m, "p_m", "a number that is not finite", "m"));
             }

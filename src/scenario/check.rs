@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{InputError, InputErrorKind, locate};
 use crate::{
-    check::{BOARD_SIDE_M, ON_BOARD_M},
+    check::{BOARD_SIDE_M, ON_BOARD_M, bounds},
     model::{FORMAT, frames::Pose},
     robot::{Arm, RobotError},
 };
@@ -89,19 +89,32 @@ impl<'a> Checker<'a> {
     /// Requires a number in `low..=high`.
     pub fn within(&self, key: &str, found: f64, low: f64, high: f64, unit: &str) -> Result<(), InputError> {
         let expected = format!("a number from {low} to {high} ({unit})");
-        self.that((low..=high).contains(&found), key, found.to_string(), &expected)
+        self.that((low..=high).contains(&found), key, number(found), &expected)
     }
 
-    /// Requires a finite number greater than zero.
-    pub fn positive(&self, key: &str, found: f64, unit: &str) -> Result<(), InputError> {
-        let expected = format!("a positive number ({unit})");
-        self.that(found.is_finite() && found > 0.0, key, found.to_string(), &expected)
+    /// Requires a number greater than zero and at most `most`.
+    pub fn positive(&self, key: &str, found: f64, most: f64, unit: &str) -> Result<(), InputError> {
+        self.that(found <= most || found.is_nan(), key, number(found), &format!("at most {most} ({unit})"))?;
+        self.that(found > 0.0, key, number(found), &format!("a positive number ({unit})"))
     }
 
-    /// Requires a finite number that is not negative.
-    pub fn not_negative(&self, key: &str, found: f64, unit: &str) -> Result<(), InputError> {
-        let expected = format!("zero or a positive number ({unit})");
-        self.that(found.is_finite() && found >= 0.0, key, found.to_string(), &expected)
+    /// Requires a number that is not negative and at most `most`.
+    pub fn not_negative(&self, key: &str, found: f64, most: f64, unit: &str) -> Result<(), InputError> {
+        self.that(found <= most || found.is_nan(), key, number(found), &format!("at most {most} ({unit})"))?;
+        self.that(found >= 0.0, key, number(found), &format!("zero or a positive number ({unit})"))
+    }
+
+    /// Requires forces and moments within their bounds.
+    pub fn wrench(&self, key: &str, found: &[f64; 6]) -> Result<(), InputError> {
+        let is_within = bounds::wrench_is_within(found);
+        self.that(is_within, key, format!("{found:?}"), &bounds::wrench_in_words())
+    }
+
+    /// Requires coordinates within the bounds of places.
+    pub fn place(&self, key: &str, found: &[f64]) -> Result<(), InputError> {
+        let most_m = bounds::MOST_PLACE_M;
+        let is_within = found.iter().all(|coordinate| coordinate.abs() <= most_m);
+        self.that(is_within, key, format!("{found:?}"), &format!("numbers from -{most_m} to {most_m} (m)"))
     }
 
     /// Requires finite numbers.
@@ -147,7 +160,7 @@ impl<'a> Checker<'a> {
         force_n: f64,
         arms: impl Iterator<Item = &'r Arm>,
     ) -> Result<(), InputError> {
-        self.positive(key, force_n, "N")?;
+        self.positive(key, force_n, bounds::MOST_FORCE_N, "N")?;
         for arm in arms {
             let most_n = arm.gripper.max_force_n;
             let expected = format!("at most {most_n} N, what the {} gripper gives", arm.name);
@@ -168,4 +181,9 @@ impl<'a> Checker<'a> {
         let expected = format!("a point on the board: |x| <= {x} m, |y| <= {y} m");
         self.that(inside, key, format!("[{}, {}]", p_ot.x, p_ot.y), &expected)
     }
+}
+
+/// A number in a message: without the zeros of a huge one.
+fn number(found: f64) -> String {
+    if found.is_finite() && found.abs() >= 1e9 { format!("{found:e}") } else { found.to_string() }
 }

@@ -6,6 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
+    arrays::{TooLong, too_long},
+    check::Checker,
     error::{InputError, InputErrorKind},
     load_section::LoadSection,
     locate,
@@ -338,7 +340,7 @@ impl Default for LimitsSection {
 /// # Errors
 /// If it is not TOML, a key is unknown or missing, or a value has the wrong type.
 pub fn parse(path: &Path, text: &str) -> Result<ScenarioFile, InputError> {
-    toml::from_str(text).map_err(|error| {
+    let file = toml::from_str(text).map_err(|error| {
         let span = error.span();
         InputError {
             file: path.to_owned(),
@@ -346,5 +348,10 @@ pub fn parse(path: &Path, text: &str) -> Result<ScenarioFile, InputError> {
             key: span.as_ref().and_then(|span| locate::toml_key_at(text, span)),
             kind: InputErrorKind::Syntax(error.message().replace('\n', "; ")),
         }
-    })
+    })?;
+    let check = Checker::toml(path, text);
+    match toml::from_str(text).ok().and_then(|values| too_long::<ScenarioFile>(&values)) {
+        Some(TooLong { key, found, expected }) => Err(check.value(&key, found, expected)),
+        None => Ok(file),
+    }
 }

@@ -7,14 +7,23 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{InputError, InputErrorKind, check::Checker, error::read_text};
-use crate::model::{
-    load::{ForceFrame, ForceProfile, Load, Uncertainty},
-    operation::OperationKind,
-    scenario::Scenario,
+use crate::{
+    check::bounds,
+    model::{
+        load::{ForceFrame, ForceProfile, Load, Uncertainty},
+        operation::OperationKind,
+        scenario::Scenario,
+    },
 };
 
 /// The header of a file of measured forces.
 const HEADER: [&str; 7] = ["time_s", "fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm"];
+
+/// The largest value in each column, s, N and N m.
+const MOST: [f64; 7] = {
+    let (force_n, moment_nm) = (bounds::MOST_FORCE_N, bounds::MOST_MOMENT_NM);
+    [bounds::MOST_TIME_S, force_n, force_n, force_n, moment_nm, moment_nm, moment_nm]
+};
 
 /// Fewest simulation steps per period of a vibration; fewer do not sample a sine.
 const STEPS_PER_PERIOD: f64 = 4.0;
@@ -131,10 +140,13 @@ pub fn measured(path: &Path) -> Result<Vec<[f64; 7]>, InputError> {
             return Err(at(path, line, None, format!("{} cells", record.len()), "7, one a column"));
         }
         let mut row = [0.0; 7];
-        for ((value, cell), column) in row.iter_mut().zip(&record).zip(HEADER) {
+        for (((value, cell), column), most) in row.iter_mut().zip(&record).zip(HEADER).zip(MOST) {
             let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
-            let expected = "a finite number";
-            *value = number.ok_or_else(|| at(path, line, Some(column), format!("\"{cell}\""), expected))?;
+            let unlike = |expected: &str| at(path, line, Some(column), format!("\"{cell}\""), expected);
+            *value = number.ok_or_else(|| unlike("a finite number"))?;
+            if value.abs() > most {
+                return Err(unlike(&format!("a number from -{most} to {most}")));
+            }
         }
         if let Some(last) = rows.last().filter(|last| last[0] >= row[0]) {
             let expected = format!("a time after {}, that of the row before", last[0]);
@@ -172,7 +184,7 @@ pub fn check_load(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputE
             let found = format!("\"drill\" for an operation that is to {kind}");
             check.that(kind == OperationKind::Drill, "load.kind", found, "an operation of the kind \"drill\"")?;
             check.within("load.spindle_torque_nm", *spindle_torque_nm, -100.0, 100.0, "N m")?;
-            check.not_negative("load.vibration_n", *vibration_n, "N")?;
+            check.not_negative("load.vibration_n", *vibration_n, bounds::MOST_FORCE_N, "N")?;
             let most_hz = 1.0 / (STEPS_PER_PERIOD * scenario.simulation.timestep_s);
             check.within("load.vibration_hz", *vibration_hz, 0.0, most_hz, "Hz, four time steps a period")?;
             let Some(breakthrough_s) = *breakthrough_s else { return Ok(()) };
@@ -185,9 +197,10 @@ pub fn check_load(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputE
         }
         ForceProfile::Measured { samples } => {
             let ordered = samples.windows(2).all(|pair| pair[0][0] < pair[1][0]);
-            let fine = ordered && loads(samples) && samples.iter().flatten().all(|figure| figure.is_finite());
-            let expected = "finite rows in the order of time, with some load";
-            check.that(fine, "load.profile.samples", format!("{} rows", samples.len()), expected)
+            let is_within = |row: &[f64; 7]| row.iter().zip(MOST).all(|(figure, most)| figure.abs() <= most);
+            let fine = ordered && loads(samples) && samples.iter().all(is_within);
+            let expected = format!("rows in the order of time, with some load: {}", bounds::wrench_in_words());
+            check.that(fine, "load.profile.samples", format!("{} rows", samples.len()), &expected)
         }
     }
 }
@@ -197,7 +210,7 @@ fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError
     let ForceProfile::Path { speed_m_s, centre_m, normal_share } = scenario.load.profile else { return Ok(()) };
     check.within("load.speed_m_s", speed_m_s, 0.0, 10.0, "m/s")?;
     check.within("load.normal_share", normal_share, -10.0, 10.0, "a share of the cutting force")?;
-    check.finite("load.centre_m", &centre_m)?;
+    check.place("load.centre_m", &centre_m)?;
     let x_ot = scenario.operation.x_ot;
     let p_ot_m = x_ot.translation.vector;
     let radius_m = libm::hypot(p_ot_m.x - centre_m[0], p_ot_m.y - centre_m[1]);

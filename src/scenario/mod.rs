@@ -3,6 +3,7 @@
 //! All errors of input files are found here, before anything is planned or written. Each error names the file, the line,
 //! the key, the value found and the value expected. This module does not plan or simulate.
 
+mod arrays;
 mod check;
 pub mod error;
 pub mod file;

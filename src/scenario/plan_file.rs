@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{
     InputError, InputErrorKind,
+    arrays::too_long,
     check::{Checker, FormatProbe},
     error::read_text,
     resolve,
@@ -29,7 +30,13 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
     if let Ok(probe) = serde_json::from_str::<FormatProbe>(&text) {
         check.format(probe.format)?;
     }
-    let mut plan = parse(path, &text)?;
+    let mut plan = match parse(path, &text) {
+        Ok(plan) => plan,
+        Err(error) => {
+            let too_long = serde_json::from_str(&text).ok().and_then(|values| too_long::<Plan>(&values));
+            return Err(too_long.map_or(error, |array| check.value(&array.key, array.found, array.expected)));
+        }
+    };
     let robot = match robot {
         Some(robot) if robot.description == plan.robot => robot.clone(),
         _ => {

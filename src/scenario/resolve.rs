@@ -13,6 +13,7 @@ use super::{
     robot_file::{load_robot, robot_parameters},
 };
 use crate::{
+    check::bounds,
     human::{
         Human,
         body::MAX_LEAN_DEG,
@@ -156,8 +157,8 @@ pub fn check_person(check: &Checker<'_>, person: &Person) -> Result<(), InputErr
         ["x_m", "y_m", "heading_deg", "place_tolerance_m", "heading_tolerance_deg"]
     };
     let [x, y, heading, tolerance, of_heading] = keys.map(|key| format!("human.{key}"));
-    check.finite(&x, &p_wb_m[..1])?;
-    check.finite(&y, &p_wb_m[1..])?;
+    check.place(&x, &p_wb_m[..1])?;
+    check.place(&y, &p_wb_m[1..])?;
     check.within(&heading, heading_deg, -360.0, 360.0, "degrees")?;
     check.within(&tolerance, tolerance_m, 0.001, 10.0, "m")?;
     check.within(&of_heading, tolerance_deg, 0.1, 180.0, "degrees")
@@ -237,8 +238,8 @@ fn face_operation(check: &Checker<'_>, section: &OperationSection, board: &Board
     check.absent("operation.x_ot", section.x_ot.is_some(), "kind = \"wrench\"")?;
     let point_m = check.present("operation.point_m", section.point_m, "a point [x, y] in m")?;
     let force_n = check.present("operation.force_n", section.force_n, "a force in N")?;
-    check.finite("operation.point_m", &point_m)?;
-    check.positive("operation.force_n", force_n, "N")?;
+    check.place("operation.point_m", &point_m)?;
+    check.positive("operation.force_n", force_n, bounds::MOST_FORCE_N, "N")?;
     let thickness_m = board.size_m[2];
     if section.kind == OperationKind::Drill {
         check.absent("operation.direction_o", section.direction_o.is_some(), "kind = \"cut\"")?;
@@ -258,7 +259,7 @@ fn free_operation(check: &Checker<'_>, section: &OperationSection) -> Result<Ope
     check.absent("operation.direction_o", section.direction_o.is_some(), "kind = \"cut\"")?;
     let wrench = check.present("operation.wrench_o", section.wrench_o, "six components in N and N m")?;
     let record = check.present("operation.x_ot", section.x_ot, "a pose")?;
-    check.finite("operation.wrench_o", &wrench)?;
+    check.wrench("operation.wrench_o", &wrench)?;
     let some_load = wrench.iter().any(|&component| component != 0.0);
     check.that(some_load, "operation.wrench_o", "zero", "a wrench that loads the board")?;
     let x_ot = Pose::try_from(record).map_err(|problem| check.syntax("operation.x_ot", problem))?;
@@ -267,16 +268,16 @@ fn free_operation(check: &Checker<'_>, section: &OperationSection) -> Result<Ope
 
 fn grip(check: &Checker<'_>, grip: &Grip, robot: &Robot) -> Result<(), InputError> {
     check.grip_force("grip.force_n", grip.force_n, robot.arms.iter())?;
-    check.positive("grip.friction", grip.friction, "a Coulomb coefficient")?;
-    check.within("grip.friction", grip.friction, 0.0, 2.0, "a Coulomb coefficient")
+    check.positive("grip.friction", grip.friction, 2.0, "a Coulomb coefficient")
 }
 
 fn comfort(check: &Checker<'_>, comfort: &ComfortSettings) -> Result<(), InputError> {
     if let Some(saturation_m) = comfort.saturation_m {
-        check.positive("comfort.saturation_m", saturation_m, "m")?;
+        check.positive("comfort.saturation_m", saturation_m, bounds::MOST_PLACE_M, "m")?;
     }
-    check.not_negative("comfort.weight_muscular", comfort.weight_muscular, "a weight")?;
-    check.not_negative("comfort.weight_peripersonal", comfort.weight_peripersonal, "a weight in 1/m")?;
+    check.not_negative("comfort.weight_muscular", comfort.weight_muscular, bounds::MOST_WEIGHT, "a weight")?;
+    let peripersonal = comfort.weight_peripersonal;
+    check.not_negative("comfort.weight_peripersonal", peripersonal, bounds::MOST_WEIGHT, "a weight in 1/m")?;
     let Some(share) = comfort.peripersonal_share else {
         return check.absent("comfort.optima", comfort.optima.is_some(), "comfort.peripersonal_share");
     };
@@ -289,16 +290,17 @@ fn comfort(check: &Checker<'_>, comfort: &ComfortSettings) -> Result<(), InputEr
         check.that(weight == unchanged, key, "a weight beside comfort.peripersonal_share", "one or the other")?;
     }
     let Some(optima) = comfort.optima else { return Ok(()) };
-    check.positive("comfort.optima.muscular_regularised", optima.muscular_regularised, "a comfort")?;
-    check.positive("comfort.optima.peripersonal_m", optima.peripersonal_m, "m")
+    let muscular = optima.muscular_regularised;
+    check.positive("comfort.optima.muscular_regularised", muscular, bounds::MOST_LIMIT, "a comfort")?;
+    check.positive("comfort.optima.peripersonal_m", optima.peripersonal_m, bounds::MOST_PLACE_M, "m")
 }
 
 fn simulation(check: &Checker<'_>, settings: &SimulationSettings) -> Result<(), InputError> {
     let SimulationSettings { settle_s, ramp_s, hold_s, release_s, timestep_s } = *settings;
-    check.positive("simulation.settle_s", settle_s, "s")?;
-    check.positive("simulation.ramp_s", ramp_s, "s")?;
-    check.positive("simulation.hold_s", hold_s, "s")?;
-    check.not_negative("simulation.release_s", release_s, "s")?;
+    check.positive("simulation.settle_s", settle_s, bounds::MOST_TIME_S, "s")?;
+    check.positive("simulation.ramp_s", ramp_s, bounds::MOST_TIME_S, "s")?;
+    check.positive("simulation.hold_s", hold_s, bounds::MOST_TIME_S, "s")?;
+    check.not_negative("simulation.release_s", release_s, bounds::MOST_TIME_S, "s")?;
     check.within("simulation.timestep_s", timestep_s, 1e-5, SimulationSettings::MAX_TIMESTEP_S, "s")?;
     let steps = (settle_s + ramp_s + hold_s + release_s) / timestep_s;
     let most = SimulationSettings::MAX_STEPS as f64;
@@ -328,15 +330,15 @@ fn limits_with_defaults(section: &LimitsSection, kind: OperationKind) -> Limits 
 }
 
 fn check_limits(check: &Checker<'_>, limits: &Limits) -> Result<(), InputError> {
-    check.positive("limits.slip_mm", limits.slip_mm, "mm")?;
-    check.positive("limits.slip_deg", limits.slip_deg, "degrees")?;
-    check.positive("limits.deflection_mm", limits.deflection_mm, "mm")?;
-    check.positive("limits.sag_mm", limits.sag_mm, "mm")?;
-    check.positive("limits.creep_mm_s", limits.creep_mm_s, "mm/s")?;
-    check.positive("limits.torque_ratio", limits.torque_ratio, "a ratio")?;
+    check.positive("limits.slip_mm", limits.slip_mm, bounds::MOST_LIMIT, "mm")?;
+    check.positive("limits.slip_deg", limits.slip_deg, bounds::MOST_LIMIT, "degrees")?;
+    check.positive("limits.deflection_mm", limits.deflection_mm, bounds::MOST_LIMIT, "mm")?;
+    check.positive("limits.sag_mm", limits.sag_mm, bounds::MOST_LIMIT, "mm")?;
+    check.positive("limits.creep_mm_s", limits.creep_mm_s, bounds::MOST_LIMIT, "mm/s")?;
+    check.positive("limits.torque_ratio", limits.torque_ratio, bounds::MOST_LIMIT, "a ratio")?;
     // The solvers stop at 100, and the planner applies a safety factor.
     check.within("limits.load_factor", limits.load_factor, 0.0, 50.0, "a multiple of the load")?;
-    check.not_negative("limits.clearance_mm", limits.clearance_mm, "mm")?;
+    check.not_negative("limits.clearance_mm", limits.clearance_mm, bounds::MOST_LIMIT, "mm")?;
     for (key, score, most) in [
         ("limits.rula", limits.rula, 7.0),
         ("limits.rula_arm", limits.rula_arm, 12.0),

@@ -9,13 +9,13 @@ use super::{
     conditions::Conditions,
     error::SimError,
     feed_forward::FeedForward,
-    gripper::{SimGripper, drive_inertia_kg},
+    gripper::SimGripper,
     hand_over::HandOver,
     pad::PadContact,
     pad_shape::{GraspingHand, PadLoading},
     pad_springs::{PadLayer, PadSprings},
     servo::Servo,
-    world::contact_softness_s2,
+    world::{contact_softness_s2, drive_inertia_kg},
 };
 use crate::{
     check::CheckedArm,

@@ -9,10 +9,9 @@ use super::{
     body_chain::{BodyChain, ChainLink},
     convert,
     pad::{PadContact, SimPad},
-    world::inertial_mass_kg,
 };
 use crate::{
-    model::{frames::Pose, plan::PlacedObject},
+    model::frames::Pose,
     robot::{Arm, Finger, Gripper, Robot},
 };
 
@@ -41,14 +40,6 @@ impl SimFinger {
     fn state(&self, multibody: &Multibody) -> JointState {
         JointState { position: self.place.position(multibody), velocity: self.place.velocity(multibody) }
     }
-}
-
-/// Share of the board's inertia that the drive of each finger adds to it, see [`SimGripper::close`].
-const DRIVE_SHARE: f64 = 0.3;
-
-/// The inertia that the drive adds to each finger on a board, kg, see [`SimGripper::close`].
-pub(super) fn drive_inertia_kg(object: &PlacedObject) -> f64 {
-    DRIVE_SHARE * inertial_mass_kg(object)
 }
 
 /// A gripper of the scene.

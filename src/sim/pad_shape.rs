@@ -3,7 +3,10 @@
 
 use nalgebra::{Isometry3, Point3};
 
-use super::{bodies::ArmBodies, gripper::drive_inertia_kg, world::inertial_mass_kg};
+use super::{
+    bodies::ArmBodies,
+    world::{drive_inertia_kg, inertial_mass_kg},
+};
 use crate::{
     model::{frames::Pose, plan::PlacedObject},
     robot::{Arm, Pad},

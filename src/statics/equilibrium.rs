@@ -5,7 +5,11 @@
 //! the object within the pads' limits, the equilibrium minimises the complementary energy `sum_i 1/2 u_i' K_i^-1 u_i`,
 //! `u_i = J_i' w_i`, with `w_i` the hand's wrench on the object and `K_i = K_q + dg/dq`. The arms' gravity torque `g`
 //! is compensated by their controllers at the commanded angles and is not part of `u`; away from these it changes by
-//! `dg/dq`, a few per cent of the control's stiffness. The joints move by `-K_i^-1 u`, and the motors' torque is `g +
+//! `dg/dq`, a few per cent of the control's stiffness. The controllers also feed forward what holds the board's weight
+//! (docs/method.md#71-arms), so the arms are at the commanded angles under the weight alone, and what a load changes is
+//! the difference of two equilibria: with `w_0` the wrenches under the weight, the energy `1/2 (u - u_0)' K^-1 (u - u_0)`
+//! has the same minimum as long as no pad is at its limit under the weight, since `C_i w_0i` is then the same motion of the
+//! board for all hands. The joints move by `-K_i^-1 u`, and the motors' torque is `g +
 //! K_q K_i^-1 u`.
 //!
 //! # Signs
@@ -110,7 +114,7 @@ pub enum EquilibriumOutcome {
 /// The effect of the load: the equilibrium under weight and load relative to that under the weight alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompliantResponse {
-    /// The equilibrium under weight and load.
+    /// The equilibrium under weight and load; its motor torques are those of servos that feed the weight forward.
     pub equilibrium: Equilibrium,
     /// Displacement of the tool tip on the board, O axes, m.
     pub deflection_m: Vector3<f64>,
@@ -123,7 +127,12 @@ pub struct CompliantResponse {
 }
 
 impl CompliantResponse {
-    pub(super) fn between(model: &ContactModel, unloaded: &Equilibrium, loaded: Equilibrium) -> Self {
+    pub(super) fn between(model: &ContactModel, unloaded: &Equilibrium, mut loaded: Equilibrium) -> Self {
+        // The weight is fed forward, so it does not displace the joints, and the arms' gravity torque does not change.
+        let arms = loaded.joint_torque_nm.iter_mut().zip(&model.hands).zip(&unloaded.joint_displacement_rad);
+        for ((torque_nm, hand), displaced_rad) in arms {
+            *torque_nm -= &hand.gravity_stiffness_nm_rad * displaced_rad;
+        }
         let board = loaded.board - unloaded.board;
         let deflection_m = board.at(&model.p_ot).linear;
         let joints = loaded.joint_displacement_rad.iter().zip(&unloaded.joint_displacement_rad);

@@ -47,6 +47,7 @@
 //! Wrenches are those of the hands on the object unless noted, about O's origin in O axes. A twist is a small
 //! displacement: the translation of O's origin (m) and the rotation vector (rad), in O axes.
 
+mod bending;
 mod carrying;
 mod certificate;
 mod compliant_load;
@@ -71,6 +72,7 @@ mod twist;
 mod welded;
 mod workspace;
 
+pub use bending::{Bending, Strip, bending, bending_note};
 pub use certificate::DualVector;
 pub use compliant_load::CompliantLoadFactor;
 pub use contact_model::{ContactModel, ContactModelError};

@@ -32,8 +32,8 @@ impl StabilityWorkspace {
         self.assess(model, limits, kind).map(|(utilisation, _)| utilisation)
     }
 
-    /// As [`StabilityWorkspace::utilisation`], with the response at `limits.load_factor` from which it follows; there is none for
-    /// the criterion `paper` or without an equilibrium.
+    /// As [`StabilityWorkspace::utilisation`], with the response at `limits.load_factor` from which it follows; no response
+    /// for the criterion `paper` or without an equilibrium.
     ///
     /// # Errors
     /// If the contact model is invalid.

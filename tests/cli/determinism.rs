@@ -23,7 +23,7 @@ use crate::{
 /// ```
 ///
 /// After an intended change of the simulation, copy the new value from the failing test.
-const SHORT_HOLD: &str = "bd97762b241579645a6448ec32c7f7c5fabc503e5c52f9555b4387324b2a46f5";
+const SHORT_HOLD: &str = "524b0144fa9e3ea64d861d84b64211253331e7afa3e106a4520ed0c594c48e4e";
 
 /// A plan without the durations, which differ between runs.
 fn plan_without_clock(plan: &[u8]) -> Value {

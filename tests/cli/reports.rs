@@ -49,8 +49,8 @@ fn every_scenario_is_in_every_report() {
     assert_eq!(rows.iter().map(|row| row[0].to_owned()).collect::<Vec<_>>(), ["a", "b", "left-out"]);
     assert_eq!(rows.iter().map(|row| row[1].to_owned()).collect::<Vec<_>>(), ["ok", "failed", "skipped"]);
     let failed_s = verdict["first_failure"]["time_s"].as_f64().unwrap();
-    assert_eq!((&rows[1][10], &rows[1][11]), ("slip", format!("{failed_s:.4}").as_str()));
-    assert!(rows[1][13].starts_with("expected holds, found slips: slip"), "{rows:?}");
+    assert_eq!((&rows[1][11], &rows[1][12]), ("slip", format!("{failed_s:.4}").as_str()));
+    assert!(rows[1][14].starts_with("expected holds, found slips: slip"), "{rows:?}");
 
     assert_junit(&fs::read_to_string(out.join("junit.xml")).unwrap(), [3, 1, 0, 1]);
     assert_page(&out, 3);
@@ -112,8 +112,8 @@ fn assert_page(out: &Path, scenarios: usize) {
     let plots = |section: &roxmltree::Node| {
         section.descendants().filter(|node| node.attribute("class") == Some("plot")).count()
     };
-    // Slip, rotation, deflection, torque and load of each simulated scenario.
-    assert_eq!(sections.iter().map(plots).collect::<Vec<_>>(), [5, 5, 0]);
+    // Slip, rotation, sag, deflection, torque, clearance and load of each simulated scenario.
+    assert_eq!(sections.iter().map(plots).collect::<Vec<_>>(), [7, 7, 0]);
     // Only the section of the failure is open.
     assert_eq!(sections.iter().filter(|node| node.has_attribute("open")).count(), 1);
 }
@@ -252,8 +252,8 @@ fn a_recording_is_judged_again_from_the_file_alone() {
     // With the same limits the stored trace gets the same verdict.
     let (output, exit) = inspect(&["--check"]);
     assert_eq!((&output["judged_again"], exit), (&verdict, Some(0)));
-    // If slip is allowed, the rotation decides. The exit code is 1 because `slips` was expected.
+    // If slip is allowed, the deflection decides. The exit code is 1 because `slips` was expected.
     let (output, exit) = inspect(&["--slip-mm", "2000"]);
-    assert_eq!((output["judged_again"]["verdict"].as_str(), exit), (Some("pivots"), Some(1)));
+    assert_eq!((output["judged_again"]["verdict"].as_str(), exit), (Some("deflects"), Some(1)));
     assert_eq!(output["verdict"], verdict);
 }

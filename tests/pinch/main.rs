@@ -14,6 +14,7 @@ mod loads;
 mod patch;
 mod person;
 mod prediction;
+mod steps;
 
 use std::{ops::AddAssign, thread};
 
@@ -21,7 +22,7 @@ use baxter::{BOARD_KG, welded_displacement_m};
 use bench::{Bench, Grip, Hinge, PAD_HALF_M, THICKNESS_M, fingers_level};
 use benchdog::{
     model::{
-        operation::Operation,
+        operation::{Operation, OperationKind},
         plan::Plan,
         scenario::SimulationSettings,
         trace::{Phase, Sample, Trace},
@@ -197,6 +198,7 @@ fn a_free_arm_deflects_by_its_compliance() {
     let mut plan = baxter::plan(robot, drill(0.0), 0.01, 30.0);
     plan.arms.truncate(1);
     plan.operation.x_ot.translation = plan.arms[0].x_og.translation;
+    plan.operation.kind = OperationKind::Wrench;
     for force_o in [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * 0.5) {
         plan.operation.wrench_o = Wrench::from_force(force_o);
         let settings = SimulationSettings { settle_s: 2.0, ramp_s: 1.0, hold_s: 2.0, ..QUICK };
@@ -226,11 +228,10 @@ fn two_arms_deflect_as_if_welded_under_a_small_load() {
         Operation::drill([0.1, 0.1], 1.5, THICKNESS_M),
         Operation::cut([0.12, 0.0], Vector3::y(), 3.0, THICKNESS_M),
     ];
-    // The engine scales contact stiffness with the mass of the lighter body, so a lighter board has softer contacts.
-    // Measured: 3 % with 0.5 kg, 7 % (0.008 mm) with the foam board. (The weight of a board of 1 kg exceeds what the
+    // Contacts yield: measured, by up to 4 % (0.005 mm). (The weight of a board of 1 kg exceeds what the
     // pads hold without turning: in the compliant prediction the cut deflects it 2.3 times as far as with welded
     // hands.)
-    for (mass_kg, tolerance) in [(0.5, 0.04), (BOARD_KG, 0.08)] {
+    for (mass_kg, tolerance) in [(0.5, 0.05), (BOARD_KG, 0.05)] {
         for operation in operations {
             let plan = baxter::plan(robot, operation, mass_kg, 30.0);
             let trace = simulate(robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
@@ -256,8 +257,8 @@ fn forces_and_moments_on_the_board_balance_in_the_hold() {
     let total = pads.fold(weight + sample.tool_wrench_w.about(&(tip_w - centre_w)), |sum, pad| {
         sum + pad.wrench_w.about(&(pad.p_wp_m - centre_w))
     });
-    // The rest accelerates the board: 0.21 kg at less than 10 mm/s^2.
-    assert!(total.force_n.norm() < 2e-3, "{total:?}");
+    // The rest accelerates the board, whose inertia is that of 1 kg, at less than 10 mm/s^2.
+    assert!(total.force_n.norm() < 1e-2, "{total:?}");
     assert!(total.moment_nm.norm() < 1e-3, "{total:?}");
 }
 
@@ -411,8 +412,8 @@ fn invalid_conditions_are_refused() {
 #[test]
 fn a_simulation_that_breaks_down_reports_it() {
     let robot = common::baxter();
-    let plan = baxter::plan(robot, drill(1e300), BOARD_KG, 30.0);
-    let trace = simulate(robot, &plan, &Conditions::new(0.6, QUICK)).unwrap();
+    let plan = baxter::plan(robot, drill(1.0), BOARD_KG, 30.0);
+    let trace = simulate(robot, &plan, &Conditions::new(0.6, QUICK).scaled(1e300)).unwrap();
     // The first step of the ramp is the 501st.
     assert_eq!(trace.broke_down.as_deref(), Some("at 1.002 s the state is no longer finite"));
     assert_eq!(trace.samples.len(), 501);

@@ -3,7 +3,7 @@
 use benchdog::{
     check::{CheckedPlan, Flaw},
     human::{Human, default_tool},
-    model::{plan::Plan, scenario::Person},
+    model::{operation::OperationKind, plan::Plan, scenario::Person},
     robot::Robot,
     scenario::read_plan,
 };
@@ -38,13 +38,13 @@ fn a_good_plan_has_no_flaw() {
 fn each_fault_is_one_flaw_with_its_key() {
     /// A key, a change of the plan, and the flaw that it makes.
     type Case = (&'static str, fn(&mut Plan), fn(&Flaw) -> bool);
-    let cases: [Case; 20] = [
+    let cases: [Case; 24] = [
         ("object.size_m[0]", |plan| plan.object.size_m[0] = 6.0, |flaw| matches!(flaw, Flaw::BoardSide { .. })),
         ("object.mass_kg", |plan| plan.object.mass_kg = 0.0, |flaw| matches!(flaw, Flaw::BoardMass { .. })),
         (
             "operation.wrench_o",
             |plan| plan.operation.wrench_o.force_n.x = f64::INFINITY,
-            |flaw| matches!(flaw, Flaw::Wrench),
+            |flaw| matches!(flaw, Flaw::Wrench { .. }),
         ),
         (
             "operation.x_ot",
@@ -55,6 +55,23 @@ fn each_fault_is_one_flaw_with_its_key() {
             "operation.x_ot",
             |plan| plan.operation.x_ot.translation.vector.z = f64::NAN,
             |flaw| matches!(flaw, Flaw::ToolPoint { .. }),
+        ),
+        ("object.mass_kg", |plan| plan.object.mass_kg = 1e300, |flaw| matches!(flaw, Flaw::BoardMass { .. })),
+        (
+            "operation.wrench_o",
+            |plan| plan.operation.wrench_o.force_n *= 1e300,
+            |flaw| matches!(flaw, Flaw::Wrench { .. }),
+        ),
+        // 1 mm is the tolerance of given plans.
+        (
+            "operation.x_ot",
+            |plan| plan.operation.x_ot.translation.vector.z -= 2e-3,
+            |flaw| matches!(flaw, Flaw::TipInside { .. }),
+        ),
+        (
+            "human.x_wb",
+            |plan| plan.human.as_mut().unwrap().x_wb.translation.vector.y = -11.0,
+            |flaw| matches!(flaw, Flaw::PersonPose { .. }),
         ),
         ("arms", |plan| plan.arms.clear(), |flaw| matches!(flaw, Flaw::NoArm)),
         ("arms[0].name", |plan| plan.arms[0].name = "middle".into(), |flaw| matches!(flaw, Flaw::UnknownArm { .. })),
@@ -92,7 +109,7 @@ fn each_fault_is_one_flaw_with_its_key() {
         (
             "human.x_wb",
             |plan| plan.human.as_mut().unwrap().x_wb.translation.vector.x = f64::NAN,
-            |flaw| matches!(flaw, Flaw::PersonPose),
+            |flaw| matches!(flaw, Flaw::PersonPose { .. }),
         ),
         (
             "human.q_rad[3]",
@@ -108,6 +125,28 @@ fn each_fault_is_one_flaw_with_its_key() {
         let text = flaw.to_string();
         assert!(text.starts_with(&format!("{key}: found ")) && text.contains(", expected "), "{text}");
     }
+}
+
+/// A drill pushes into the board; an arbitrary wrench may pull, and its tool may be anywhere on or in the board.
+#[test]
+fn a_drill_that_pulls_and_a_wrench_that_does() {
+    let with_force = |kind: OperationKind, along_n: f64| {
+        flaws(|plan| {
+            plan.operation.kind = kind;
+            plan.operation.wrench_o.force_n = plan.operation.x_ot.rotation * Vector3::z() * along_n;
+        })
+    };
+    assert_eq!(with_force(OperationKind::Drill, 5.0), []);
+    let pull = with_force(OperationKind::Drill, -5.0);
+    // Rounding of two rotations.
+    assert!(matches!(pull[..], [Flaw::Pull { found_n }] if (found_n + 5.0).abs() < 1e-12), "{pull:?}");
+    assert_eq!(pull[0].key(), "operation.wrench_o");
+    assert_eq!(with_force(OperationKind::Wrench, -5.0), []);
+    let inside = flaws(|plan| {
+        plan.operation.kind = OperationKind::Wrench;
+        plan.operation.x_ot.translation.vector.z -= 5e-3;
+    });
+    assert_eq!(inside, []);
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod shared;
 mod check;
 mod clearance;
 mod comfort;
+mod infeasible;
 mod natural;
 mod planner;
 mod plans;

@@ -8,11 +8,13 @@ use nalgebra::Point3;
 use rand_pcg::Pcg64;
 
 use super::{
+    failures::{DrawFailure, DrawFailures},
     grasp::{ArmGrasp, BoardGrasp},
     grasping_robot::{GraspingArm, GraspingRobot},
     postures::Posture,
 };
 use crate::{
+    collision::Violation,
     comfort,
     model::{
         frames::Pose,
@@ -21,7 +23,8 @@ use crate::{
     planner::{
         domain::{self, draw_edge, draw_other_edge},
         params::library::{
-            COARSE_STRIDE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, GRASP_ATTEMPTS, GRASPS, HOPELESS_SHARE, SEED,
+            COARSE_STRIDE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASP_ATTEMPTS, GRASPS, HOPELESS_SHARE,
+            SEED,
         },
     },
     robot::Robot,
@@ -33,8 +36,8 @@ pub struct GraspLibrary {
     pub robot: GraspingRobot,
     /// The grasps.
     pub entries: Vec<LibraryEntry>,
-    /// Number of draws that the entries took.
-    pub draws: u64,
+    /// What the draws failed at that gave no grasp.
+    pub failures: DrawFailures,
 }
 
 /// A grasp of a library, with what screening asks about it.
@@ -63,38 +66,58 @@ impl GraspLibrary {
     /// entries where grasps are rare.
     pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
         let robot = GraspingRobot::new(robot, size_m, clearance_m);
-        let mut random = Pcg64::new(SEED, 0);
-        let mut entries = Vec::with_capacity(GRASPS);
-        let mut draws = 0;
-        while entries.len() < GRASPS && draws < max_draws(entries.len()) {
-            draws += 1;
-            entries.extend(draw_entry(&robot, &mut random));
-        }
-        Self { robot, entries, draws }
+        let (entries, failures) = draw_entries(&robot, GRASPS, 0);
+        Self { robot, entries, failures }
     }
+
+    /// Further grasps for the same boards, from random numbers of their own: for a search that found nothing among the
+    /// library's.
+    pub fn further_entries(&self) -> Vec<LibraryEntry> {
+        draw_entries(&self.robot, FURTHER_GRASPS, 1).0
+    }
+}
+
+/// At most `wanted` grasps from a stream of random numbers, and what the other draws failed at.
+fn draw_entries(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+    let mut random = Pcg64::new(SEED, stream);
+    let mut entries = Vec::with_capacity(wanted);
+    let mut failures = DrawFailures::default();
+    let mut draws = 0;
+    while entries.len() < wanted && draws < max_draws(wanted, entries.len()) {
+        draws += 1;
+        match draw_entry(robot, &mut random) {
+            Ok(entry) => entries.push(entry),
+            Err(failure) => failures.count(failure),
+        }
+    }
+    (entries, failures)
 }
 
 /// The search for entries ends sooner if nothing at all was found.
-fn max_draws(found: usize) -> u64 {
-    (DRAWS_PER_GRASP * if found == 0 { GRASPS / HOPELESS_SHARE } else { GRASPS }) as u64
+fn max_draws(wanted: usize, found: usize) -> u64 {
+    (DRAWS_PER_GRASP * if found == 0 { wanted / HOPELESS_SHARE } else { wanted }) as u64
 }
 
-fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Option<LibraryEntry> {
-    let (first, others) = robot.arms.split_first()?;
+fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry, DrawFailure> {
+    let (first, others) = robot.arms.split_first().ok_or(DrawFailure::NoArm)?;
     let edge = draw_edge(random);
-    let grasp = draw_grasp(robot, first, edge, |_| true, random)?;
+    let grasp = draw_grasp(robot, first, edge, |_| true, random).ok_or(DrawFailure::Pads { arm: 0 })?;
     let x_go = grasp.x_og(robot.size_m).inverse();
     let in_domain = |x_wo: &Pose| robot.domain.contains(x_wo);
-    let (q_rad, x_wo) =
-        (0..FIRST_ARM_ATTEMPTS).find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))?;
+    let (q_rad, x_wo) = (0..FIRST_ARM_ATTEMPTS)
+        .find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))
+        .ok_or(DrawFailure::Domain)?;
     let mut arms = vec![ArmGrasp { grasp, q_rad }];
-    for arm in others {
+    for (number, arm) in others.iter().enumerate() {
         let edge = draw_other_edge(edge, random);
-        arms.push(draw_arm_grasp(robot, arm, edge, &x_wo, random)?);
+        let reached = draw_arm_grasp(robot, arm, edge, &x_wo, random);
+        arms.push(reached.ok_or(DrawFailure::Reach { arm: number + 1 })?);
     }
     let link_poses = robot.link_poses(&arms);
-    let collides = robot.collision.first_violation(&robot.scene(&link_poses, x_wo)).is_some();
-    (!collides).then(|| LibraryEntry::new(robot, BoardGrasp { x_wo, arms }, &link_poses))
+    match robot.collision.first_violation(&robot.scene(&link_poses, x_wo)) {
+        None => Ok(LibraryEntry::new(robot, BoardGrasp { x_wo, arms }, &link_poses)),
+        Some(Violation { bodies, .. }) => Err(DrawFailure::Collision { bodies }),
+    }
 }
 
 /// A grasp of one arm on an edge of a board at a known pose, with a configuration; `None` if no drawn grasp is reached.

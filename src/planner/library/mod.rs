@@ -4,6 +4,7 @@
 //! person, the tool and its load. Candidates are pairs of the two ([`super::screen`]).
 
 mod direction;
+mod failures;
 mod grasp;
 mod grasping_robot;
 mod grasps;

@@ -5,8 +5,9 @@ use nalgebra::DVector;
 use super::{
     super::{
         candidate::Candidate,
+        contact::contact_model,
         domain::{ANGLE_RAD, DEPTH_M},
-        evaluate::{self, Configuration, Evaluator, Feasible},
+        evaluate::{Configuration, Evaluator, Feasible},
         load_shift::LoadShift,
         params::refine::{
             CLEARANCE_MARGIN_M, FULL_UTILISATION, MARGIN, NEAR_M, RELAXED_UTILISATION, STABILITY_DIFFERENCE,
@@ -203,7 +204,7 @@ impl Linearization {
             let there = local
                 .as_ref()
                 .and_then(|local| {
-                    let model = evaluate::contact_model(&evaluator.problem, &candidate, &x_wo).ok()?;
+                    let model = contact_model(&evaluator.problem, &candidate, &x_wo).ok()?;
                     local.utilisation(&model, &limits)
                 })
                 .unwrap_or_else(|| evaluator.assess(&candidate, &x_wo).utilisation);

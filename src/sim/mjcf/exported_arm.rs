@@ -6,9 +6,9 @@ use super::super::{
     bodies::{ArmBodies, MovingBody},
     conditions::Conditions,
     feed_forward::FeedForward,
-    gripper::drive_inertia_kg,
     pad_shape::{GraspingHand, PadLoading, PadPart, pad_parts},
     pad_springs::{PadLayer, PadSpring},
+    world::drive_inertia_kg,
 };
 use crate::{
     check::{CheckedArm, CheckedPlan},

@@ -1,0 +1,85 @@
+//! How grasps resist their load, and where the load moves arms and board.
+
+use rayon::prelude::*;
+
+use super::{
+    candidate::Candidate, contact::contact_model, library::BoardGrasp, load_shift::LoadShift, outcome::Rejection,
+    problem::Problem,
+};
+use crate::{
+    model::{frames::Pose, scenario::StabilityKind},
+    statics::{ContactModel, ContactModelError, ResponseOutcome, StabilityWorkspace},
+};
+
+/// How a grasp resists its load.
+#[derive(Clone, Debug, Default)]
+pub struct Assessment {
+    /// The share of the limits of stability that it uses, safety factor included: at most 1 if it is stable, infinite if there is
+    /// no equilibrium.
+    pub utilisation: f64,
+    /// Where the load at the required load factor moves arms and board; `None` unless the clearance is kept under the load.
+    pub shift: Option<LoadShift>,
+}
+
+/// How a candidate's grasp resists its load.
+pub fn assess(
+    problem: &Problem<'_>,
+    workspace: &mut StabilityWorkspace,
+    candidate: &Candidate,
+    x_wo: &Pose,
+) -> Assessment {
+    assess_model(problem, workspace, contact_model(problem, candidate, x_wo))
+}
+
+/// How a contact model of a grasp resists its load.
+pub fn assess_model(
+    problem: &Problem<'_>,
+    workspace: &mut StabilityWorkspace,
+    model: Result<ContactModel, ContactModelError>,
+) -> Assessment {
+    let keeps_clear = problem.scenario.limits.clearance_mm > 0.0;
+    model
+        .and_then(|model| workspace.assess(&model, &problem.stability_limits(), problem.scenario.planner.stability))
+        .map(|(utilisation, response)| {
+            let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
+            Assessment { utilisation, shift }
+        })
+        // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
+        .unwrap_or(Assessment { utilisation: f64::INFINITY, shift: None })
+}
+
+/// The utilisation of each grasp with the roll of the scenario's tool, see [`Assessment`].
+pub fn utilisations(problem: &Problem<'_>, grasps: &[&BoardGrasp]) -> Vec<f64> {
+    let of_grasp = |workspace: &mut StabilityWorkspace, grasp: &&BoardGrasp| {
+        assess(problem, workspace, &Candidate::without_person(grasp), &grasp.x_wo).utilisation
+    };
+    grasps.par_iter().map_init(StabilityWorkspace::new, of_grasp).collect()
+}
+
+/// Where the load at load factor 1 moves arms and board; `None` unless stability is compliant, or without an equilibrium.
+pub fn load_shift(workspace: &mut StabilityWorkspace, model: &ContactModel, kind: StabilityKind) -> Option<LoadShift> {
+    if kind != StabilityKind::Compliant {
+        return None;
+    }
+    match workspace.response(model, 1.0) {
+        Ok(ResponseOutcome::Found(response)) => Some(LoadShift::of(&response)),
+        _ => None,
+    }
+}
+
+/// Tests that a grasp resists the load, and that the robot keeps its clearance under it.
+pub fn test_stability(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+    stability: &Assessment,
+) -> Result<(), Rejection> {
+    if stability.utilisation > 1.0 {
+        return Err(Rejection::Stability);
+    }
+    let Some(shift) = &stability.shift else { return Ok(()) };
+    let link_poses = problem.robot.link_poses(&shift.arms(&candidate.arms));
+    let scene = problem.robot.scene(&link_poses, shift.board(x_wo));
+    let violation = problem.robot.collision.first_violation(&scene);
+    if violation.is_none() { Ok(()) } else { Err(Rejection::LoadedCollision) }
+}

@@ -1,0 +1,59 @@
+//! A candidate's grasp as a plan and the contact model have it.
+
+use super::{candidate::Candidate, problem::Problem};
+use crate::{
+    model::{
+        frames::Pose,
+        plan::{ArmHold, PlacedObject},
+        scenario::{Grip, Scenario},
+    },
+    statics::{ContactModel, ContactModelError, HandModel},
+};
+
+/// The arms of a candidate as a plan lists them.
+pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
+    let scenario = problem.scenario;
+    let arms = problem.robot.arms.iter().zip(&candidate.arms);
+    arms.map(|(arm, own)| ArmHold {
+        name: arm.name.clone(),
+        joints: arm.joints.clone(),
+        q_rad: own.q_rad.clone(),
+        x_og: own.grasp.x_og(scenario.object.size_m),
+        grip_force_n: scenario.grip.force_n,
+    })
+    .collect()
+}
+
+/// The board of a scenario at a pose.
+pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
+    PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo }
+}
+
+/// The contact model of a candidate's grasp.
+pub fn contact_model(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+) -> Result<ContactModel, ContactModelError> {
+    contact_model_with(problem, candidate, x_wo, &problem.scenario.grip)
+}
+
+/// The contact model of a candidate's grasp with another grip force or friction than the scenario's.
+pub fn contact_model_with(
+    problem: &Problem<'_>,
+    candidate: &Candidate,
+    x_wo: &Pose,
+    grip: &Grip,
+) -> Result<ContactModel, ContactModelError> {
+    let object = placed_object(problem.scenario, *x_wo);
+    let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
+        .into_iter()
+        .zip(&problem.robot.arms)
+        .map(|(own, arm)| {
+            let own = ArmHold { grip_force_n: grip.force_n, ..own };
+            HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, &own, &object, grip.friction)
+        })
+        .collect();
+    let operation = problem.scenario.operation.rolled(candidate.work.roll_rad);
+    Ok(ContactModel::from_hands(hands?, &object, &operation))
+}
