@@ -99,7 +99,7 @@ pub struct Uncertainty {
     pub friction_scale: f64,
     /// Grip force.
     pub grip_force_scale: f64,
-    /// Stiffness of the contacts between pads and board.
+    /// Stiffness of the contacts between pads and board, and of elastic pads.
     pub contact_stiffness_scale: f64,
     /// Stiffness of every joint's position control.
     pub joint_stiffness_scale: f64,

@@ -1,6 +1,6 @@
 //! Combines a description with its URDF and checks every entry against the tree.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
@@ -20,6 +20,9 @@ const AXIS_TOLERANCE: f64 = 1e-5;
 
 /// Tolerance of a gripper's opening relative to the finger joints' limits, m: published gaps are rounded to 0.1 mm.
 const OPENING_TOLERANCE_M: f64 = 1e-4;
+
+/// Stiffness of a pad, N/m, from softer than a foam cushion to stiffer than a steel block of its size.
+const PAD_STIFFNESS_N_M: RangeInclusive<f64> = 1e4..=1e9;
 
 /// Combines a description with its URDF.
 pub(super) fn assemble(
@@ -190,9 +193,25 @@ impl Context<'_> {
             fingers,
             opening_m: entry.opening_m.get_ref().0,
             max_force_n: *entry.max_force_n.get_ref(),
+            pad_stiffness_n_m: self.pad_stiffness(entry)?,
         };
         self.check_opening(&gripper, entry)?;
         Ok(gripper)
+    }
+
+    /// The stiffness of a pad, if the description has one.
+    fn pad_stiffness(&self, entry: &GripperEntry) -> Result<Option<f64>, RobotError> {
+        let Some(given) = &entry.pad_stiffness_n_m else { return Ok(None) };
+        let stiffness_n_m = *given.get_ref();
+        if PAD_STIFFNESS_N_M.contains(&stiffness_n_m) {
+            return Ok(Some(stiffness_n_m));
+        }
+        Err(self.error(
+            given,
+            "pad_stiffness_n_m",
+            stiffness_n_m,
+            "10000 to 1000000000 N/m, or no such key for rigid pads",
+        ))
     }
 
     /// Checks the opening against pads and joint limits.

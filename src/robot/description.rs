@@ -97,6 +97,7 @@ pub(super) struct GripperEntry {
     pub max_force_n: Spanned<f64>,
     pub pad_size_m: Spanned<Exactly<f64, 2>>,
     pub pad_centre_m: Spanned<Exactly<f64, 2>>,
+    pub pad_stiffness_n_m: Option<Spanned<f64>>,
     pub fingers: Spanned<Exactly<FingerEntry, 2>>,
 }
 

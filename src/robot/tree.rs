@@ -148,6 +148,8 @@ pub struct Gripper {
     pub opening_m: [f64; 2],
     /// Maximum force of each finger, N.
     pub max_force_n: f64,
+    /// Stiffness of one pad along its normal, N/m; `None` for rigid pads (docs/method.md#612-pad-compliance).
+    pub pad_stiffness_n_m: Option<f64>,
 }
 
 /// One finger and its pad.

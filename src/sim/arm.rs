@@ -13,6 +13,7 @@ use super::{
     hand_over::HandOver,
     pad::PadContact,
     pad_shape::{GraspingHand, PadLoading},
+    pad_springs::{PadLayer, PadSprings},
     servo::Servo,
     world::{contact_softness_s2, drive_inertia_kg},
 };
@@ -45,6 +46,8 @@ pub(super) struct SimArm {
     bodies: Vec<RigidBodyHandle>,
     /// The gripper.
     pub gripper: SimGripper,
+    /// Its elastic pads.
+    pad_springs: Option<PadSprings>,
 }
 
 impl SimArm {
@@ -63,7 +66,8 @@ impl SimArm {
         let &CheckedArm { index, hold, .. } = checked;
         let arm = &robot.arms[index];
         let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
-        let merged = ArmBodies::new(robot, arm);
+        let layer = PadLayer::of(robot, checked, object, conditions);
+        let merged = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd));
         let chain = BodyChain::insert(world, robot, &merged.bodies)?;
         let place = |joint: usize| chain.links[merged.body_of_joint[joint]];
         let arm_joints: Vec<_> = (0..arm.joints.len()).map(place).collect();
@@ -74,7 +78,7 @@ impl SimArm {
         let mut gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
         let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
 
-        let mut positions = vec![0.0; chain.links.len()];
+        let mut positions = vec![0.0; chain.dofs];
         let placed = arm_joints.iter().chain(&fingers).zip(hold.q_rad.iter().chain(&finger_m));
         placed.for_each(|(link, position)| positions[link.dof] = *position);
         let multibody = fingers[0].joint;
@@ -85,8 +89,11 @@ impl SimArm {
         for DrivenJoint { place, servo, .. } in &joints {
             engine.damping_mut()[place.dof] = servo.damping_nm_s_rad;
         }
+        let springs = layer.and_then(|layer| layer.springs(robot, arm, &merged, finger_m));
+        let hand_place = merged.hand.map(|hand| chain.links[hand]);
+        let pad_springs = hand_place.zip(springs).map(|(place, springs)| PadSprings::insert(engine, place, springs));
         let bodies = chain.links.iter().map(|link| link.body).collect();
-        Ok(Self { multibody, joints, bodies, gripper })
+        Ok(Self { multibody, joints, bodies, gripper, pad_springs })
     }
 
     /// Sets the rest angle of every servo, and the forces of the fingers, from the state before a step.
@@ -101,6 +108,9 @@ impl SimArm {
         }
         self.gripper.push(multibody, hand_over.grip_share());
         self.gripper.store_state(multibody);
+        if let Some(springs) = &mut self.pad_springs {
+            springs.store_state(multibody);
+        }
     }
 
     /// Kinetic and gravitational energy of the arm, J.
@@ -110,7 +120,7 @@ impl SimArm {
         bodies + self.gripper.drive_energy_j(multibody)
     }
 
-    /// Work of the servos and the finger drives in the last step, J.
+    /// Work of the servos, the finger drives and the elastic pads in the last step, J.
     pub fn work_j(&self, world: &PhysicsWorld) -> f64 {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return f64::NAN };
         let servos = self.joints.iter().map(|joint| {
@@ -118,7 +128,8 @@ impl SimArm {
             let after = JointState { position: place.position(multibody), velocity: place.velocity(multibody) };
             drive_work_j(servo.stiffness_nm_rad, servo.damping_nm_s_rad, *rest_rad, [*before, after])
         });
-        servos.sum::<f64>() + self.gripper.work_j(multibody)
+        let drives_j = servos.sum::<f64>() + self.gripper.work_j(multibody);
+        self.pad_springs.as_ref().map_or(drives_j, |springs| drives_j + springs.work_j(multibody))
     }
 
     /// True if no joint is faster than `limit_rad_s`; false for a NaN speed.

@@ -7,7 +7,10 @@ use rapier3d_f64::prelude::{
 };
 
 use super::{bodies::MovingBody, convert, error::SimError};
-use crate::robot::{JointKind, Robot};
+use crate::{
+    model::frames::Pose,
+    robot::{JointKind, Robot},
+};
 
 /// A moving body in the engine and the joint that moves it.
 #[derive(Clone, Copy)]
@@ -20,7 +23,7 @@ pub(super) struct ChainLink {
     pub link: usize,
     /// Index of the joint in the multibody's velocities, damping and displacements.
     pub dof: usize,
-    /// The joint's axis, one of the engine's six.
+    /// The joint's axis, one of the engine's six; the first of a hand on its pads, which has all of them.
     pub axis: JointAxis,
 }
 
@@ -56,6 +59,8 @@ pub(super) struct BodyChain {
     root: RigidBodyHandle,
     /// One a moving body, in their order.
     pub links: Vec<ChainLink>,
+    /// The number of the multibody's velocities.
+    pub dofs: usize,
 }
 
 impl BodyChain {
@@ -64,8 +69,8 @@ impl BodyChain {
     /// # Errors
     /// [`SimError::Massless`] if a body has no mass: the engine cannot move it.
     pub fn insert(world: &mut PhysicsWorld, robot: &Robot, moving: &[MovingBody]) -> Result<Self, SimError> {
-        let mut chain =
-            Self { root: world.bodies.insert(RigidBodyBuilder::fixed()), links: Vec::with_capacity(moving.len()) };
+        let root = world.bodies.insert(RigidBodyBuilder::fixed());
+        let mut chain = Self { root, links: Vec::with_capacity(moving.len()), dofs: 0 };
         for body in moving {
             let parent = chain.body(body.parent);
             chain.links.push(insert_body(world, robot, body, parent)?);
@@ -78,6 +83,7 @@ impl BodyChain {
             // The engine's default damping of a revolute joint is 0.1.
             multibody.damping_mut().fill(0.0);
             multibody.set_self_contacts_enabled(false);
+            chain.dofs = multibody.ndofs();
             for place in &mut chain.links {
                 place.dof = multibody.link(place.link).map_or(0, |link| link.assembly_id());
             }
@@ -98,10 +104,9 @@ fn insert_body(
     moving: &MovingBody,
     parent: RigidBodyHandle,
 ) -> Result<ChainLink, SimError> {
-    let joint = &robot.joints[moving.joint];
     let mass = &moving.mass;
     if mass.mass_kg <= 0.0 {
-        return Err(SimError::Massless { link: robot.links[joint.child_link].name.clone() });
+        return Err(SimError::Massless { link: robot.links[moving.link].name.clone() });
     }
     let properties = MassProperties::with_inertia_matrix(
         convert::to_engine_vector(&mass.com_b),
@@ -113,7 +118,10 @@ fn insert_body(
     // Before this call the engine reports zero mass.
     world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
 
-    let (data, axis) = engine_joint(joint.kind, &joint.axis_j, moving);
+    let (data, axis) = match moving.joint {
+        Some(joint) => engine_joint(robot.joints[joint].kind, &robot.joints[joint].axis_j, moving),
+        None => (free_joint(&moving.x_pj), JointAxis::LinX),
+    };
     let handle = world.multibody_joints.insert(parent, body, data, true).ok_or(SimError::Engine)?;
     let (_, link) = world.multibody_joints.get(handle).ok_or(SimError::Engine)?;
     Ok(ChainLink { body, joint: handle, link, dof: 0, axis })
@@ -135,4 +143,10 @@ fn engine_joint(kind: JointKind, axis_j: &Vector3<f64>, moving: &MovingBody) -> 
         .contacts_enabled(false)
         .build();
     (data, axis)
+}
+
+/// A joint that moves along and about all three axes of its frame.
+fn free_joint(x_pj: &Pose) -> GenericJoint {
+    let frame = convert::to_engine_pose(x_pj);
+    GenericJointBuilder::new(JointAxesMask::empty()).local_frame1(frame).contacts_enabled(false).build()
 }

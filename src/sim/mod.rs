@@ -7,7 +7,8 @@
 //! - The arms of the plan, each a chain of rigid bodies on a fixed root; links without a joint between them are one
 //!   body. Each joint has a servo: an implicit spring and damper about the planned angle, the gravity torque of the arm
 //!   fed forward, and the torque limit by moving the rest angle of the spring.
-//! - Grippers: two fingers, coupled to open equally, each pushed with a constant force that reacts on the palm.
+//! - Grippers: two fingers, coupled to open equally, each pushed with a constant force that reacts on the palm. With
+//!   elastic pads the hand is on six springs (`pad_springs.rs`).
 //! - The board, a free body under gravity and the tool's wrench over time (`tool_load.rs`). Only pads and board
 //!   collide. Joint limits are not modelled: the planned angles are inside them, and servos deflect by milliradians.
 //! - The person of the plan stands still and is not part of the dynamics: the trace records their distance from robot
@@ -93,6 +94,7 @@ mod hand_over;
 mod mjcf;
 mod pad;
 mod pad_shape;
+mod pad_springs;
 mod phases;
 mod scene;
 mod servo;

@@ -155,5 +155,8 @@ fn check_pad(hand: &HandModel, pad: &PadModel) -> Result<(), ContactModelError> 
             expected: "0 or more",
         });
     }
+    if let Some(found) = pad.stiffness_n_m.filter(|stiffness| !(stiffness.is_finite() && *stiffness > 0.0)) {
+        return Err(ContactModelError::Value { place: place(), what: "stiffness", found, expected: "more than 0 N/m" });
+    }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The equilibrium of compliant, position-controlled arms (docs/method.md#68-compliant-equilibrium).
 //!
-//! The joints are springs about their commanded angles, the pads are rigid-plastic. Of all pad wrenches that balance
+//! The joints are springs about their commanded angles, the pads are rigid-plastic, or elastic-plastic if they have a
+//! stiffness (`pad_layer.rs`), which adds `1/2 w_i' C_pads w_i` to the energy. Of all pad wrenches that balance
 //! the object within the pads' limits, the equilibrium minimises the complementary energy `sum_i 1/2 u_i' K_i^-1 u_i`,
 //! `u_i = J_i' w_i`, with `w_i` the hand's wrench on the object and `K_i = K_q + dg/dq`. The arms' gravity torque `g`
 //! is compensated by their controllers at the commanded angles and is not part of `u`; away from these it changes by
@@ -12,8 +13,8 @@
 //! K_q K_i^-1 u`.
 //!
 //! # Signs
-//! The object exerts `-w_i` on the hand, so the hand moves by `-C_i w_i`, `C_i = J_i K_i^-1 J_i'`. For a hand within
-//! its pads' limits the first-order condition is `C_i w_i + Ad_i y = 0`, with `y` the multiplier of the balance `sum
+//! The object exerts `-w_i` on the hand, so the faces of its pads move by `-C_i w_i`, `C_i = J_i K_i^-1 J_i' + C_pads`.
+//! For a hand within its pads' limits the first-order condition is `C_i w_i + Ad_i y = 0`, with `y` the multiplier of the balance `sum
 //! w_i + weight + lambda load = 0`. Hence `y` is the board's displacement `d`, in the direction of the load. A hand at
 //! its limits slips: the board moves relative to it by `Ad_i d + C_i w_i`.
 
@@ -46,7 +47,8 @@ pub struct Equilibrium {
     pub joint_displacement_rad: Vec<DVector<f64>>,
     /// Displacement of the board at O's origin.
     pub board: Twist,
-    /// Displacement of each hand at its grasp point, `-C w`.
+    /// Displacement of the faces of each hand's pads at its grasp point, `-C w`. That of the palm is smaller by what the
+    /// pads yield, `-C_pads w`.
     pub hands: Vec<Twist>,
 }
 
@@ -64,15 +66,18 @@ impl Equilibrium {
         for (hand, pads) in model.hands.iter().zip(&pad_wrenches_p) {
             let torque = hand.joint_torque_nm(pads);
             let deflection_rad = hand.joint_deflection_rad(&(&torque - &hand.gravity_torque_nm));
-            let moved = &hand.jacobian_o * &deflection_rad;
-            hands.push(Twist::from_vector(&-moved.fixed_rows::<6>(0).into_owned()));
+            let mut moved = (&hand.jacobian_o * &deflection_rad).fixed_rows::<6>(0).into_owned();
+            if let Some(compliance) = hand.pad_compliance() {
+                moved += compliance * hand.wrench_about_grasp_point(pads).to_vector();
+            }
+            hands.push(Twist::from_vector(&-moved));
             joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * &deflection_rad);
             joint_displacement_rad.push(-deflection_rad);
         }
         Self { load_factor, pad_wrenches_p, joint_torque_nm, joint_displacement_rad, board, hands }
     }
 
-    /// Displacement of the board relative to a hand at the grasp point, `Ad d + C w`.
+    /// Displacement of the board relative to the faces of a hand's pads at the grasp point, `Ad d + C w`.
     fn slip(&self, model: &ContactModel, hand: usize) -> Twist {
         self.board.at(&model.hands[hand].grasp_point_o) - self.hands[hand]
     }

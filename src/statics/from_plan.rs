@@ -114,7 +114,15 @@ fn pad_model(
     let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
         .ok_or_else(|| ContactModelError::PadOffBoard { hand: hold.name.clone(), pad: name.into() })?;
     let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
-    Ok(PadModel { name: name.into(), x_op: Pose::from_parts(place_o.into(), rotation), half_sides_m, friction })
+    // A uniform layer: a part of it has the same share of its stiffness as of its area.
+    let share = half_sides_m[0] * half_sides_m[1] / (half_sides[0] * half_sides[1]);
+    Ok(PadModel {
+        name: name.into(),
+        x_op: Pose::from_parts(place_o.into(), rotation),
+        half_sides_m,
+        friction,
+        stiffness_n_m: gripper.pad_stiffness_n_m.map(|stiffness_n_m| stiffness_n_m * share),
+    })
 }
 
 /// R_OP: z_P along the normal into the board, x_P along the projection of x_G on the face.

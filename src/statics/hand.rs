@@ -20,6 +20,8 @@ pub struct PadModel {
     pub half_sides_m: [f64; 2],
     /// Coulomb friction coefficient between pad and object.
     pub friction: f64,
+    /// Stiffness of that part along z_P, N/m; `None` if it is rigid (docs/method.md#612-pad-compliance).
+    pub stiffness_n_m: Option<f64>,
 }
 
 impl PadModel {
@@ -85,11 +87,17 @@ impl HandModel {
         self.jacobian_o.tr_mul(&wrench) + &self.gravity_torque_nm
     }
 
-    /// Compliance of the arm at the grasp point, `C = J (K_q + dg/dq)^-1 J'`, 6 x 6, O axes (m/N, rad/(N m)): a wrench
-    /// w on the hand displaces it by `C w`. NaN if `K_q + dg/dq` is not positive definite, which
-    /// [`ContactModel::check`](super::ContactModel::check) rejects.
+    /// Compliance of arm and pads at the grasp point, `C = J (K_q + dg/dq)^-1 J' + C_pads`, 6 x 6, O axes (m/N, rad/(N
+    /// m)): a wrench w on the faces of the pads displaces them by `C w`. NaN if `K_q + dg/dq` is not positive definite,
+    /// which [`ContactModel::check`](super::ContactModel::check) rejects.
     #[must_use]
     pub fn compliance(&self) -> Matrix6<f64> {
+        let arm = self.arm_compliance();
+        self.pad_compliance().map_or(arm, |pads| arm + pads)
+    }
+
+    /// The arm's part of the compliance.
+    fn arm_compliance(&self) -> Matrix6<f64> {
         let Some(factor) = self.stiffness_factor() else { return Matrix6::repeat(f64::NAN) };
         // As a product of L^-1 J' with itself the matrix is symmetric to the last bit.
         let mut half = self.jacobian_o.transpose();

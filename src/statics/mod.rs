@@ -60,6 +60,7 @@ mod infeasibility;
 mod limit_crossing;
 mod load_factor;
 mod local_equilibrium;
+mod pad_layer;
 mod patch;
 mod prediction;
 mod robust;

@@ -64,7 +64,7 @@ impl WeldedStiffness {
 }
 
 /// `[1, -[p]x; 0, 1]`: maps a twist at a point to the twist at the point p away from it.
-fn twist_map(lever: &Vector3<f64>) -> Matrix6<f64> {
+pub(super) fn twist_map(lever: &Vector3<f64>) -> Matrix6<f64> {
     let mut map = Matrix6::identity();
     map.fixed_view_mut::<3, 3>(0, 3).copy_from(&-lever.cross_matrix());
     map

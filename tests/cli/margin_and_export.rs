@@ -3,15 +3,19 @@
 use std::fs;
 
 use benchdog::{
-    model::GRAVITY_W,
+    model::{
+        GRAVITY_W,
+        scenario::{Limits, SimulationSettings},
+    },
     robot::{Chain, Robot},
     scenario::read_plan,
+    sim::{Conditions, mjcf},
 };
 use quick_xml::{Reader, events::Event};
 use serde_json::Value;
 
 use crate::{
-    common::root,
+    common::{checked, root},
     process::{argument, benchdog, stderr},
 };
 
@@ -173,6 +177,36 @@ fn an_exported_scene_has_the_masses_joints_gains_and_load_of_the_plan() {
     let positions = numbers(get(scene.named("key", "planned"), "qpos"));
     assert_eq!(positions.len(), 25);
     assert_eq!(positions[..7], plan.arms[0].q_rad[..]);
+}
+
+#[test]
+fn exported_elastic_pads_are_the_springs_of_the_hand() {
+    let (plan, mut robot) = read_plan(&root().join("scenarios/plans/cut-rim.json"), None).unwrap();
+    robot.arms.iter_mut().for_each(|arm| arm.gripper.pad_stiffness_n_m = Some(8e5));
+    let checked = checked(&robot, &plan);
+    let conditions = Conditions::new(0.6, SimulationSettings::default());
+    let scene = Exported(elements(&mjcf(&checked, &conditions, &Limits::CUT).unwrap()));
+    // Two pads in parallel; in the plane of the face two thirds of that (docs/method.md#612-pad-compliance).
+    let stiffness = |number: usize| -> f64 {
+        get(scene.named("joint", &format!("left pads {number}")), "stiffness").parse().unwrap()
+    };
+    assert!((stiffness(3) - 1.6e6).abs() < 1e-6 && (stiffness(1) - 1.6e6 * 2.0 / 3.0).abs() < 1e-6);
+    let [a, b] = [0.0202, 0.018].map(|half: f64| half * half / 3.0);
+    assert!((stiffness(6) - 1.6e6 * 2.0 / 3.0 * (a + b)).abs() < 1e-6, "{}", stiffness(6));
+    // The rest positions carry the hand's weight: together the slides have its force.
+    let rest_n = |number: usize| {
+        let joint = scene.named("joint", &format!("left pads {number}"));
+        get(joint, "springref").parse::<f64>().unwrap() * stiffness(number)
+    };
+    let carried_n = (1..=3).map(|number| rest_n(number).powi(2)).sum::<f64>().sqrt();
+    let hand_kg: f64 = robot.links.iter().filter(|link| is_of_hand(&link.name)).map(|link| link.mass_kg).sum();
+    assert!((carried_n - 9.81 * hand_kg).abs() < 1e-9, "{carried_n} {hand_kg}");
+    // Six more positions a hand, zero in the planned state.
+    assert_eq!(numbers(get(scene.named("key", "planned"), "qpos")).len(), 25 + 12);
+}
+
+fn is_of_hand(link: &str) -> bool {
+    link.starts_with("left_gripper") || link.starts_with("l_gripper")
 }
 
 #[test]

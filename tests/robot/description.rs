@@ -78,6 +78,12 @@ fn messages_about_descriptions_name_line_key_found_and_expected() {
         ("opening_m = [0.0, 0.038]", "opening_m = [0.0, 0.05]", "opening_m: found 0 to 0.05, expected two gaps within"),
         ("max_force_n = 35.0", "max_force_n = 0.0", "max_force_n: found 0, expected finite numbers above 0"),
         (
+            "max_force_n = 35.0",
+            "pad_stiffness_n_m = 9e3\nmax_force_n = 35.0",
+            "pad_stiffness_n_m: found 9000, expected 10000 to 1000000000 N/m, or no such key for rigid pads",
+        ),
+        ("max_force_n = 35.0", "pad_stiffness_n_m = nan\nmax_force_n = 35.0", "pad_stiffness_n_m: found NaN, expected"),
+        (
             "pad_link = \"l_gripper_l_finger_tip\"",
             "pad_link = \"l_gripper_r_finger_tip\"",
             "pad_link: found l_gripper_r",

@@ -48,6 +48,7 @@ pub fn strong_hand(
         x_op: facing(p + axis * (side * thickness_m / 2.0), -axis * side, x),
         half_sides_m: HALF_SIDES_M,
         friction,
+        stiffness_n_m: None,
     };
     HandModel {
         name: name.into(),
@@ -149,6 +150,7 @@ pub fn stronger(hold: &ContactModel, factor: f64) -> ContactModel {
         hand.effort_nm *= factor;
         hand.stiffness_nm_rad *= factor;
         hand.gravity_stiffness_nm_rad *= factor;
+        hand.pads.iter_mut().filter_map(|pad| pad.stiffness_n_m.as_mut()).for_each(|stiffness| *stiffness *= factor);
     }
     stronger.weight = hold.weight.scaled(factor);
     stronger.load = hold.load.scaled(factor);

@@ -5,14 +5,14 @@ use std::io;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::{
-    super::{bodies::MovingBody, gripper::FINGER_DAMPING_N_S_M, pad::x_gp, pad_shape::Solid},
+    super::{bodies::MovingBody, gripper::FINGER_DAMPING_N_S_M, pad::x_gp, pad_shape::Solid, pad_springs::PadSpring},
     exported_arm::ExportedArm,
     scenery,
     xml::{Xml, empty, geom, numbers, pose_attributes, site, with},
 };
 use crate::{
     model::plan::PlacedObject,
-    robot::{JointKind, Robot},
+    robot::{Joint, JointKind, Robot},
 };
 
 /// The group of geoms that touch.
@@ -20,13 +20,13 @@ const TOUCHING_GROUP: u8 = 0;
 const PAD_RGBA: [f64; 4] = [0.15, 0.15, 0.15, 1.0];
 const BOARD_RGBA: [f64; 4] = [0.82, 0.65, 0.42, 1.0];
 
-/// The children of a body, or of the world, recursively. The planned joint positions are appended to `positions`, in the
+/// The children of a body, or of the world, recursively, with the inertia of a finger's drive, kg, and the time step, s. The planned joint positions are appended to `positions`, in the
 /// order of MuJoCo's coordinates.
 pub(super) fn children(
     xml: &mut Xml,
     robot: &Robot,
     arm: &ExportedArm<'_>,
-    drive_kg: f64,
+    [drive_kg, timestep_s]: [f64; 2],
     parent: Option<usize>,
     positions: &mut Vec<f64>,
 ) -> io::Result<()> {
@@ -35,30 +35,61 @@ pub(super) fn children(
         site(xml, &format!("{} hand", arm.hold.name), &x_bc)?;
     }
     for (index, body) in arm.bodies.bodies.iter().enumerate().filter(|(_, body)| body.parent == parent) {
-        let joint = &robot.joints[body.joint];
-        let name = robot.links[joint.child_link].name.as_str();
-        let place = arm.bodies.body_of_joint.iter().position(|&of| of == index).unwrap_or_default();
+        let name = robot.links[body.link].name.as_str();
+        let place = arm.bodies.body_of_joint.iter().position(|&of| of == index);
+        let finger = place.and_then(|place| place.checked_sub(arm.arm.joints.len()));
         let element = with(xml.create_element("body").with_attribute(("name", name)), &pose_attributes(&body.x_pj));
         element.write_inner_content(|xml| {
             inertial(xml, body)?;
-            let finger = place.checked_sub(arm.arm.joints.len());
-            positions.push(finger.map_or_else(|| arm.hold.q_rad[place], |finger| arm.finger_m[finger]));
-            let kind = if joint.kind == JointKind::Prismatic { "slide" } else { "hinge" };
-            let [damping, armature] = finger.map_or([0.0; 2], |_| [FINGER_DAMPING_N_S_M, drive_kg]);
-            let attributes = [
-                ("name", joint.name.clone()),
-                ("type", kind.into()),
-                ("axis", numbers(joint.axis_j.as_slice())),
-                ("damping", damping.to_string()),
-                ("armature", armature.to_string()),
-            ];
-            empty(xml, "joint", &attributes)?;
+            if let (Some(joint), Some(place)) = (body.joint, place) {
+                positions.push(finger.map_or_else(|| arm.hold.q_rad[place], |finger| arm.finger_m[finger]));
+                let [damping, armature] = finger.map_or([0.0; 2], |_| [FINGER_DAMPING_N_S_M, drive_kg]);
+                moving_joint(xml, &robot.joints[joint], damping, armature)?;
+            }
+            if let Some(springs) = arm.pad_springs.as_ref().filter(|_| arm.bodies.hand == Some(index)) {
+                pad_springs(xml, &arm.hold.name, springs, timestep_s)?;
+                positions.extend([0.0; 6]);
+            }
             scenery::moving(xml, robot, arm, index)?;
             if let Some(k) = finger {
                 pads(xml, robot, arm, k, body)?;
             }
-            children(xml, robot, arm, drive_kg, Some(index), positions)
+            children(xml, robot, arm, [drive_kg, timestep_s], Some(index), positions)
         })?;
+    }
+    Ok(())
+}
+
+/// The joint of an arm or a finger.
+fn moving_joint(xml: &mut Xml, joint: &Joint, damping: f64, armature: f64) -> io::Result<()> {
+    let kind = if joint.kind == JointKind::Prismatic { "slide" } else { "hinge" };
+    let attributes = [
+        ("name", joint.name.clone()),
+        ("type", kind.into()),
+        ("axis", numbers(joint.axis_j.as_slice())),
+        ("damping", damping.to_string()),
+        ("armature", armature.to_string()),
+    ];
+    empty(xml, "joint", &attributes)
+}
+
+/// The joints of a hand on its elastic pads, three slides and three hinges. MuJoCo integrates springs explicitly, so
+/// each has an inertia with which it oscillates once in 4 pi time steps; no state of rest depends on it.
+fn pad_springs(xml: &mut Xml, hand: &str, springs: &[PadSpring; 6], timestep_s: f64) -> io::Result<()> {
+    for (number, spring) in springs.iter().enumerate() {
+        let axis: [f64; 3] = std::array::from_fn(|k| f64::from(u8::from(k == number % 3)));
+        let armature = spring.stiffness * (2.0 * timestep_s).powi(2);
+        let damping = spring.damping + 2.0 * (spring.stiffness * armature).sqrt();
+        let attributes = [
+            ("name", format!("{hand} pads {}", number + 1)),
+            ("type", if number < 3 { "slide" } else { "hinge" }.into()),
+            ("axis", numbers(&axis)),
+            ("stiffness", spring.stiffness.to_string()),
+            ("springref", spring.rest.to_string()),
+            ("damping", damping.to_string()),
+            ("armature", armature.to_string()),
+        ];
+        empty(xml, "joint", &attributes)?;
     }
     Ok(())
 }

@@ -42,11 +42,15 @@ pub(super) fn steps_per_sample(settings: &SimulationSettings) -> usize {
     (settings.timestep_s / TIMESTEP_S - 1e-9).ceil().max(1.0) as usize
 }
 
+/// MuJoCo's time step, s.
+pub(super) fn timestep_s(settings: &SimulationSettings) -> f64 {
+    settings.timestep_s / steps_per_sample(settings) as f64
+}
+
 /// The element `option`.
 pub(super) fn option(xml: &mut Xml, settings: &SimulationSettings) -> io::Result<()> {
-    let timestep_s = settings.timestep_s / steps_per_sample(settings) as f64;
     let attributes = [
-        ("timestep", timestep_s.to_string()),
+        ("timestep", timestep_s(settings).to_string()),
         ("gravity", numbers(GRAVITY_W.as_slice())),
         ("cone", "elliptic".into()),
         ("integrator", "implicitfast".into()),

@@ -14,7 +14,7 @@ use super::{
     },
     actuators::{actuators, controls},
     bodies::{board, children},
-    contacts::{contact_pairs, couplings, option},
+    contacts::{contact_pairs, couplings, option, timestep_s},
     data::{custom, largest_wrench_o},
     exported_arm::ExportedArm,
     scenery,
@@ -73,10 +73,11 @@ fn document(xml: &mut Xml, exported: &Exported<'_>) -> io::Result<()> {
         // The part of the scene that a viewer shows at first.
         empty(xml, "statistic", &[("center", numbers(board_w_m.as_slice())), ("extent", "1".into())])?;
         let mut positions = Vec::new();
+        let inertia = [drive_inertia_kg(object), timestep_s(&conditions.settings)];
         xml.create_element("worldbody").write_inner_content(|xml| {
             scenery::fixed(xml, robot, arms, &board_w_m)?;
             for arm in arms {
-                children(xml, robot, arm, drive_inertia_kg(object), None, &mut positions)?;
+                children(xml, robot, arm, inertia, None, &mut positions)?;
             }
             board(xml, object, &plan.operation.x_ot.translation.vector)
         })?;

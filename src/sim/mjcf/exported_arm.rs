@@ -7,6 +7,7 @@ use super::super::{
     conditions::Conditions,
     feed_forward::FeedForward,
     pad_shape::{GraspingHand, PadLoading, PadPart, pad_parts},
+    pad_springs::{PadLayer, PadSpring},
     world::drive_inertia_kg,
 };
 use crate::{
@@ -23,6 +24,8 @@ pub(super) struct ExportedArm<'a> {
     pub hold: &'a ArmHold,
     /// Its moving bodies.
     pub bodies: ArmBodies,
+    /// The springs of the hand, if its pads are elastic.
+    pub pad_springs: Option<[PadSpring; 6]>,
     /// The torques that its servos feed forward.
     pub feed_forward: FeedForward,
     /// The planned positions of the finger joints, m.
@@ -39,22 +42,25 @@ impl<'a> ExportedArm<'a> {
     /// An arm of a checked plan; `softness_s2` is that of its pads' contacts.
     pub fn new(
         checked: &CheckedPlan<'a>,
-        &CheckedArm { index, hold, .. }: &CheckedArm<'a>,
+        checked_arm: &CheckedArm<'a>,
         feed_forward: FeedForward,
         conditions: &Conditions,
         softness_s2: f64,
     ) -> Self {
         let (robot, object) = (checked.robot(), &checked.plan().object);
+        let &CheckedArm { index, hold, .. } = checked_arm;
         let arm = &robot.arms[index];
         let gap_m = object.size_m[2];
         let finger_m = [0, 1].map(|k| arm.gripper.fingers[k].joint_position_m(arm.gripper.travel_for_gap_m(k, gap_m)));
         let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
-        let bodies = ArmBodies::new(robot, arm);
+        let layer = PadLayer::of(robot, checked_arm, object, conditions);
+        let bodies = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd));
         let loading =
             PadLoading::new(&GraspingHand { arm, bodies: &bodies, x_og: hold.x_og }, object, grip_force_n, softness_s2);
         Self {
             feed_forward,
             finger_per_kg: inverse_mass_per_kg(robot, index, &bodies, drive_inertia_kg(object)),
+            pad_springs: layer.and_then(|layer| layer.springs(robot, arm, &bodies, finger_m)),
             arm,
             hold,
             bodies,
