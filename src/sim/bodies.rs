@@ -2,8 +2,9 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
+use super::world::inertial_mass_kg;
 use crate::{
-    model::frames::Pose,
+    model::{frames::Pose, plan::PlacedObject},
     robot::{Arm, Gripper, Link, Robot},
 };
 
@@ -39,6 +40,14 @@ impl CompositeInertia {
         com_b: Vector3::new(0.0, 0.0, 0.0),
         inertia_b: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     };
+
+    /// A board with its inertia in the engine, see [`inertial_mass_kg`].
+    pub fn of_board(object: &PlacedObject) -> Self {
+        let mass_kg = inertial_mass_kg(object);
+        let [x, y, z] = object.size_m.map(|side| side * side * mass_kg / 12.0);
+        let inertia_b = Matrix3::from_diagonal(&Vector3::new(y + z, x + z, x + y));
+        Self { mass_kg, com_b: Vector3::zeros(), inertia_b }
+    }
 
     /// Adds a link at `x_bl`.
     fn with_link(&self, link: &Link, x_bl: &Pose) -> Self {

@@ -10,7 +10,7 @@ use rapier3d_f64::prelude::Multibody;
 
 use super::{
     balance::{JointState, drive_work_j},
-    bodies::ArmBodies,
+    bodies::{ArmBodies, CompositeInertia},
     body_chain::ChainLink,
     conditions::Conditions,
 };
@@ -27,6 +27,8 @@ pub(super) struct PadLayer {
     pub x_gd: Pose,
     /// The planned pose of D in W.
     x_wd: Pose,
+    /// The board as a part of the hand, at its pose in D: with the damping of the hand alone a board on soft pads swings.
+    board: (CompositeInertia, Pose),
     /// Along and about the axes of D, N/m and N m/rad.
     stiffness: Vector6<f64>,
 }
@@ -36,7 +38,7 @@ pub(super) struct PadLayer {
 pub(super) struct PadSpring {
     /// N/m or N m/rad.
     pub stiffness: f64,
-    /// Critical damping of the hand and its fingers, N s/m or N m s/rad.
+    /// Critical damping of the hand with the board, N s/m or N m s/rad.
     pub damping: f64,
     /// Rest position, m or rad.
     pub rest: f64,
@@ -52,6 +54,7 @@ impl PadLayer {
         Some(Self {
             x_gd: hold.x_og.inverse() * x_od,
             x_wd: object.x_wo * x_od,
+            board: (CompositeInertia::of_board(object), x_od.inverse()),
             stiffness: stiffness * conditions.uncertainty.contact_stiffness_scale,
         })
     }
@@ -68,8 +71,9 @@ impl PadLayer {
         let carried = (0..2).fold(*hand, |sum, k| sum.with(&finger(k).mass, &x_df(k)));
         let weight_n = self.x_wd.rotation.inverse() * (GRAVITY_W * carried.mass_kg);
         let moment_nm = carried.com_b.cross(&weight_n);
-        let inertia = carried.inertia_about_origin().diagonal();
-        let resisting = [Vector3::repeat(carried.mass_kg), inertia];
+        let (board, x_do) = &self.board;
+        let with_board = carried.with(board, x_do);
+        let resisting = [Vector3::repeat(with_board.mass_kg), with_board.inertia_about_origin().diagonal()];
         Some(std::array::from_fn(|axis| {
             let stiffness = self.stiffness[axis];
             let load = [weight_n, moment_nm][axis / 3][axis % 3];

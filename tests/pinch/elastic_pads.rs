@@ -99,7 +99,7 @@ fn small_deflections_of_baxter_with_elastic_pads_are_predicted() {
         let (predicted, (found, gained_j)) = (predicted_mm(&elastic, &plan), simulated(&elastic, &plan));
         let (name, off) = (&plan.name, predicted / found - 1.0);
         println!(
-            "| {name} | {} | {predicted:.4} | {found:.4} | {:+.1} % | {gained_j}",
+            "| {name} | {:.4} | {predicted:.4} | {found:.4} | {:+.1} % | {gained_j}",
             predicted_mm(baxter(), &plan),
             100.0 * off
         );
@@ -108,6 +108,19 @@ fn small_deflections_of_baxter_with_elastic_pads_are_predicted() {
         assert!(predicted > 1.02 * predicted_mm(baxter(), &plan), "{name}: the pads do not yield");
         // A thousandth of the work of a tenth of the load: 0.1 x 30 N x 1 mm / 2. The springs' work is part of the balance.
         assert!(gained_j < 1.5e-6, "{name}: gained {gained_j} J");
+    }
+}
+
+#[test]
+fn a_board_on_soft_pads_does_not_swing() {
+    let soft = with_pads(baxter().clone(), 1e4);
+    for plan in ten_plans().into_iter().step_by(6) {
+        let trace = simulate(&soft, &plan, &Conditions::new(FRICTION, SETTINGS).scaled(0.05)).unwrap();
+        let deflection_mm = judged_grasp(trace, &limits(plan.operation.kind)).measures.deflection_mm;
+        let (largest, last) = (deflection_mm.iter().copied().fold(0.0, f64::max), *deflection_mm.last().unwrap());
+        println!("{}: {largest:.4} {last:.4}", plan.name);
+        // Critically damped. The arms' servos and the other hand leave a little.
+        assert!(largest < 1.02 * last, "{}: {largest} and at last {last}", plan.name);
     }
 }
 
