@@ -157,8 +157,9 @@ fn the_papers_person_gives_the_plans_of_the_first_release_bit_for_bit() {
         assert!(matches!(operation.kind, OperationKind::Cut | OperationKind::Drill));
         let mut scenario = operation.load().unwrap().scenario;
         scenario.planner.kind = old.planner.unwrap().kind;
-        // That release only kept the robot from touching itself.
+        // That release only kept the robot from touching itself, and its torque limits had no safety factor.
         scenario.limits.clearance_mm = 0.0;
+        scenario.limits.torque_ratio = 1.1;
         let new = plan(&scenario);
         assert_eq!(new.operation, old.operation, "{name}");
         assert_eq!(new.object, old.object, "{name}");
@@ -170,6 +171,6 @@ fn the_papers_person_gives_the_plans_of_the_first_release_bit_for_bit() {
             (comfort.muscular, comfort.muscular_regularised, comfort.peripersonal_m, comfort.activations)
         };
         assert_eq!(figures(&new), figures(&old), "{name}");
-        assert_eq!(new.planner.unwrap().evaluations, old.planner.unwrap().evaluations, "{name}");
+        // How many trial steps that took depends on torques, which are now those of servos that feed the weight forward.
     }
 }
