@@ -176,7 +176,7 @@ fn number_of(outcomes: &[Outcome], status: Status) -> usize {
     outcomes.iter().filter(|outcome| outcome.status() == status).count()
 }
 
-/// The check that decided the verdict as [`deciding`] states it, and the notes.
+/// The check that decided the verdict, such as `deflection 16.20 mm, limit 15 mm`, and the notes.
 #[must_use]
 pub fn explanation(verdict: &Verdict) -> String {
     let notes = verdict.notes.iter().map(|note| format!("; note: {note}"));
