@@ -55,12 +55,12 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
         let problem = format!("found a trace with fingerprint {found}, expected {expected}, that of the verdict");
         return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
     }
-    if verdict.verdict == VerdictKind::NoVerdict && given == scenario.limits {
-        // The reason may not be in the trace: other time steps, or the statics.
-        (judgement.verdict, judgement.reason) = (verdict.verdict, verdict.reason.clone());
-    }
     if given == scenario.limits {
         judgement.confirmation.clone_from(&verdict.confirmation);
+        if verdict.verdict == VerdictKind::NoVerdict {
+            // The reason may not be in the trace: other time steps, or the statics.
+            (judgement.verdict, judgement.reason) = (verdict.verdict, verdict.reason.clone());
+        }
     }
     Ok(judgement.to_verdict(&verdict.name, expect.verdict, verdict.seed, versions()))
 }

@@ -53,9 +53,9 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
     run_plan(scenario, &loaded.robot, plan)
 }
 
-/// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. A plan whose
-/// bodies meet in the planned pose is not simulated; its verdict is `collides`, or `touches` if one is the person. Nor is one whose person would not stand or see so; its verdict is
-/// `infeasible`.
+/// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. A plan whose bodies meet in the
+/// planned pose is not simulated; its verdict is `collides`, or `touches` if one is the person. Nor is one whose person would
+/// not stand or see so; its verdict is `infeasible`.
 ///
 /// # Errors
 /// If the simulation cannot be set up from the plan.

@@ -68,14 +68,13 @@ pub(super) fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], board_kg: f
             let parts = (0..2).flat_map(|k| arm.parts(k).map(|part| (k, part)));
             for (k, part) in parts {
                 let [time_constant_s, impedance] = softness(part.compliance_m_n, arm.finger_per_kg + 1.0 / board_kg);
-                let attributes = [
+                let mut attributes = vec![
                     ("geom1", arm.part_name(k, &part)),
                     ("geom2", "board".to_owned()),
                     ("condim", "3".into()),
                     ("friction", numbers(&[mu, mu, 0.005, 0.0001, 0.0001])),
-                    ("solref", numbers(&[time_constant_s, 1.0])),
-                    ("solimp", numbers(&constant(impedance))),
                 ];
+                attributes.extend(softness_attributes(time_constant_s, impedance));
                 empty(xml, "pair", &attributes)?;
             }
         }
@@ -92,9 +91,9 @@ fn softness(compliance_m_n: f64, inverse_mass_per_kg: f64) -> [f64; 2] {
     [time_constant_s, impedance.min(LARGEST_IMPEDANCE)]
 }
 
-/// MuJoCo's parameters of an impedance that does not depend on the penetration.
-fn constant(impedance: f64) -> [f64; 3] {
-    [impedance, impedance, 0.001]
+/// MuJoCo's parameters of a critically damped constraint whose impedance does not depend on the penetration.
+fn softness_attributes(time_constant_s: f64, impedance: f64) -> [(&'static str, String); 2] {
+    [("solref", numbers(&[time_constant_s, 1.0])), ("solimp", numbers(&[impedance, impedance, 0.001]))]
 }
 
 /// The couplings of the second finger of each hand to the first.
@@ -104,13 +103,12 @@ pub(super) fn couplings(xml: &mut Xml, robot: &Robot, arms: &[ExportedArm<'_>]) 
             let [first, second] = &arm.arm.gripper.fingers;
             let slope = first.opening_sign * second.opening_sign;
             let offset_m = second.closed_m - slope * first.closed_m;
-            let attributes = [
+            let mut attributes = vec![
                 ("joint1", robot.joints[second.joint].name.clone()),
                 ("joint2", robot.joints[first.joint].name.clone()),
                 ("polycoef", numbers(&[offset_m, slope, 0.0, 0.0, 0.0])),
-                ("solref", numbers(&[TIME_CONSTANT_S, 1.0])),
-                ("solimp", numbers(&constant(LARGEST_IMPEDANCE))),
             ];
+            attributes.extend(softness_attributes(TIME_CONSTANT_S, LARGEST_IMPEDANCE));
             empty(xml, "joint", &attributes)?;
         }
         Ok(())
