@@ -12,7 +12,7 @@ use crate::{
         frames::Pose,
         grasp::{Edge, EdgeGrasp},
     },
-    robot::{Chain, Gripper},
+    robot::{Chain, Gripper, SearchBox},
 };
 
 /// Depth of the gripper's origin inside the edge, m (docs/method.md#25-edge-grasps).
@@ -52,7 +52,16 @@ pub struct SearchDomain {
 impl SearchDomain {
     /// The domain of a robot with these arms: a box in front of the shoulders and at the person's working height. The arms'
     /// reach is the shortest one's, from its first joint to the gripper.
-    pub fn of<'c>(arms: impl Iterator<Item = &'c Chain> + Clone, floor_z_m: f64) -> Self {
+    ///
+    /// A box of the robot's description comes first.
+    pub fn of<'c>(
+        arms: impl Iterator<Item = &'c Chain> + Clone,
+        floor_z_m: f64,
+        given: Option<SearchBox>,
+    ) -> Self {
+        if let Some(SearchBox { x_m, y_m, z_m }) = given {
+            return Self { x_m, y_m, z_m, facing_rad: FACING_RAD };
+        }
         let count = arms.clone().count().max(1) as f64;
         let shoulders_m = arms.clone().map(Chain::shoulder_w).sum::<Vector3<f64>>() / count;
         let reach_m = arms.map(Chain::reach_m).fold(f64::INFINITY, f64::min);
@@ -154,7 +163,7 @@ mod tests {
 
     fn domain(robot: &Robot) -> SearchDomain {
         let chains: Vec<_> = (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0)).collect();
-        SearchDomain::of(chains.iter(), robot.floor_z_m)
+        SearchDomain::of(chains.iter(), robot.floor_z_m, robot.search_box)
     }
 
     /// The box that was chosen for Baxter by hand, from where boards can be held: x 0.35 to 0.85, y -0.25 to 0.25, z -0.3 to

@@ -30,6 +30,7 @@ mod palette;
 mod person;
 mod plots;
 mod read;
+mod robot;
 mod rrd;
 mod scene;
 mod stored;

@@ -126,12 +126,12 @@ fn scene(plan: &Plan, robot: &Robot) -> Result<Scene, HumanError> {
     let x_wl = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     for (link, x_wl) in robot.links.iter().zip(&x_wl) {
         for placed in &link.shapes {
-            let points_w = corners(placed.shape).into_iter().map(|p| x_wl * placed.x_ls * p).collect();
+            let points_w = corners(&placed.shape).into_iter().map(|p| x_wl * placed.x_ls * p).collect();
             scene.items.push(Item::Hull(points_w, robot_paint(placed.rgba)));
         }
     }
     let half_m = plan.object.size_m.map(|side| side / 2.0);
-    let board_w = corners(Shape::Box { half_m }).into_iter().map(|p| plan.object.x_wo * p).collect();
+    let board_w = corners(&Shape::Box { half_m }).into_iter().map(|p| plan.object.x_wo * p).collect();
     scene.items.push(Item::Hull(board_w, BOARD.to_owned()));
     if let Some(posture) = &plan.human {
         add_person(&mut scene, plan, posture)?;
@@ -175,10 +175,11 @@ fn robot_paint(rgba: [f64; 4]) -> String {
 }
 
 /// Points whose convex hull is the shape, or an approximation of a round one.
-fn corners(shape: Shape) -> Vec<Point3<f64>> {
+fn corners(shape: &Shape) -> Vec<Point3<f64>> {
     const ROUND: u32 = 20;
     let circle = |k: u32| libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(ROUND));
-    match shape {
+    match *shape {
+        Shape::Hull(ref hull) => hull.points_m.clone(),
         Shape::Box { half_m: [x, y, z] } => {
             let signs = [-1.0, 1.0];
             signs

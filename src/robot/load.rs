@@ -2,13 +2,15 @@
 //!
 //! The table of built-in robots is the only place in the sources that names one.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::{
     assemble::assemble,
-    description::{Description, Source},
-    tree::{Robot, RobotError},
-    urdf,
+    description::Description,
+    faults::{Collector, RobotError, Source},
+    packages::Packages,
+    tree::{Robot, RobotOptions},
+    urdf::{self, UrdfSource},
 };
 
 /// Names of the built-in robots.
@@ -23,14 +25,22 @@ impl Robot {
     /// `relative_to`; the URDF's path is relative to the description file.
     ///
     /// # Errors
-    /// If a file cannot be read, the name is unknown, or the description or the URDF is malformed. The message names the file,
-    /// the line if there is one, the key, the value found and the value expected.
+    /// If a file cannot be read, the name is unknown, or the description or the URDF is malformed. The message has all faults,
+    /// each with the file, the line if there is one, the key, the value found and the value expected.
     pub fn load(description: &str, relative_to: &Path) -> Result<Self, RobotError> {
+        Self::load_with(description, relative_to, &RobotOptions::default())
+    }
+
+    /// As [`Robot::load`], with what a scenario adds.
+    ///
+    /// # Errors
+    /// As for [`Robot::load`].
+    pub fn load_with(description: &str, relative_to: &Path, options: &RobotOptions) -> Result<Self, RobotError> {
         if let Some(number) = BUILTIN.iter().position(|name| *name == description) {
             let [toml_text, urdf_text] = BUILTIN_FILES[number];
             let file = format!("built-in {description}.toml");
-            return build(description, &Source { file: &file, text: toml_text }, |urdf| {
-                Ok((format!("built-in {}", urdf.display()), urdf_text.into()))
+            return build(description, &Source { file: &file, text: toml_text }, options, |urdf| {
+                Ok((format!("built-in {}", urdf.display()), urdf_text.into(), Path::new("")))
             });
         }
         if !description.ends_with(".toml") {
@@ -39,38 +49,48 @@ impl Robot {
         let path = relative_to.join(description);
         let text = read_file(&path)?;
         let folder = path.parent().unwrap_or(relative_to);
-        build(description, &Source { file: &path.display().to_string(), text: &text }, |urdf| {
-            let path = folder.join(urdf);
-            Ok((path.display().to_string(), read_file(&path)?))
-        })
+        let source = Source { file: &path.display().to_string(), text: &text };
+        let mut urdf_path = None;
+        let mut robot = build(description, &source, options, |urdf| {
+            let path = urdf_path.insert(folder.join(urdf));
+            Ok((path.display().to_string(), read_file(path)?, folder))
+        })?;
+        robot.files.splice(0..0, std::iter::once(path.clone()).chain(urdf_path));
+        Ok(robot)
     }
-}
-
-/// The files that [`Robot::load`] reads: the description and the URDF that it names; none for a built-in robot. Files that
-/// cannot be read are left out.
-pub fn source_files(description: &str, relative_to: &Path) -> Vec<PathBuf> {
-    if BUILTIN.contains(&description) {
-        return Vec::new();
-    }
-    let path = relative_to.join(description);
-    let Ok(text) = read_file(&path) else { return Vec::new() };
-    let urdf = Description::read(&Source { file: "", text: &text })
-        .map(|description| path.parent().unwrap_or(relative_to).join(description.urdf.get_ref()));
-    std::iter::once(path.clone()).chain(urdf.ok()).collect()
 }
 
 fn read_file(path: &Path) -> Result<String, RobotError> {
     std::fs::read_to_string(path).map_err(|source| RobotError::Read { path: path.display().to_string(), source })
 }
 
-/// Combines the two files; `urdf` returns the name and the text of the URDF at a path.
-fn build(
+/// Name and text of a URDF, and the folder of the description.
+type UrdfText<'a> = (String, String, &'a Path);
+
+/// Combines the two files; `urdf` reads the URDF at a path.
+fn build<'a>(
     name: &str,
-    source: &Source,
-    urdf: impl FnOnce(&Path) -> Result<(String, String), RobotError>,
+    source: &Source<'_>,
+    options: &RobotOptions,
+    urdf: impl FnOnce(&Path) -> Result<UrdfText<'a>, RobotError>,
 ) -> Result<Robot, RobotError> {
-    let description = Description::read(source)?;
-    let (urdf_file, urdf_text) = urdf(Path::new(description.urdf.get_ref()))?;
-    let tree = urdf::read(&urdf_text).map_err(|problem| RobotError::Invalid { file: urdf_file, problem })?;
-    assemble(name, source, &description, tree)
+    let mut faults = Collector::default();
+    let description = match Description::read(source) {
+        Ok(description) => description,
+        Err(fault) => {
+            faults.add(fault);
+            return Err(faults.into_error());
+        }
+    };
+    let urdf_path = Path::new(description.urdf.get_ref());
+    let (file, text, folder) = urdf(urdf_path)?;
+    let given = options.packages.iter().cloned().chain(description.packages.iter().map(|given| folder.join(given)));
+    let urdf_folder = folder.join(urdf_path);
+    let packages = Packages::new(given.collect(), urdf_folder.parent().unwrap_or(folder));
+    let decomposed: Vec<String> = description.decompose.iter().map(|name| name.get_ref().clone()).collect();
+    let source_of_urdf = UrdfSource { file: &file, text: &text, packages: &packages, decomposed: &decomposed };
+    let tree = urdf::read(&source_of_urdf, &mut faults);
+    let robot =
+        tree.and_then(|tree| assemble(name, source, &description, options, tree, &mut faults));
+    robot.ok_or_else(|| faults.into_error())
 }

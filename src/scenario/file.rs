@@ -1,6 +1,6 @@
 //! The scenario file: TOML, in which most keys are optional.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -75,11 +75,17 @@ pub struct ScenarioFile {
 pub struct RobotSection {
     /// The name of a built-in robot, or the path of a description file relative to the scenario file's folder.
     pub description: String,
+    /// Folders that contain the packages of the urdf's meshes, relative to the scenario file's folder; looked at before those
+    /// of the description.
+    pub packages: Vec<String>,
+    /// Positions of joints that are not part of an arm or a gripper, such as a lifting torso, rad or m; in place of those of
+    /// the description.
+    pub posture: BTreeMap<String, f64>,
 }
 
 impl Default for RobotSection {
     fn default() -> Self {
-        Self { description: crate::robot::BUILTIN[0].into() }
+        Self { description: crate::robot::BUILTIN[0].into(), packages: Vec::new(), posture: BTreeMap::new() }
     }
 }
 

@@ -22,7 +22,7 @@ pub use robot_file::robot_parameters;
 
 use crate::{
     model::{plan::Plan, scenario::Scenario},
-    robot::{Robot, source_files},
+    robot::Robot,
 };
 
 /// A resolved scenario with its robot and, if the file names one, its plan.
@@ -84,7 +84,7 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     let (scenario, robot) = resolve::resolve(path, text, &file)?;
     let folder = folder_of(path);
     let mut inputs = vec![path.to_owned()];
-    inputs.extend(source_files(&file.robot.description, folder));
+    inputs.extend(robot.files.iter().cloned());
     inputs.extend(file.load.file.as_ref().map(|forces| folder.join(forces)));
     let plan = match &scenario.planner.plan {
         Some(plan) => {
@@ -113,7 +113,7 @@ fn folder_of(file: &Path) -> &Path {
 pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
     let (plan, robot) = read_plan(path, None)?;
     let mut inputs = vec![path.to_owned()];
-    inputs.extend(source_files(&plan.robot, folder_of(path)));
+    inputs.extend(robot.files.iter().cloned());
     let mut scenario = match (scenario, &plan.scenario) {
         (Some(path), _) => {
             let loaded = load(path)?;

@@ -8,7 +8,7 @@ use super::{
     check::{Checker, FormatProbe},
     error::read_text,
     resolve,
-    robot_file::load_robot,
+    robot_file::{load_robot, options_of},
 };
 use crate::{
     check::{CheckedPlan, Flaw},
@@ -38,10 +38,11 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
         }
     };
     let robot = match robot {
-        Some(robot) if robot.description == plan.robot => robot.clone(),
+        Some(robot) if robot.description == plan.robot => robot.at_gap(plan.object.size_m[2]),
         _ => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            load_robot(&plan.robot, folder).map_err(|e| check.robot("robot", e))?
+            let options = plan.scenario.as_ref().map(|scenario| options_of(&scenario.robot)).unwrap_or_default();
+            load_robot(&plan.robot, folder, &options, plan.object.size_m[2]).map_err(|e| check.robot("robot", e))?
         }
     };
     plan.robot.clone_from(&robot.description);

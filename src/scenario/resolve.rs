@@ -1,6 +1,6 @@
 //! Resolves a scenario file: fills in defaults and checks every value.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 
@@ -31,7 +31,7 @@ use crate::{
         },
         wrench::Wrench,
     },
-    robot::Robot,
+    robot::{Robot, RobotOptions},
 };
 
 /// The resolved scenario of a file, and its robot.
@@ -42,7 +42,12 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     let check = Checker::toml(path, text);
     check.name(&file.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let robot = load_robot(&file.robot.description, folder).map_err(|e| check.robot("robot.description", e))?;
+    let options = RobotOptions {
+        packages: file.robot.packages.iter().map(PathBuf::from).collect(),
+        posture: file.robot.posture.clone(),
+    };
+    let robot = load_robot(&file.robot.description, folder, &options, file.object.size_m[2])
+        .map_err(|e| check.robot("robot.description", e))?;
     let object = board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
     let scenario = Scenario {

@@ -59,7 +59,7 @@ impl GraspingRobot {
         let arms: Vec<_> = arms.collect();
         let chains = arms.iter().map(|arm: &GraspingArm| &arm.chain);
         Self {
-            domain: SearchDomain::of(chains, robot.floor_z_m),
+            domain: SearchDomain::of(chains, robot.floor_z_m, robot.search_box),
             robot: robot.clone(),
             size_m,
             arms,
