@@ -121,6 +121,7 @@ pub mod report;
 pub mod reproduce;
 pub mod robot;
 pub mod scenario;
+pub mod setup;
 pub mod sim;
 pub mod statics;
 

@@ -45,11 +45,54 @@ pub enum Command {
     /// Open a recording in the rerun viewer
     #[cfg(feature = "recording")]
     View(ViewArgs),
-    /// Check the installation: assets, versions, physics and solver
-    #[command(after_help = help::DOCTOR)]
-    Doctor,
+    /// Write the description of a robot from its URDF
+    #[command(subcommand)]
+    Robot(RobotCommand),
+    /// Check the installation: assets, versions, physics and solver; or the description of a robot
+    Doctor(DoctorArgs),
     /// Print a shell's completion script
     Completions(CompletionsArgs),
+}
+
+/// A command about robots.
+#[derive(Debug, Subcommand)]
+pub enum RobotCommand {
+    /// Find arms and grippers of a URDF and write a description that can be used at once
+    New(RobotNewArgs),
+}
+
+/// `benchdog robot new`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::ROBOT_NEW)]
+pub struct RobotNewArgs {
+    /// URDF file
+    pub urdf: PathBuf,
+    /// SRDF file; the pairs of links that it disables may overlap
+    #[arg(long, value_name = "FILE")]
+    pub srdf: Option<PathBuf>,
+    /// Folder that contains packages of meshes, beside ROS_PACKAGE_PATH and the folders above the URDF; may be repeated
+    #[arg(long, value_name = "DIR")]
+    pub packages: Vec<PathBuf>,
+    /// File for the description
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Also write a scenario to this file: a board drilled with 10 N
+    #[arg(long, value_name = "FILE")]
+    pub scenario: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// `benchdog doctor`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::DOCTOR)]
+pub struct DoctorArgs {
+    /// Description of a robot to check in place of the installation
+    pub description: Option<PathBuf>,
+    /// Record the robot with pads and points, its arms in the middle of their ranges
+    #[arg(long, value_name = "FILE", requires = "description")]
+    pub record: Option<PathBuf>,
 }
 
 /// Options of `run` and `simulate`.

@@ -120,10 +120,19 @@ The viewer is not part of benchdog. `pip install rerun-sdk==0.36.3` or
 
 /// `benchdog doctor --help`.
 pub const DOCTOR: &str = "\
-Example:
+Examples:
   benchdog doctor
+  benchdog doctor my-robot.toml --record my-robot.rrd
 
 The exit code is 0 if all checks pass. A missing viewer is reported but is not a failure.";
+
+/// `benchdog robot new --help`.
+pub const ROBOT_NEW: &str = "\
+Examples:
+  benchdog robot new ur5.urdf -o my-robot.toml --scenario my-drill.toml
+  benchdog robot new pr2.urdf --srdf pr2.srdf --packages ~/ros/share -o my-robot.toml
+
+Figures that no URDF has are assumed and marked in the description. docs/robot.md shows the way from a URDF to a verdict.";
 
 /// `benchdog completions --help`.
 pub const COMPLETIONS: &str = "\

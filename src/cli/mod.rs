@@ -28,6 +28,8 @@ mod recording;
 #[path = "no_recording.rs"]
 mod recording;
 mod reproduce;
+mod robot;
+mod robot_check;
 mod run;
 mod schema;
 mod select;
@@ -42,6 +44,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 pub use args::{Cli, Command};
+use args::RobotCommand;
 pub use exit::Exit;
 
 /// Parses this process's arguments and runs the command.
@@ -69,7 +72,8 @@ pub fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(args),
         #[cfg(feature = "recording")]
         Command::View(args) => view::view(args),
-        Command::Doctor => doctor::doctor(),
+        Command::Robot(RobotCommand::New(args)) => robot::new(args),
+        Command::Doctor(args) => doctor::doctor(args),
         Command::Completions(args) => completions::completions(args),
     });
     match outcome {

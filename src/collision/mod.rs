@@ -7,6 +7,7 @@ mod clearances;
 mod link_shapes;
 mod near_pairs;
 mod nearest;
+mod overlaps;
 mod person_clearance;
 mod self_pairs;
 mod shapes;

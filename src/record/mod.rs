@@ -29,6 +29,7 @@ mod messages;
 mod palette;
 mod person;
 mod plots;
+mod posture;
 mod read;
 mod robot;
 mod rrd;
@@ -40,5 +41,6 @@ mod tests;
 
 pub use encode::encode;
 pub use error::RecordError;
+pub use posture::encode_posture;
 pub use input::{Capsule, PersonShape, RecordingInput};
 pub use read::{Peaks, RecordedPhase, RecordedRun, RecordedSummary, read_run, read_summary};

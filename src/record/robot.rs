@@ -40,6 +40,16 @@ pub(super) fn log(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Re
     Ok(())
 }
 
+/// Logs all links at fixed poses.
+pub(super) fn log_posture(messages: &mut Messages, robot: &Robot, x_wl: &[Pose]) -> Result<(), RecordError> {
+    for (link, x_wl) in robot.links.iter().zip(x_wl) {
+        let path = entity(&["scene", "robot", &link.name]);
+        log_link(messages, &path, link, &link.drawn())?;
+        messages.log_static(&path, &transform(x_wl))?;
+    }
+    Ok(())
+}
+
 /// Logs the parts of a link: shapes on the link's entity, each mesh on one of its own.
 fn log_link(
     messages: &mut Messages,

@@ -116,6 +116,8 @@ pub(super) struct GripperEntry {
     pub palm_link: Option<Spanned<String>>,
     pub opening_m: Spanned<Exactly<f64, 2>>,
     pub max_force_n: Spanned<f64>,
+    pub grip_force_n: Option<Spanned<f64>>,
+    pub friction: Option<Spanned<f64>>,
     pub pad_size_m: Spanned<Exactly<f64, 2>>,
     pub pad_centre_m: Spanned<Exactly<f64, 2>>,
     pub pad_stiffness_n_m: Option<Spanned<f64>>,

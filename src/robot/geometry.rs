@@ -55,6 +55,40 @@ impl Shape {
             }
         }
     }
+
+    /// Points on the surface whose convex hull is close to the shape: corners, and 20 points a circle.
+    #[must_use]
+    pub fn surface_points(&self) -> Vec<Point3<f64>> {
+        const ROUND: u32 = 20;
+        let circle = |k: u32| libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(ROUND));
+        match *self {
+            Self::Hull(ref hull) => hull.points_m.clone(),
+            Self::Box { half_m: [x, y, z] } => {
+                let signs = [-1.0, 1.0];
+                signs
+                    .iter()
+                    .flat_map(|i| signs.iter().flat_map(move |j| signs.map(|k| Point3::new(i * x, j * y, k * z))))
+                    .collect()
+            }
+            Self::Cylinder { radius_m, half_length_m } => (0..ROUND)
+                .flat_map(|k| {
+                    let (sin, cos) = circle(k);
+                    [-half_length_m, half_length_m].map(|z| Point3::new(radius_m * cos, radius_m * sin, z))
+                })
+                .collect(),
+            // Circles about the three axes of the shape. In any direction of view their hull is close to the outline.
+            Self::Sphere { radius_m } => (0..3)
+                .flat_map(|axis| (0..ROUND).map(move |k| (axis, k)))
+                .map(|(axis, k)| {
+                    let (sin, cos) = circle(k);
+                    let mut point = Point3::origin();
+                    point[axis] = radius_m * cos;
+                    point[(axis + 1) % 3] = radius_m * sin;
+                    point
+                })
+                .collect(),
+        }
+    }
 }
 
 /// A surface of triangles.

@@ -46,7 +46,7 @@ impl Linkage {
     ///
     /// # Errors
     /// Why the mechanism is not equivalent to a parallel jaw.
-    pub(super) fn new(robot: &Robot, [frame, palm]: [usize; 2], pad_links: [usize; 2]) -> Result<Self, String> {
+    pub fn new(robot: &Robot, [frame, palm]: [usize; 2], pad_links: [usize; 2]) -> Result<Self, String> {
         let name = |link: usize| robot.links[link].name.as_str();
         let mut chains = Vec::new();
         for pad in pad_links {
@@ -94,7 +94,7 @@ impl Linkage {
     ///
     /// # Errors
     /// If the gap does not grow all the way or the pads turn.
-    pub(super) fn range_m(&self, robot: &Robot, frame: usize) -> Result<[f64; 2], String> {
+    pub fn range_m(&self, robot: &Robot, frame: usize) -> Result<[f64; 2], String> {
         let shares = (0..SAMPLES).map(|sample| sample as f64 / (SAMPLES - 1) as f64);
         let gaps_m: Vec<f64> = shares.clone().map(|share| self.gap_m(robot, frame, share)).collect();
         if gaps_m.windows(2).any(|pair| pair[1] <= pair[0]) {
@@ -131,6 +131,12 @@ impl Linkage {
     fn x_gl(&self, robot: &Robot, frame: usize, share: f64) -> [Pose; 2] {
         let x_wl = robot.link_poses(&self.positions(robot, share));
         self.pad_links.map(|link| x_wl[frame].inverse() * x_wl[link])
+    }
+
+    /// Poses of the pads' links in G at this gap between the pads, m; in the order of the links given to [`Linkage::new`].
+    #[must_use]
+    pub fn pad_poses_g(&self, robot: &Robot, frame: usize, gap_m: f64) -> [Pose; 2] {
+        self.x_gl(robot, frame, self.share_at(robot, frame, gap_m))
     }
 
     /// Distance of each pad's face from the plane y_G = 0, m.

@@ -2,10 +2,10 @@
 //!
 //! The table of built-in robots is the only place in the sources that names one.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::{
-    assemble::assemble,
+    assemble::{assemble, bare_robot},
     description::Description,
     faults::{Collector, RobotError, Source},
     packages::Packages,
@@ -57,6 +57,33 @@ impl Robot {
         })?;
         robot.files.splice(0..0, std::iter::once(path.clone()).chain(urdf_path));
         Ok(robot)
+    }
+}
+
+impl Robot {
+    /// The robot of a description that is not in a file, as if it were in `folder`.
+    ///
+    /// # Errors
+    /// As for [`Robot::load`].
+    pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, RobotError> {
+        build(name, &Source { file: name, text }, &RobotOptions::default(), |urdf| {
+            let path = folder.join(urdf);
+            Ok((path.display().to_string(), read_file(&path)?, folder))
+        })
+    }
+
+    /// The robot of a URDF alone, without arms, and the effort limit of each joint, N m or N, 0 where there is none.
+    ///
+    /// # Errors
+    /// As for [`Robot::load`].
+    pub fn bare(urdf: &Path, packages: &[PathBuf]) -> Result<(Self, Vec<f64>), RobotError> {
+        let (file, text) = (urdf.display().to_string(), read_file(urdf)?);
+        let packages = Packages::new(packages.to_vec(), urdf.parent().unwrap_or(Path::new("")));
+        let mut faults = Collector::default();
+        let source = UrdfSource { file: &file, text: &text, packages: &packages, decomposed: &[] };
+        let tree = urdf::read(&source, &mut faults).ok_or_else(|| faults.into_error())?;
+        let effort = tree.effort.clone();
+        Ok((bare_robot(&file, tree, 0.0, &RobotOptions::default()), effort))
     }
 }
 

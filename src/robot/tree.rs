@@ -157,6 +157,10 @@ pub struct Gripper {
     pub opening_m: [f64; 2],
     /// Maximum force of each finger, N.
     pub max_force_n: f64,
+    /// Force of each finger where a scenario has none, N.
+    pub grip_force_n: Option<f64>,
+    /// Coulomb friction coefficient of its pads and a board where a scenario has none.
+    pub friction: Option<f64>,
     /// Stiffness of one pad along its normal, N/m; `None` for rigid pads (docs/method.md#612-pad-compliance).
     pub pad_stiffness_n_m: Option<f64>,
     /// The mechanism that moves the fingers, if it is not one prismatic joint each.
@@ -305,6 +309,24 @@ impl Robot {
         x_wl
     }
 
+    /// For each joint whether an arm or a gripper moves it; all others stay at rest.
+    pub fn active_joints(&self) -> Vec<bool> {
+        let mut active = vec![false; self.joints.len()];
+        for arm in &self.arms {
+            let fingers = arm.gripper.fingers.iter().map(|finger| finger.joint);
+            arm.joints.iter().copied().chain(fingers).for_each(|joint| active[joint] = true);
+        }
+        active
+    }
+
+    /// Adds a link without mass and shapes that is fixed to another, and returns its index.
+    pub fn add_frame(&mut self, name: &str, parent_link: usize, x_pl: Pose) -> usize {
+        let child_link = self.links.len();
+        self.links.push(Link::empty(name, Some(self.joints.len())));
+        self.joints.push(Joint::fixed(&format!("{name}_joint"), [parent_link, child_link], x_pl));
+        child_link
+    }
+
     /// For each link the moving joint that carries it, directly or through fixed joints; `None` for fixed links.
     pub fn carriers(&self) -> Vec<Option<usize>> {
         let mut carriers: Vec<Option<usize>> = Vec::with_capacity(self.links.len());
@@ -318,7 +340,40 @@ impl Robot {
     }
 }
 
+impl Link {
+    /// A link without mass and geometry.
+    #[must_use]
+    pub fn empty(name: &str, parent_joint: Option<usize>) -> Self {
+        Self {
+            name: name.into(),
+            parent_joint,
+            mass_kg: 0.0,
+            com_l: Vector3::zeros(),
+            inertia_l: Matrix3::zeros(),
+            shapes: Vec::new(),
+            visuals: Vec::new(),
+        }
+    }
+}
+
 impl Joint {
+    /// A joint that does not move, between a parent and a child link.
+    #[must_use]
+    pub fn fixed(name: &str, [parent_link, child_link]: [usize; 2], x_pj: Pose) -> Self {
+        Self {
+            name: name.into(),
+            kind: JointKind::Fixed,
+            parent_link,
+            child_link,
+            x_pj,
+            axis_j: Vector3::x_axis(),
+            lower: 0.0,
+            upper: 0.0,
+            rest: 0.0,
+            mimic: None,
+        }
+    }
+
     /// The child link's pose in the parent link at this position, rad or m.
     pub fn x_pc(&self, position: f64) -> Pose {
         match self.kind {

@@ -16,7 +16,7 @@ use crate::model::{
     load::Uncertainty,
     operation::OperationKind,
     scenario::{
-        ComfortSettings, Expectation, Grip, Hand, Limits, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
+        ComfortSettings, Expectation, Hand, Limits, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
         ShoulderKind, SimulationSettings,
     },
 };
@@ -51,7 +51,7 @@ pub struct ScenarioFile {
     pub planner: PlannerSettings,
     /// Grip force and friction.
     #[serde(default)]
-    pub grip: Grip,
+    pub grip: GripSection,
     /// Phases and time step of the simulation.
     #[serde(default)]
     pub simulation: SimulationSettings,
@@ -67,6 +67,16 @@ pub struct ScenarioFile {
     /// The expected verdict; `holds` by default.
     #[serde(default)]
     pub expect: Expectation,
+}
+
+/// `[grip]`.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GripSection {
+    /// The force that closes each finger, N; by default the smallest `grip_force_n` of the robot's grippers, or 30.
+    pub force_n: Option<f64>,
+    /// Coulomb friction coefficient of pads and board; by default the smallest `friction` of the robot's grippers, or 0.6.
+    pub friction: Option<f64>,
 }
 
 /// `[robot]`.

@@ -91,6 +91,8 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
             fingers: [finger("left", 2, 1.0), finger("right", 3, -1.0)],
             opening_m: [-0.0037, 0.038],
             max_force_n: 100.0,
+            grip_force_n: None,
+            friction: None,
             pad_stiffness_n_m: None,
             linkage: None,
         },

@@ -7,5 +7,6 @@ mod common;
 mod collision;
 mod description;
 mod inverse_kinematics;
+mod mechanisms;
 mod reference;
 mod self_motion;

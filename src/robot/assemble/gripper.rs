@@ -12,7 +12,7 @@ use crate::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
         geometry::{PlacedShape, Shape},
         linkage::Linkage,
-        tree::{Finger, Gripper, Joint, JointKind, Link, Pad, Robot},
+        tree::{Finger, Gripper, JointKind, Pad, Robot},
     },
 };
 
@@ -24,6 +24,9 @@ const OPENING_TOLERANCE_M: f64 = 1e-4;
 
 /// Stiffness of a pad, N/m, from softer than a foam cushion to stiffer than a steel block of its size.
 const PAD_STIFFNESS_N_M: RangeInclusive<f64> = 1e4..=1e9;
+
+/// The largest friction coefficient: soft rubber on a rough board has less than 2.
+const MOST_FRICTION: f64 = 5.0;
 
 /// Thickness, m, and mass, kg, of a jaw of a clamp: a steel plate of the size of a hand's pad.
 const JAW_THICKNESS_M: f64 = 0.010;
@@ -38,6 +41,8 @@ struct Hand {
     x_wl: Vec<Pose>,
     opening_m: [f64; 2],
     max_force_n: f64,
+    grip_force_n: Option<f64>,
+    friction: Option<f64>,
     pad_size_m: [f64; 2],
     pad_centre_m: [f64; 2],
     pad_stiffness_n_m: Option<f64>,
@@ -55,6 +60,8 @@ impl Hand {
             fingers,
             opening_m: self.opening_m,
             max_force_n: self.max_force_n,
+            grip_force_n: self.grip_force_n,
+            friction: self.friction,
             pad_stiffness_n_m: self.pad_stiffness_n_m,
             linkage,
         }
@@ -71,6 +78,7 @@ impl Assembler<'_> {
         self.positive("pad_size_m", &entry.pad_size_m, &entry.pad_size_m.get_ref().0);
         let pad_centre_m = self.finite("pad_centre_m", &entry.pad_centre_m, "m");
         let pad_stiffness_n_m = self.pad_stiffness(entry);
+        let (grip_force_n, friction) = self.grip_defaults(entry);
         let (given_frame, palm_link) = (given_frame?, palm??);
         if self.carriers[palm_link] != self.carriers[given_frame] {
             let (key, at) = entry.palm_link.as_ref().map(|palm| (palm.get_ref().clone(), palm.span()))?;
@@ -85,6 +93,8 @@ impl Assembler<'_> {
             x_wl: self.robot.link_poses(&self.robot.positions(&[])),
             opening_m: entry.opening_m.get_ref().0,
             max_force_n: *entry.max_force_n.get_ref(),
+            grip_force_n,
+            friction,
             pad_size_m: entry.pad_size_m.get_ref().0,
             pad_centre_m: pad_centre_m?,
             pad_stiffness_n_m,
@@ -110,36 +120,21 @@ impl Assembler<'_> {
         let keys = ["frame_xyz_m", "frame_rpy_deg"];
         let x_lg = self.pose_of(keys, entry.frame_xyz_m.as_ref(), entry.frame_rpy_deg.as_ref())?;
         let x_lg = Isometry3::from_parts(x_lg.translation, squared(&x_lg));
-        Some(self.add_link(&format!("{arm}_gripper_frame"), link, x_lg, None))
+        let frame = self.robot.add_frame(&format!("{arm}_gripper_frame"), link, x_lg);
+        self.effort.push(0.0);
+        self.carriers = self.robot.carriers();
+        Some(frame)
     }
 
-    /// Adds a link without shapes; with limits (m) it slides along y of its frame, else it is fixed.
-    fn add_link(&mut self, name: &str, parent_link: usize, x_pj: Pose, limits_m: Option<[f64; 2]>) -> usize {
-        let (joint, link) = (self.robot.joints.len(), self.robot.links.len());
-        let [lower, upper] = limits_m.unwrap_or_default();
-        self.robot.joints.push(Joint {
-            name: format!("{name}_joint"),
-            kind: if limits_m.is_some() { JointKind::Prismatic } else { JointKind::Fixed },
-            parent_link,
-            child_link: link,
-            x_pj,
-            axis_j: Vector3::y_axis(),
-            lower,
-            upper,
-            rest: lower,
-            mimic: None,
-        });
+    /// Adds a jaw: a link that slides along y of its frame between limits, m.
+    fn add_jaw(&mut self, name: &str, parent_link: usize, x_pj: Pose, limits_m: [f64; 2]) -> usize {
+        let link = self.robot.add_frame(name, parent_link, x_pj);
         self.effort.push(0.0);
-        self.robot.links.push(Link {
-            name: name.into(),
-            parent_joint: Some(joint),
-            mass_kg: 0.0,
-            com_l: Vector3::zeros(),
-            inertia_l: Matrix3::zeros(),
-            shapes: Vec::new(),
-            visuals: Vec::new(),
-        });
-        self.carriers = self.robot.carriers();
+        let joint = self.robot.joints.len() - 1;
+        let of_jaw = &mut self.robot.joints[joint];
+        (of_jaw.kind, of_jaw.axis_j) = (JointKind::Prismatic, Vector3::y_axis());
+        [of_jaw.lower, of_jaw.upper] = limits_m;
+        of_jaw.rest = of_jaw.lower;
         link
     }
 
@@ -163,7 +158,7 @@ impl Assembler<'_> {
             );
             let x_gj = Isometry3::from_parts(Vector3::zeros().into(), turn);
             let limits_m = [narrow_m / 2.0, wide_m / 2.0];
-            let link = self.add_link(&format!("{arm}_{name}_jaw"), hand.palm_link, x_palm_g * x_gj, Some(limits_m));
+            let link = self.add_jaw(&format!("{arm}_{name}_jaw"), hand.palm_link, x_palm_g * x_gj, limits_m);
             // In the frame of a jaw that is turned about z_G, x_G is -x.
             let centre = Vector3::new(side * x_m, JAW_THICKNESS_M / 2.0, z_m);
             let sides = half_m.map(|half| 2.0 * half);
@@ -248,6 +243,22 @@ impl Assembler<'_> {
         };
         let fingers = [finger(first, pad_links[0]), finger(second, pad_links[1])];
         Some(hand.gripper(fingers, Some(linkage)))
+    }
+
+    /// Grip force and friction for scenarios that have none.
+    fn grip_defaults(&mut self, entry: &GripperEntry) -> (Option<f64>, Option<f64>) {
+        let most_n = *entry.max_force_n.get_ref();
+        if let Some(force) = &entry.grip_force_n {
+            let force_n = *force.get_ref();
+            let expected = format!("more than 0 and at most max_force_n, {most_n} N");
+            self.check(force_n > 0.0 && force_n <= most_n, force.span(), "grip_force_n", force_n, &expected);
+        }
+        if let Some(friction) = &entry.friction {
+            let found = *friction.get_ref();
+            self.check((0.0..=MOST_FRICTION).contains(&found), friction.span(), "friction", found, "0 to 5");
+        }
+        let value = |given: &Option<Spanned<f64>>| given.as_ref().map(|given| *given.get_ref());
+        (value(&entry.grip_force_n), value(&entry.friction))
     }
 
     /// The stiffness of a pad, if the description has one.

@@ -27,22 +27,8 @@ pub(super) fn assemble(
     tree: Tree,
     faults: &mut Collector,
 ) -> Option<Robot> {
-    let Tree { links, joints, effort, notes, files } = tree;
-    let robot = Robot {
-        description: name.into(),
-        links,
-        x_wr: Pose::identity(),
-        joints,
-        arms: Vec::new(),
-        allowed_collisions: Vec::new(),
-        body_points: Vec::new(),
-        floor_z_m: *description.floor_z_m.get_ref(),
-        search_box: None,
-        with_linkages: None,
-        options: options.clone(),
-        notes,
-        files,
-    };
+    let effort = tree.effort.clone();
+    let robot = bare_robot(name, tree, *description.floor_z_m.get_ref(), options);
     let mut assembler = Assembler { source, robot, effort, carriers: Vec::new(), faults };
     assembler.place(description);
     assembler.pose(description, &options.posture);
@@ -59,6 +45,26 @@ pub(super) fn assemble(
         robot = robot.at_gap(widest_m / 2.0);
     }
     Some(robot)
+}
+
+/// A robot without arms.
+pub(super) fn bare_robot(name: &str, tree: Tree, floor_z_m: f64, options: &RobotOptions) -> Robot {
+    let Tree { links, joints, effort: _, notes, files } = tree;
+    Robot {
+        description: name.into(),
+        links,
+        x_wr: Pose::identity(),
+        joints,
+        arms: Vec::new(),
+        allowed_collisions: Vec::new(),
+        body_points: Vec::new(),
+        floor_z_m,
+        search_box: None,
+        with_linkages: None,
+        options: options.clone(),
+        notes,
+        files,
+    }
 }
 
 /// The robot as far as it is assembled, and the faults that were found.

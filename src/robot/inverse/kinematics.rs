@@ -28,6 +28,14 @@ impl InverseKinematics {
         }
     }
 
+    /// The solver's name for messages.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::ClosedForm(_) => "closed-form",
+            Self::General(_) => "numerical",
+        }
+    }
+
     /// The solution to which damped least squares converges from `seed` (rad, one angle per joint). It is near the seed if the
     /// target is near the seed's pose. Fast, but the search may end at a limit.
     pub fn local(&self, target: &Pose, seed: &[f64]) -> Solution {

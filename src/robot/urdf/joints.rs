@@ -1,6 +1,6 @@
 //! Joints: kinds, axes, limits, and joints that follow others.
 
-use nalgebra::{Isometry3, Unit, Vector3};
+use nalgebra::{Unit, Vector3};
 use urdf_rs::JointType;
 
 use super::read_pose;
@@ -28,9 +28,7 @@ pub(super) fn read(
         if kind != JointKind::Fixed {
             notes.push(format!("joint {} has no range; it is held fixed at {}", joint.name, joint.limit.lower));
         }
-        let mut held = fixed(&joint.name, parent_link, child_link);
-        held.x_pj = x_pj;
-        return Ok((held, 0.0));
+        return Ok((Joint::fixed(&joint.name, [parent_link, child_link], x_pj), 0.0));
     };
     let axis = Vector3::from(joint.axis.xyz.0);
     let axis_j = Unit::try_new(axis, 1e-9)
@@ -40,22 +38,6 @@ pub(super) fn read(
     let name = joint.name.clone();
     let read = Joint { name, kind, parent_link, child_link, x_pj, axis_j, lower, upper, rest, mimic: None };
     Ok((read, joint.limit.effort))
-}
-
-/// A fixed joint with both frames at one place.
-pub(super) fn fixed(name: &str, parent_link: usize, child_link: usize) -> Joint {
-    Joint {
-        name: name.into(),
-        kind: JointKind::Fixed,
-        parent_link,
-        child_link,
-        x_pj: Isometry3::identity(),
-        axis_j: Vector3::x_axis(),
-        lower: 0.0,
-        upper: 0.0,
-        rest: 0.0,
-        mimic: None,
-    }
 }
 
 /// Limits of a joint that moves: half a turn either way for a continuous joint; `None` if it has no range at 0.
@@ -95,7 +77,7 @@ pub(super) fn resolve_mimics(robot: &urdf_rs::Robot, joints: &mut [Joint]) -> Re
             multiplier *= own_multiplier;
             at = leader;
         }
-        if joints[at].kind != JointKind::Fixed && at != index && is_follower(robot, &joints[at].name) {
+        if joints[at].kind != JointKind::Fixed && is_follower(robot, &joints[at].name) {
             return Err(format!("joint {}: found joints that mimic each other in a circle", joints[index].name));
         }
         if at != index {

@@ -19,9 +19,15 @@ const DEFAULT_RGBA: [f64; 4] = [0.6, 0.6, 0.6, 1.0];
 /// Tolerance of negative eigenvalues of an inertia, relative to the largest, since published values are rounded.
 const INERTIA_TOLERANCE: f64 = 1e-6;
 
+/// Rounding of inertias that are zero, kg m^2.
+const ROUNDING_KG_M2: f64 = 1e-12;
+
 /// Negative eigenvalues up to this share of the largest are taken for errors of a vendor's fit and set to zero: such an
 /// inertia is that of a thin body. More would be another body.
 const MENDED_INERTIA: f64 = 0.1;
+
+/// Eigenvalues below this are those of a part of some grams, which no result depends on, kg m^2.
+const NEGLIGIBLE_INERTIA_KG_M2: f64 = 1e-6;
 
 /// What reads links.
 pub(super) struct Reader<'a> {
@@ -48,15 +54,7 @@ impl Reader<'_> {
     /// Reads a link. After a problem the link lacks the part that has it.
     pub fn read(&self, link: &urdf_rs::Link, parent_joint: Option<usize>) -> ReadLink {
         let mut read = ReadLink {
-            link: Link {
-                name: link.name.clone(),
-                parent_joint,
-                mass_kg: 0.0,
-                com_l: Vector3::zeros(),
-                inertia_l: Matrix3::zeros(),
-                shapes: Vec::new(),
-                visuals: Vec::new(),
-            },
+            link: Link::empty(&link.name, parent_joint),
             problems: Vec::new(),
             notes: Vec::new(),
             files: Vec::new(),
@@ -172,13 +170,13 @@ fn read_inertial(inertial: &urdf_rs::Inertial) -> Result<Inertial, String> {
     }
     let eigen = inertia.symmetric_eigen();
     let (least, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.amax());
-    if least < -MENDED_INERTIA * largest {
+    if least < -(MENDED_INERTIA * largest).max(NEGLIGIBLE_INERTIA_KG_M2) {
         return Err(format!("found an inertia with eigenvalue {least}, expected none below 0"));
     }
     let x_lc = read_pose(&inertial.origin)?;
     let r = x_lc.rotation.to_rotation_matrix();
     let about = |inertia: Matrix3<f64>| r.matrix() * inertia * r.matrix().transpose();
-    if least >= -INERTIA_TOLERANCE * largest {
+    if least >= -(INERTIA_TOLERANCE * largest).max(ROUNDING_KG_M2) {
         return Ok((mass_kg, x_lc.translation.vector, about(inertia), None));
     }
     let mut mended = eigen;

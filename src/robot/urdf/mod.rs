@@ -54,7 +54,8 @@ pub(super) fn read(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tr
 }
 
 fn read_tree(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tree> {
-    let parsed = urdf_rs::read_from_string(source.text).map_err(|error| parse_problem(source.text, &error.to_string()));
+    let text = without_empty_textures(source.text);
+    let parsed = urdf_rs::read_from_string(&text).map_err(|error| parse_problem(source.text, &error.to_string()));
     let robot = faults.keep(source.file, parsed)?;
     let index = names("link", robot.links.iter().map(|link| link.name.as_str()));
     let index = faults.keep(source.file, index)?;
@@ -79,6 +80,11 @@ fn read_tree(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tree> {
     let mimics = joints::resolve_mimics(&robot, &mut tree.joints);
     faults.keep(source.file, mimics)?;
     Some(tree)
+}
+
+/// The text without textures that name no file, which urdf-rs refuses. Nothing here reads textures.
+fn without_empty_textures(text: &str) -> String {
+    text.replace("<texture />", "").replace("<texture/>", "")
 }
 
 /// A message about a text that is not a URDF.
@@ -153,9 +159,11 @@ impl Builder<'_> {
         for &(joint, child) in &self.hierarchy.children[link] {
             let read = joints::read(&self.robot.joints[joint], placed, self.tree.links.len(), &mut self.tree.notes);
             // After a fault the tree is not used, but what follows is still read for its faults.
-            let (read, effort) = faults
-                .keep(self.source.file, read)
-                .unwrap_or_else(|| (joints::fixed(&self.robot.joints[joint].name, placed, self.tree.links.len()), 0.0));
+            let in_place = || {
+                let links = [placed, self.tree.links.len()];
+                (Joint::fixed(&self.robot.joints[joint].name, links, Pose::identity()), 0.0)
+            };
+            let (read, effort) = faults.keep(self.source.file, read).unwrap_or_else(in_place);
             self.tree.joints.push(read);
             self.tree.effort.push(effort);
             let parent_joint = Some(self.tree.joints.len() - 1);

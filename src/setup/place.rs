@@ -1,0 +1,92 @@
+//! The height of the floor, and where boards can be held, from samples of the arms' reach.
+
+use nalgebra::Vector3;
+use rand::RngExt;
+use rand_pcg::Pcg64;
+
+use crate::robot::{Chain, Robot, SearchBox};
+
+/// A robot whose shoulders are lower than this above its lowest point stands on a bench, m.
+const BENCH_SHOULDER_M: f64 = 0.65;
+
+/// Height of a bench, m: assumed.
+const BENCH_M: f64 = 0.80;
+
+/// Height of the board's centre above the floor that a person can work at, m.
+const WORK_HEIGHT_M: [f64; 2] = [0.62, 1.52];
+
+/// Number of postures of each arm.
+const SAMPLES: usize = 4_000;
+
+/// Seed of the postures.
+const SEED: u64 = 2;
+
+/// Side of the cells in which samples are counted, m.
+const CELL_M: f64 = 0.1;
+
+/// Distance from the board's centre within which each gripper must come, m: half a board.
+const HALF_BOARD_M: f64 = 0.25;
+
+/// Share of the places on either side of each axis that is left out: the rim of the reach.
+const RIM: f64 = 0.1;
+
+/// Height of the floor, m, and true if a bench was assumed.
+pub(super) fn floor_z_m(robot: &Robot) -> (f64, bool) {
+    let x_wl = robot.link_poses(&robot.positions(&[]));
+    let shapes = robot.links.iter().zip(&x_wl).flat_map(|(link, x_wl)| {
+        link.shapes.iter().map(move |placed| {
+            let x_ws = x_wl * placed.x_ls;
+            x_ws.translation.z - placed.shape.support_m(&(x_ws.rotation.inverse() * -Vector3::z()))
+        })
+    });
+    let lowest_m = shapes.fold(f64::INFINITY, f64::min);
+    let lowest_m = if lowest_m.is_finite() { lowest_m } else { 0.0 };
+    let shoulders: Vec<f64> = chains(robot).map(|chain| chain.shoulder_w().z).collect();
+    let shoulder_m = shoulders.iter().sum::<f64>() / shoulders.len().max(1) as f64;
+    let is_on_bench = shoulder_m - lowest_m < BENCH_SHOULDER_M;
+    let floor_m = if is_on_bench { lowest_m.min(robot.x_wr.translation.z) - BENCH_M } else { lowest_m };
+    ((floor_m * 1e3).round() / 1e3, is_on_bench)
+}
+
+fn chains(robot: &Robot) -> impl Iterator<Item = Chain> {
+    (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0))
+}
+
+/// A box of places in front of the robot, at a person's working height, that all grippers come near; `None` if there are none.
+pub(super) fn search_box(robot: &Robot) -> Option<SearchBox> {
+    let mut random = Pcg64::new(SEED.into(), 0);
+    let chains: Vec<Chain> = chains(robot).collect();
+    let grasps: Vec<Vec<Vector3<f64>>> = chains.iter().map(|chain| samples_w(chain, &mut random)).collect();
+    let front_m = chains.iter().map(|chain| chain.shoulder_w().x).fold(f64::NEG_INFINITY, f64::max);
+    let [low_z, high_z] = WORK_HEIGHT_M.map(|height_m| robot.floor_z_m + height_m);
+    let near = |place: &Vector3<f64>| {
+        grasps.iter().all(|points| points.iter().any(|point| (point - place).norm() < HALF_BOARD_M))
+    };
+    let mut places: Vec<Vector3<f64>> = Vec::new();
+    for point in &grasps[0] {
+        let place = point.map(|v| (v / CELL_M).round() * CELL_M);
+        let is_in_front = place.x >= front_m + CELL_M;
+        if is_in_front && (low_z..=high_z).contains(&place.z) && !places.contains(&place) && near(&place) {
+            places.push(place);
+        }
+    }
+    let range = |axis: usize| {
+        let mut values: Vec<f64> = places.iter().map(|place| place[axis]).collect();
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        let at = |share: f64| values[(share * last as f64).round() as usize];
+        let [low, high] = [at(RIM) - CELL_M / 2.0, at(1.0 - RIM) + CELL_M / 2.0];
+        Some([low, high].map(|v| (v * 1e3).round() / 1e3))
+    };
+    Some(SearchBox { x_m: range(0)?, y_m: range(1)?, z_m: range(2)? })
+}
+
+/// Where the gripper is in random postures, W.
+fn samples_w(chain: &Chain, random: &mut Pcg64) -> Vec<Vector3<f64>> {
+    let mut draw = || {
+        let limits = chain.lower().iter().zip(chain.upper());
+        let q_rad: Vec<f64> = limits.map(|(low, high)| low + (high - low) * random.random::<f64>()).collect();
+        chain.gripper_pose(&q_rad).translation.vector
+    };
+    (0..SAMPLES).map(|_| draw()).collect()
+}
