@@ -43,8 +43,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-pub use args::{Cli, Command};
 use args::RobotCommand;
+pub use args::{Cli, Command};
 pub use exit::Exit;
 
 /// Parses this process's arguments and runs the command.

@@ -21,14 +21,10 @@ const OPENING_SHARE: f64 = 0.8;
 
 /// Writes a description, and a scenario if one is asked for.
 pub fn new(args: &RobotNewArgs) -> Result<Exit, CliError> {
-    let input =
-        SetupInput { urdf: args.urdf.clone(), srdf: args.srdf.clone(), packages: args.packages.clone() };
+    let input = SetupInput { urdf: args.urdf.clone(), srdf: args.srdf.clone(), packages: args.packages.clone() };
     let outputs = || std::iter::once(args.output.clone()).chain(args.scenario.clone());
     if let Some(path) = outputs().find(|path| path.exists() && !args.force) {
-        return Err(CliError::Machine(format!(
-            "failed to write {}: it exists; --force replaces it",
-            path.display()
-        )));
+        return Err(CliError::Machine(format!("failed to write {}: it exists; --force replaces it", path.display())));
     }
     inputs::protect(&[vec![input.urdf.clone()], input.srdf.iter().cloned().collect()].concat(), outputs())?;
     let folder = args.output.parent().unwrap_or(Path::new(""));

@@ -79,10 +79,12 @@ fn often(robot: &Robot) -> Vec<String> {
     let overlaps = Overlaps::of(robot);
     let percent = |share: f64| (100.0 * share).round();
     let mut lines = vec![format!("ok     {} % of random postures are free of overlaps", percent(overlaps.free))];
-    lines.extend(overlaps.shares.iter().filter(|(_, share)| *share >= OFTEN).take(MOST_PAIRS).map(|([a, b], share)| {
-        let [a, b] = [*a, *b].map(|link| &robot.links[link].name);
-        format!("note   {a} and {b} overlap in {} % of random postures", percent(*share))
-    }));
+    lines.extend(overlaps.shares.iter().filter(|(_, share)| *share >= OFTEN).take(MOST_PAIRS).map(
+        |([a, b], share)| {
+            let [a, b] = [*a, *b].map(|link| &robot.links[link].name);
+            format!("note   {a} and {b} overlap in {} % of random postures", percent(*share))
+        },
+    ));
     lines
 }
 

@@ -54,11 +54,7 @@ impl SearchDomain {
     /// reach is the shortest one's, from its first joint to the gripper.
     ///
     /// A box of the robot's description comes first.
-    pub fn of<'c>(
-        arms: impl Iterator<Item = &'c Chain> + Clone,
-        floor_z_m: f64,
-        given: Option<SearchBox>,
-    ) -> Self {
+    pub fn of<'c>(arms: impl Iterator<Item = &'c Chain> + Clone, floor_z_m: f64, given: Option<SearchBox>) -> Self {
         if let Some(SearchBox { x_m, y_m, z_m }) = given {
             return Self { x_m, y_m, z_m, facing_rad: FACING_RAD };
         }

@@ -41,6 +41,6 @@ mod tests;
 
 pub use encode::encode;
 pub use error::RecordError;
-pub use posture::encode_posture;
 pub use input::{Capsule, PersonShape, RecordingInput};
+pub use posture::encode_posture;
 pub use read::{Peaks, RecordedPhase, RecordedRun, RecordedSummary, read_run, read_summary};

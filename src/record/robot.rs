@@ -51,12 +51,7 @@ pub(super) fn log_posture(messages: &mut Messages, robot: &Robot, x_wl: &[Pose])
 }
 
 /// Logs the parts of a link: shapes on the link's entity, each mesh on one of its own.
-fn log_link(
-    messages: &mut Messages,
-    path: &EntityPath,
-    link: &Link,
-    parts: &[DrawnPart],
-) -> Result<(), RecordError> {
+fn log_link(messages: &mut Messages, path: &EntityPath, link: &Link, parts: &[DrawnPart]) -> Result<(), RecordError> {
     let shapes = parts.iter().filter_map(|part| match &part.form {
         DrawnForm::Shape(shape) => Some((part.x_lp, shape)),
         DrawnForm::Surface(_) => None,

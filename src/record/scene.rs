@@ -1,9 +1,7 @@
 //! The 3-D scene: robot, board, operation, person, tool, pads and forces.
 
 use nalgebra::{Point3, Vector3};
-use rerun::{
-    Arrows3D, Boxes3D, EntityPath, FillMode, LineStrips3D, Points3D, Transform3D, ViewCoordinates,
-};
+use rerun::{Arrows3D, Boxes3D, EntityPath, FillMode, LineStrips3D, Points3D, Transform3D, ViewCoordinates};
 
 use super::{
     crossings,
@@ -14,12 +12,10 @@ use super::{
     messages::Messages,
     palette, person, robot,
 };
-use crate::{
-    model::{
-        frames::Pose,
-        operation::{Operation, OperationKind},
-        trace::Sample,
-    },
+use crate::model::{
+    frames::Pose,
+    operation::{Operation, OperationKind},
+    trace::Sample,
 };
 
 /// Length of a force's arrow, m/N: 30 N are 0.12 m.

@@ -238,7 +238,11 @@ impl Chain {
         let frames = self.joint_frames(q_rad);
         let (axes_w, carried) = (self.axes_w(&frames), self.carried_w(&frames));
         let torques = self.joints.iter().zip(&axes_w).zip(&carried).map(|((joint, axis_w), carried)| {
-            if joint.slides { -axis_w.dot(&(GRAVITY_W * carried.mass_kg)) } else { -axis_w.dot(&carried.lever_kg_m.cross(&GRAVITY_W)) }
+            if joint.slides {
+                -axis_w.dot(&(GRAVITY_W * carried.mass_kg))
+            } else {
+                -axis_w.dot(&carried.lever_kg_m.cross(&GRAVITY_W))
+            }
         });
         DVector::from_iterator(self.dof(), torques)
     }

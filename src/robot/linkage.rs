@@ -61,7 +61,11 @@ impl Linkage {
             })?);
         }
         let drives = drives(robot, &chains).map_err(|found| {
-            format!("found {found} that move {} and {}, expected one, or one for each pad", name(pad_links[0]), name(pad_links[1]))
+            format!(
+                "found {found} that move {} and {}, expected one, or one for each pad",
+                name(pad_links[0]),
+                name(pad_links[1])
+            )
         })?;
         let mut linkage = Self { drives, carriers: [chains[0][0], chains[1][0]], pad_links, sides: [1.0, -1.0] };
         linkage.orient(robot, frame)?;
@@ -70,7 +74,8 @@ impl Linkage {
 
     /// Finds the sides of the pads and which end of each drive's range is open.
     fn orient(&mut self, robot: &Robot, frame: usize) -> Result<(), String> {
-        let y_m = [0, 1].map(|pad| super::assemble::mean_y(robot, self.pad_links[pad], &self.x_gl(robot, frame, 0.5)[pad]));
+        let y_m =
+            [0, 1].map(|pad| super::assemble::mean_y(robot, self.pad_links[pad], &self.x_gl(robot, frame, 0.5)[pad]));
         self.sides = y_m.map(f64::signum);
         if self.sides[0] == self.sides[1] {
             return Err("found both pads on one side of y_G = 0, expected one on either side".into());
@@ -98,7 +103,9 @@ impl Linkage {
         let shares = (0..SAMPLES).map(|sample| sample as f64 / (SAMPLES - 1) as f64);
         let gaps_m: Vec<f64> = shares.clone().map(|share| self.gap_m(robot, frame, share)).collect();
         if gaps_m.windows(2).any(|pair| pair[1] <= pair[0]) {
-            return Err("found pads whose gap does not grow over the whole range of the joint, expected an opening map".into());
+            return Err(
+                "found pads whose gap does not grow over the whole range of the joint, expected an opening map".into(),
+            );
         }
         let middle = self.x_gl(robot, frame, 0.5);
         let turned = |share: f64| {
@@ -241,7 +248,8 @@ fn drives(robot: &Robot, chains: &[Vec<usize>]) -> Result<Vec<Drive>, String> {
         leaders
     };
     let [first, second] = [leaders(&chains[0]), leaders(&chains[1])];
-    let (all, allowed) = if first == second { (first.clone(), 1) } else { ([first.clone(), second.clone()].concat(), 2) };
+    let (all, allowed) =
+        if first == second { (first.clone(), 1) } else { ([first.clone(), second.clone()].concat(), 2) };
     let one_each = first.len() == 1 && second.len() == 1;
     if !one_each || all.len() != allowed {
         let names: Vec<&str> = all.iter().map(|&joint| robot.joints[joint].name.as_str()).collect();

@@ -117,7 +117,6 @@ fn build<'a>(
     let decomposed: Vec<String> = description.decompose.iter().map(|name| name.get_ref().clone()).collect();
     let source_of_urdf = UrdfSource { file: &file, text: &text, packages: &packages, decomposed: &decomposed };
     let tree = urdf::read(&source_of_urdf, &mut faults);
-    let robot =
-        tree.and_then(|tree| assemble(name, source, &description, options, tree, &mut faults));
+    let robot = tree.and_then(|tree| assemble(name, source, &description, options, tree, &mut faults));
     robot.ok_or_else(|| faults.into_error())
 }

@@ -25,4 +25,6 @@ pub use linkage::Linkage;
 pub use load::BUILTIN;
 pub use mesh::{DrawnForm, DrawnPart, MeshPart};
 pub use packages::Packages;
-pub use tree::{Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Mimic, Pad, Robot, RobotOptions, SearchBox};
+pub use tree::{
+    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Mimic, Pad, Robot, RobotOptions, SearchBox,
+};

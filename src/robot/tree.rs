@@ -319,6 +319,16 @@ impl Robot {
         active
     }
 
+    /// For each link whether an arm or a gripper moves it.
+    pub fn moved_links(&self) -> Vec<bool> {
+        let active = self.active_joints();
+        let mut moves: Vec<bool> = Vec::with_capacity(self.links.len());
+        for link in &self.links {
+            moves.push(link.parent_joint.is_some_and(|joint| active[joint] || moves[self.joints[joint].parent_link]));
+        }
+        moves
+    }
+
     /// Adds a link without mass and shapes that is fixed to another, and returns its index.
     pub fn add_frame(&mut self, name: &str, parent_link: usize, x_pl: Pose) -> usize {
         let child_link = self.links.len();

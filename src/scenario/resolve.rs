@@ -7,7 +7,9 @@ use nalgebra::Vector3;
 use super::{
     InputError,
     check::Checker,
-    file::{GripSection, HumanSection, LimitsSection, ObjectSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
+    file::{
+        GripSection, HumanSection, LimitsSection, ObjectSection, OperationSection, PlaceKind, ScenarioFile, ToolSection,
+    },
     load_section::{self, check_load, check_uncertainty},
     material,
     robot_file::{load_robot, robot_parameters},

@@ -32,10 +32,7 @@ pub fn load_robot(
 
 /// With what a robot was loaded.
 pub fn options_of(robot: &RobotParameters) -> RobotOptions {
-    RobotOptions {
-        packages: robot.packages.iter().map(PathBuf::from).collect(),
-        posture: robot.posture.clone(),
-    }
+    RobotOptions { packages: robot.packages.iter().map(PathBuf::from).collect(), posture: robot.posture.clone() }
 }
 
 /// The parameters of a robot that results depend on.

@@ -53,7 +53,13 @@ pub(super) fn arms(robot: &Robot, effort: &[f64]) -> Vec<ArmDraft> {
             .enumerate()
             .map(|(place, effort)| {
                 let [first, last] = ASSUMED_EFFORT_NM;
-                if is_usable(&effort) { effort } else if place + 3 < count { first } else { last }
+                if is_usable(&effort) {
+                    effort
+                } else if place + 3 < count {
+                    first
+                } else {
+                    last
+                }
             })
             .collect();
         let stiffness = run.joints.iter().zip(&effort_nm).map(|(&joint, effort)| {
@@ -62,7 +68,15 @@ pub(super) fn arms(robot: &Robot, effort: &[f64]) -> Vec<ArmDraft> {
         });
         let stiffness_nm_rad: Vec<f64> = stiffness.map(|stiffness| stiffness.max(1.0)).collect();
         let damping = stiffness_nm_rad.iter().map(|stiffness| (stiffness * DAMPING_S * 10.0).round().max(1.0) / 10.0);
-        ArmDraft { damping_nm_s_rad: damping.collect(), name, run, hand, effort_nm, effort_is_assumed, stiffness_nm_rad }
+        ArmDraft {
+            damping_nm_s_rad: damping.collect(),
+            name,
+            run,
+            hand,
+            effort_nm,
+            effort_is_assumed,
+            stiffness_nm_rad,
+        }
     };
     named.into_iter().map(draft).collect()
 }

@@ -22,6 +22,9 @@ const CLAMP_PAD_M: f64 = 0.040;
 const CLAMP_OPENING_M: [f64; 2] = [0.0, 0.060];
 const CLAMP_AHEAD_M: f64 = 0.010;
 
+/// Largest distance of G from the centre of the pads at which an existing frame is taken for G, m.
+const NEAR_PADS_M: f64 = 0.03;
+
 /// Openings are written in steps of this size, m, inside what the joints allow.
 const OPENING_STEP_M: f64 = 1e-4;
 
@@ -56,10 +59,22 @@ pub(super) enum Fingers {
 pub(super) fn hand(robot: &Robot, run: &Run) -> Hand {
     let x_wl = robot.link_poses(&robot.positions(&[]));
     let scene = Scene { robot, run, x_wl: &x_wl };
-    if let Some(hand) = scene.prismatic() {
-        return hand;
+    let fingers = scene.prismatic().map_or_else(|| scene.linkage(), Ok);
+    fingers.unwrap_or_else(|remark| scene.clamp(remark)).with_frame_at_pads()
+}
+
+impl Hand {
+    /// The hand with G at the pads, if it is far from them: grasps are searched with G 20 to 60 mm inside the board's edge
+    /// (docs/method.md#25-edge-grasps).
+    fn with_frame_at_pads(mut self) -> Self {
+        let [x_m, z_m] = self.pad_centre_m;
+        if x_m.hypot(z_m) > NEAR_PADS_M {
+            let x_gp = Isometry3::translation(x_m, 0.0, z_m);
+            self.x_lg = Some(self.x_lg.map_or(x_gp, |x_lg| x_lg * x_gp));
+            self.pad_centre_m = [0.0; 2];
+        }
+        self
     }
-    scene.linkage().unwrap_or_else(|remark| scene.clamp(remark))
 }
 
 struct Scene<'a> {
@@ -112,7 +127,8 @@ impl Scene<'_> {
             let joint = &self.robot.joints[joint];
             (self.x_wl[joint.parent_link] * joint.x_pj).rotation * joint.axis_j.into_inner()
         };
-        let pairs = slides.iter().enumerate().flat_map(|(number, &a)| slides[number + 1..].iter().map(move |&b| [a, b]));
+        let pairs =
+            slides.iter().enumerate().flat_map(|(number, &a)| slides[number + 1..].iter().map(move |&b| [a, b]));
         let [first, second] = pairs.into_iter().find(|[a, b]| axis_w(*a).cross(&axis_w(*b)).norm() < SAME_DIRECTION)?;
         let palm_link = self.robot.joints[first].parent_link;
         let groups = [first, second].map(|joint| self.rigid_behind(joint));
@@ -259,12 +275,10 @@ impl Scene<'_> {
         // The pads as they are at the narrowest opening: as if G had moved to the link's pose at rest.
         let x_wg = [0, 1].map(|pad| self.x_wl[links[pad]] * x_gl[pad].inverse());
         let sides_swapped = (x_gl[0].translation.y) < x_gl[1].translation.y;
-        let (links, x_wg) =
-            if sides_swapped { ([links[1], links[0]], [x_wg[1], x_wg[0]]) } else { (links, x_wg) };
+        let (links, x_wg) = if sides_swapped { ([links[1], links[0]], [x_wg[1], x_wg[0]]) } else { (links, x_wg) };
         let (pad_size_m, pad_centre_m) = self.pads(links, x_wg);
         let fingers = Fingers::Linkage(links);
-        let hand =
-            Hand { frame_link, x_lg, palm_link, fingers, opening_m, pad_size_m, pad_centre_m, remark: None };
+        let hand = Hand { frame_link, x_lg, palm_link, fingers, opening_m, pad_size_m, pad_centre_m, remark: None };
         Ok((pad_centre_m[1], hand))
     }
 

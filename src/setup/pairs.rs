@@ -29,7 +29,7 @@ const OFTEN: f64 = 0.10;
 /// Why a pair may overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reason {
-    /// One joint moves one link against the other.
+    /// They overlap in a posture at least, and one joint moves one link against the other.
     Adjacent,
     /// They overlap in nearly all postures.
     Always,
@@ -45,12 +45,14 @@ impl Reason {
     /// For comments: `overlap in nearly all postures`.
     pub fn describe(self) -> &'static str {
         match self {
-            Self::Adjacent => "one joint moves one against the other",
+            Self::Adjacent => "neighbours: one joint moves one against the other",
             Self::Always => "overlap in nearly all of 2,000 random postures",
             Self::Often => {
                 "at most two joints apart, and overlap in over 10 % of random postures: shapes larger than their parts"
             }
-            Self::Middle => "overlap with the arms in the middle of their ranges: check that the parts do not touch there",
+            Self::Middle => {
+                "overlap with the arms in the middle of their ranges: check that the parts do not touch there"
+            }
             Self::Srdf => "disabled by the SRDF",
         }
     }
@@ -96,13 +98,11 @@ pub(super) fn allowed(robot: &Robot, disabled: Option<&[[String; 2]]>) -> Vec<Al
             }
         }
     }
-    let adjacent = adjacent(robot);
-    for links in model.link_pairs().into_iter().filter(|links| adjacent.contains(links)) {
-        reasons.entry(links).or_insert(Reason::Adjacent);
-    }
-    let near = apart(robot, 2);
+    let (adjacent, near) = (adjacent(robot), apart(robot, 2));
     for (links, share) in overlaps(robot, &model).shares {
-        if share >= ALWAYS {
+        if adjacent.contains(&links) {
+            reasons.entry(links).or_insert(Reason::Adjacent);
+        } else if share >= ALWAYS {
             reasons.entry(links).or_insert(Reason::Always);
         } else if share >= OFTEN && near.contains(&links) {
             reasons.entry(links).or_insert(Reason::Often);
@@ -194,7 +194,8 @@ fn overlaps(robot: &Robot, model: &CollisionModel) -> Overlaps {
 fn adjacent(robot: &Robot) -> BTreeSet<[usize; 2]> {
     let mut pairs = apart(robot, 1);
     let carriers = active_carriers(robot);
-    let carried = |joint: usize| (0..robot.links.len()).filter(|&link| carriers[link] == Some(joint)).collect::<Vec<_>>();
+    let carried =
+        |joint: usize| (0..robot.links.len()).filter(|&link| carriers[link] == Some(joint)).collect::<Vec<_>>();
     for arm in &robot.arms {
         let [first, second] = arm.gripper.fingers.each_ref().map(|finger| carried(finger.joint));
         pairs.extend(first.iter().flat_map(|&a| second.iter().map(move |&b| [a.min(b), a.max(b)])));
@@ -207,9 +208,10 @@ fn active_carriers(robot: &Robot) -> Vec<Option<usize>> {
     let active = robot.active_joints();
     let mut carriers: Vec<Option<usize>> = Vec::with_capacity(robot.links.len());
     for link in &robot.links {
-        carriers.push(link.parent_joint.and_then(|joint| {
-            if active[joint] { Some(joint) } else { carriers[robot.joints[joint].parent_link] }
-        }));
+        carriers.push(
+            link.parent_joint
+                .and_then(|joint| if active[joint] { Some(joint) } else { carriers[robot.joints[joint].parent_link] }),
+        );
     }
     carriers
 }

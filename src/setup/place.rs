@@ -1,5 +1,7 @@
 //! The height of the floor, and where boards can be held, from samples of the arms' reach.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -30,21 +32,28 @@ const HALF_BOARD_M: f64 = 0.25;
 /// Share of the places on either side of each axis that is left out: the rim of the reach.
 const RIM: f64 = 0.1;
 
-/// Height of the floor, m, and true if a bench was assumed.
+/// Distance of the board in front of the shoulders, and to the side of their middle, as shares of the reach
+/// (docs/method.md#36-search-domain).
+const AHEAD: [f64; 2] = [0.20, 0.60];
+const ASIDE: f64 = 0.25;
+
+/// Height of the floor, m, and true if a bench was assumed. It is below the links that stand still.
 pub(super) fn floor_z_m(robot: &Robot) -> (f64, bool) {
     let x_wl = robot.link_poses(&robot.positions(&[]));
-    let shapes = robot.links.iter().zip(&x_wl).flat_map(|(link, x_wl)| {
+    let moves = robot.moved_links();
+    let fixed = robot.links.iter().zip(&x_wl).zip(&moves).filter(|(_, moves)| !**moves).map(|(link, _)| link);
+    let shapes = fixed.flat_map(|(link, x_wl)| {
         link.shapes.iter().map(move |placed| {
             let x_ws = x_wl * placed.x_ls;
             x_ws.translation.z - placed.shape.support_m(&(x_ws.rotation.inverse() * -Vector3::z()))
         })
     });
-    let lowest_m = shapes.fold(f64::INFINITY, f64::min);
-    let lowest_m = if lowest_m.is_finite() { lowest_m } else { 0.0 };
+    let lowest_m = shapes.fold(robot.x_wr.translation.z, f64::min);
     let shoulders: Vec<f64> = chains(robot).map(|chain| chain.shoulder_w().z).collect();
     let shoulder_m = shoulders.iter().sum::<f64>() / shoulders.len().max(1) as f64;
     let is_on_bench = shoulder_m - lowest_m < BENCH_SHOULDER_M;
-    let floor_m = if is_on_bench { lowest_m.min(robot.x_wr.translation.z) - BENCH_M } else { lowest_m };
+    // A bench is under the root link; what reaches below it hangs over its edge.
+    let floor_m = if is_on_bench { robot.x_wr.translation.z - BENCH_M } else { lowest_m };
     ((floor_m * 1e3).round() / 1e3, is_on_bench)
 }
 
@@ -57,19 +66,26 @@ pub(super) fn search_box(robot: &Robot) -> Option<SearchBox> {
     let mut random = Pcg64::new(SEED.into(), 0);
     let chains: Vec<Chain> = chains(robot).collect();
     let grasps: Vec<Vec<Vector3<f64>>> = chains.iter().map(|chain| samples_w(chain, &mut random)).collect();
-    let front_m = chains.iter().map(|chain| chain.shoulder_w().x).fold(f64::NEG_INFINITY, f64::max);
-    let [low_z, high_z] = WORK_HEIGHT_M.map(|height_m| robot.floor_z_m + height_m);
+    let reach_m = chains.iter().map(Chain::reach_m).fold(f64::INFINITY, f64::min);
+    let shoulders_m = chains.iter().map(Chain::shoulder_w).sum::<Vector3<f64>>() / chains.len() as f64;
+    let low = Vector3::new(
+        shoulders_m.x + AHEAD[0] * reach_m,
+        shoulders_m.y - ASIDE * reach_m,
+        robot.floor_z_m + WORK_HEIGHT_M[0],
+    );
+    let high = Vector3::new(
+        shoulders_m.x + AHEAD[1] * reach_m,
+        shoulders_m.y + ASIDE * reach_m,
+        robot.floor_z_m + WORK_HEIGHT_M[1],
+    );
+    let is_inside = |place: &Vector3<f64>| (0..3).all(|axis| (low[axis]..=high[axis]).contains(&place[axis]));
     let near = |place: &Vector3<f64>| {
         grasps.iter().all(|points| points.iter().any(|point| (point - place).norm() < HALF_BOARD_M))
     };
-    let mut places: Vec<Vector3<f64>> = Vec::new();
-    for point in &grasps[0] {
-        let place = point.map(|v| (v / CELL_M).round() * CELL_M);
-        let is_in_front = place.x >= front_m + CELL_M;
-        if is_in_front && (low_z..=high_z).contains(&place.z) && !places.contains(&place) && near(&place) {
-            places.push(place);
-        }
-    }
+    let cells = grasps.iter().flatten().map(|point| point.map(|v| (v / CELL_M).round() as i32));
+    let cells: BTreeSet<[i32; 3]> = cells.map(<[i32; 3]>::from).collect();
+    let places = cells.into_iter().map(|cell| Vector3::from(cell.map(|number| f64::from(number) * CELL_M)));
+    let places: Vec<Vector3<f64>> = places.filter(is_inside).filter(near).collect();
     let range = |axis: usize| {
         let mut values: Vec<f64> = places.iter().map(|place| place[axis]).collect();
         values.sort_by(f64::total_cmp);

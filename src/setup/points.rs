@@ -16,11 +16,7 @@ const MOST_FIXED_LINKS: usize = 6;
 
 /// The points of a robot.
 pub(super) fn body_points(robot: &Robot) -> Vec<BodyPoint> {
-    let active = robot.active_joints();
-    let mut moves: Vec<bool> = Vec::with_capacity(robot.links.len());
-    for link in &robot.links {
-        moves.push(link.parent_joint.is_some_and(|joint| active[joint] || moves[robot.joints[joint].parent_link]));
-    }
+    let moves = robot.moved_links();
     let surfaces: Vec<Vec<Point3<f64>>> = (0..robot.links.len()).map(|link| surface_l(robot, link)).collect();
     let mut fixed: Vec<usize> =
         (0..robot.links.len()).filter(|&link| !moves[link] && !surfaces[link].is_empty()).collect();

@@ -99,7 +99,13 @@ pub(super) fn names(robot: &Robot, runs: &[Run]) -> Vec<String> {
         };
         let (left, right) = (count(["left", "_l_", "_la_", "_lh_"]), count(["right", "_r_", "_ra_", "_rh_"]));
         let all = run.joints.len();
-        if 2 * left > all { Some("left") } else if 2 * right > all { Some("right") } else { None }
+        if 2 * left > all {
+            Some("left")
+        } else if 2 * right > all {
+            Some("right")
+        } else {
+            None
+        }
     };
     let sides: Vec<_> = runs.iter().map(side).collect();
     let is_unique = |name: &str| sides.iter().filter(|side| **side == Some(name)).count() == 1;

@@ -38,7 +38,8 @@ pub(super) fn description(robot: &Robot, names: &Names<'_>, arms: &[ArmDraft], r
     );
     let _ = writeln!(text, "format = 1\nurdf = {}", quoted(names.urdf));
     if !names.packages.is_empty() {
-        let _ = writeln!(text, "# Folders that contain the packages of the meshes.\npackages = {}", list(names.packages));
+        let _ =
+            writeln!(text, "# Folders that contain the packages of the meshes.\npackages = {}", list(names.packages));
     }
     let (floor_z_m, on_bench) = rest.floor_z_m;
     let why = if on_bench { "ASSUMED: the robot stands on a bench of 0.8 m" } else { "under the robot's lowest shape" };
@@ -155,7 +156,10 @@ fn gripper(text: &mut String, robot: &Robot, arm: &ArmDraft) {
     let _ = writeln!(text, "frame_link = {}", name(hand.frame_link));
     if let Some(x_lg) = &hand.x_lg {
         let [xyz, rpy] = frame_keys(x_lg);
-        let _ = writeln!(text, "# The frame G: z out of the hand, opening along y.\nframe_xyz_m = {xyz:?}\nframe_rpy_deg = {rpy:?}");
+        let _ = writeln!(
+            text,
+            "# The frame G: z out of the hand, opening along y.\nframe_xyz_m = {xyz:?}\nframe_rpy_deg = {rpy:?}"
+        );
     }
     let _ = writeln!(text, "palm_link = {}", name(hand.palm_link));
     let pads = if hand.remark.is_some() { "ASSUMED" } else { "guessed from the shapes: measure the face that touches" };

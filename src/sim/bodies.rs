@@ -199,7 +199,15 @@ mod tests {
     fn box_link(mass_kg: f64, [x, y, z]: [f64; 3], com_l: Vector3<f64>) -> Link {
         let diagonal = Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y) * (mass_kg / 12.0);
         let inertia_l = Matrix3::from_diagonal(&diagonal);
-        Link { name: "box".into(), parent_joint: None, mass_kg, com_l, inertia_l, shapes: Vec::new(), visuals: Vec::new() }
+        Link {
+            name: "box".into(),
+            parent_joint: None,
+            mass_kg,
+            com_l,
+            inertia_l,
+            shapes: Vec::new(),
+            visuals: Vec::new(),
+        }
     }
 
     #[test]

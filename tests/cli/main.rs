@@ -14,5 +14,6 @@ mod margin_and_export;
 mod messages;
 mod reports;
 mod reproduce;
+mod robots;
 mod scenarios;
 mod schemas;

@@ -10,3 +10,4 @@ mod inverse_kinematics;
 mod mechanisms;
 mod reference;
 mod self_motion;
+mod setup;

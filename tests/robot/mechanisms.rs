@@ -203,7 +203,10 @@ proptest! {
 fn a_gripper_that_is_no_parallel_jaw_is_refused() {
     let turning = urdf().replace("joint=\"left\" multiplier=\"-1\"", "joint=\"left\" multiplier=\"-0.5\"");
     let error = load_with(&description(LINKAGE), &turning, &RobotOptions::default()).unwrap_err();
-    assert!(error.contains("fingers: found pads that turn by 11 degrees as the gripper opens, expected at most 2"), "{error}");
+    assert!(
+        error.contains("fingers: found pads that turn by 11 degrees as the gripper opens, expected at most 2"),
+        "{error}"
+    );
     let alone = LINKAGE.replace("right_tip", "palm");
     let error = load(&description(&alone)).unwrap_err();
     assert!(error.contains("fingers: found palm, expected a link with collision geometry"), "{error}");
@@ -253,7 +256,8 @@ fn all_faults_come_at_once() {
 
 /// A binary STL file of a box whose header begins with `solid`, as some vendors' do.
 fn stl_of_box(half_m: [f32; 3], offset_m: f32) -> Vec<u8> {
-    let corner = |bits: usize| [0, 1, 2].map(|axis| half_m[axis] * if bits >> axis & 1 == 1 { 1.0 } else { -1.0 } + offset_m);
+    let corner =
+        |bits: usize| [0, 1, 2].map(|axis| half_m[axis] * if bits >> axis & 1 == 1 { 1.0 } else { -1.0 } + offset_m);
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let mut bytes = b"solid of a vendor".to_vec();
     bytes.resize(80, b' ');
@@ -320,7 +324,8 @@ fn a_slightly_indefinite_inertia_is_mended_with_a_note() {
 #[test]
 fn a_xacro_is_told_how_to_be_expanded() {
     let xacro = urdf().replace("<robot name", "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name");
-    let parts = xacro.replacen("<joint name=\"lift\"", "<xacro:macro name=\"lift\"/><!--", 1).replacen("</joint>", "-->", 1);
+    let parts =
+        xacro.replacen("<joint name=\"lift\"", "<xacro:macro name=\"lift\"/><!--", 1).replacen("</joint>", "-->", 1);
     let error = load_with(&description(LINKAGE), &parts, &RobotOptions::default()).unwrap_err();
     assert!(error.contains("found 2 links that no joint carries, base, column"), "{error}");
     assert!(error.contains("expand the xacro first: `xacro FILE.xacro -o robot.urdf`"), "{error}");
@@ -333,5 +338,8 @@ fn joints_that_follow_in_a_circle_are_refused() {
     assert!(error.contains("joint cable: found joints that mimic each other in a circle"), "{error}");
     let led = urdf().replace("joint=\"lift\" multiplier=\"0.5\"", "joint=\"rail\" multiplier=\"0.5\"");
     let error = load_with(&description(LINKAGE), &led, &RobotOptions::default()).unwrap_err();
-    assert!(error.contains("joints: found cable, which mimics one of them, expected joints of an arm that move no other"), "{error}");
+    assert!(
+        error.contains("joints: found cable, which mimics one of them, expected joints of an arm that move no other"),
+        "{error}"
+    );
 }

@@ -165,8 +165,11 @@ impl Assembler<'_> {
             let of = |a: f64, b: f64| JAW_MASS_KG * (a * a + b * b) / 12.0;
             let jaw = &mut self.robot.links[link];
             (jaw.mass_kg, jaw.com_l) = (JAW_MASS_KG, centre);
-            jaw.inertia_l =
-                Matrix3::from_diagonal(&Vector3::new(of(sides[1], sides[2]), of(sides[0], sides[2]), of(sides[0], sides[1])));
+            jaw.inertia_l = Matrix3::from_diagonal(&Vector3::new(
+                of(sides[1], sides[2]),
+                of(sides[0], sides[2]),
+                of(sides[0], sides[1]),
+            ));
             let x_ls = Isometry3::from(nalgebra::Translation3::from(centre));
             jaw.shapes.push(PlacedShape { x_ls, shape: Shape::Box { half_m }, rgba: JAW_RGBA });
             let joint = self.robot.links[link].parent_joint.unwrap_or_default();
@@ -318,8 +321,10 @@ impl Assembler<'_> {
         let x_gl = x_gw * hand.x_wl[link];
         let axis_g = (x_gw * hand.x_wl[hand.palm_link] * joint.x_pj) * joint.axis_j;
         if axis_g.xz().norm() > AXIS_TOLERANCE {
-            let found =
-                format!("{} along ({:.4}, {:.4}, {:.4}) of the gripper's frame", joint.name, axis_g.x, axis_g.y, axis_g.z);
+            let found = format!(
+                "{} along ({:.4}, {:.4}, {:.4}) of the gripper's frame",
+                joint.name, axis_g.x, axis_g.y, axis_g.z
+            );
             let expected = "an axis along its y; frame_rpy_deg turns the frame of frame_link";
             self.fault(name.span(), "joint", found, expected);
             return None;

@@ -88,7 +88,14 @@ impl Assembler<'_> {
     }
 
     /// A check that adds a fault if it is not met.
-    fn check(&mut self, met: bool, at: Range<usize>, key: &str, found: impl fmt::Display, expected: &str) -> Option<()> {
+    fn check(
+        &mut self,
+        met: bool,
+        at: Range<usize>,
+        key: &str,
+        found: impl fmt::Display,
+        expected: &str,
+    ) -> Option<()> {
         if !met {
             self.fault(at, key, found, expected);
         }
@@ -107,7 +114,12 @@ impl Assembler<'_> {
         found
     }
 
-    fn finite<const N: usize>(&mut self, key: &str, numbers: &Spanned<Exactly<f64, N>>, unit: &str) -> Option<[f64; N]> {
+    fn finite<const N: usize>(
+        &mut self,
+        key: &str,
+        numbers: &Spanned<Exactly<f64, N>>,
+        unit: &str,
+    ) -> Option<[f64; N]> {
         let values = numbers.get_ref().0;
         let finite = values.iter().all(|value| value.is_finite());
         self.check(finite, numbers.span(), key, "a number that is not finite", unit)?;

@@ -124,7 +124,9 @@ impl Reader<'_> {
     fn mesh(&self, filename: &str, scale: Option<&urdf_rs::Vec3>) -> Result<MeshFile, String> {
         let scale = scale.map_or([1.0; 3], |scale| scale.0);
         if !scale.iter().all(|factor| factor.is_finite() && *factor != 0.0) {
-            return Err(format!("found the mesh {filename} with scale {scale:?}, expected finite factors other than 0"));
+            return Err(format!(
+                "found the mesh {filename} with scale {scale:?}, expected finite factors other than 0"
+            ));
         }
         let path = self.packages.resolve(filename).map_err(|problem| format!("mesh: {problem}"))?;
         Ok(MeshFile { path, scale })

@@ -149,8 +149,11 @@ impl Builder<'_> {
     /// Adds a link and its descendants; the recursion depth is that of the tree.
     fn add(&mut self, link: usize, parent_joint: Option<usize>, faults: &mut Collector) {
         let placed = self.tree.links.len();
-        let reader =
-            links::Reader { packages: self.source.packages, decomposed: self.source.decomposed, colours: &self.colours };
+        let reader = links::Reader {
+            packages: self.source.packages,
+            decomposed: self.source.decomposed,
+            colours: &self.colours,
+        };
         let read = reader.read(&self.robot.links[link], parent_joint);
         faults.extend(self.source.file, read.problems);
         self.tree.links.push(read.link);
