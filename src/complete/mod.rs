@@ -78,6 +78,23 @@ pub enum Completion {
     },
 }
 
+impl Completion {
+    /// The angles of each task with the first contact, as in [`Completion::Found`].
+    ///
+    /// # Errors
+    /// The index of the task whose pose is not reached, and what was found, in words.
+    pub fn reached(self) -> Result<(Vec<Vec<f64>>, Option<Violation>), (usize, String)> {
+        match self {
+            Self::Found { q_rad, contact } => Ok((q_rad, contact)),
+            Self::OutOfReach { task, distance_m, reach_m } => Err((
+                task,
+                format!("a gripper {distance_m:.3} m from the shoulder of an arm that reaches at most {reach_m:.3} m"),
+            )),
+            Self::NotFound { task } => Err((task, "a pose without an answer of the inverse kinematics".into())),
+        }
+    }
+}
+
 /// Finds the angles of a robot's arms.
 pub struct Completer<'a> {
     robot: &'a Robot,
@@ -140,6 +157,24 @@ impl<'a> Completer<'a> {
             || Completion::Found { q_rad: Vec::new(), contact: None },
             |(q_rad, contact)| Completion::Found { q_rad, contact: Some(contact) },
         )
+    }
+
+    /// As [`Completer::complete`]: the angles with the clearance; else those without a contact, else the nearest.
+    #[must_use]
+    pub fn complete_with_clearance(
+        &self,
+        tasks: &[ArmTask],
+        x_wo: &Pose,
+        person: &[PersonPart],
+        clearance_m: f64,
+        effort: Effort,
+    ) -> Completion {
+        match self.complete(tasks, x_wo, person, clearance_m, effort) {
+            Completion::Found { contact: Some(_), .. } if clearance_m > 0.0 => {
+                self.complete(tasks, x_wo, person, 0.0, effort)
+            }
+            completion => completion,
+        }
     }
 
     /// The answers of one arm, nearest to its seed first; not empty.

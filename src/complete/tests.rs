@@ -3,7 +3,7 @@ use std::path::Path;
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
 use super::*;
-use crate::{model::plan::Plan, scenario::read_plan};
+use crate::{human::BodyPart, model::plan::Plan, scenario::read_plan};
 
 fn plan() -> (Plan, Robot) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
@@ -58,28 +58,38 @@ fn the_grippers_are_where_they_are_asked_to_be() {
     }
 }
 
-/// The nearest answer without a contact, against all answers by hand: no other free one is nearer.
+/// A ball is where the nearest answer has its elbow. The angles that are found are free, and no other free answer is nearer.
 #[test]
 fn an_answer_with_a_contact_is_passed_over() {
     let (plan, robot) = plan();
     let completer = Completer::new(&robot, plan.object.size_m);
     let tasks = &tasks(&plan, &robot, |_| None)[..1];
     let Target::Gripper { x_wg, .. } = &tasks[0].target else { panic!("a pose") };
-    let middle_rad = middle_rad(&completer.chains[tasks[0].arm]);
+    let (chain, x_wo) = (&completer.chains[tasks[0].arm], plan.object.x_wo);
+    let complete = |ball: &[PersonPart]| found(completer.complete(tasks, &x_wo, ball, 0.0, Effort::THOROUGH));
+    let (nearest, contact) = complete(&[]);
+    assert_eq!(contact, None);
+    let elbow_w = chain.joint_frames(&nearest[0])[3].translation.vector.into();
+    let ball = [PersonPart {
+        name: BodyPart::Head,
+        p0_w: elbow_w,
+        p1_w: elbow_w,
+        radius_m: 0.1,
+        robot_clearance_m: 0.0,
+        board_clearance_m: None,
+    }];
+    let is_free = |q_rad: &[f64]| completer.contact(tasks, &[q_rad], &x_wo, &ball, 0.0).is_none();
+    assert!(!is_free(&nearest[0]));
+    let (other, contact) = complete(&ball);
+    assert!(contact.is_none() && is_free(&other[0]));
+    let middle_rad = middle_rad(chain);
     let squared = |q_rad: &[f64]| q_rad.iter().zip(&middle_rad).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-    let x_wo = plan.object.x_wo;
-    let mut passed_over = 0;
-    // So much clearance that some answers do not keep it, and in the end none does.
-    for clearance_m in [0.0, 0.02, 0.05, 0.08] {
-        let (q_rad, contact) = found(completer.complete(tasks, &x_wo, &[], clearance_m, Effort::THOROUGH));
-        let is_free = |q_rad: &[f64]| completer.contact(tasks, &[q_rad], &x_wo, &[], clearance_m).is_none();
-        let samples = completer.solvers[tasks[0].arm].samples(x_wg, Effort::THOROUGH.samples);
-        passed_over += usize::from(contact.is_none() && samples.iter().any(|q| squared(q) < squared(&q_rad[0])));
-        let nearest_free = samples.iter().filter(|q_rad| is_free(q_rad)).map(|q| squared(q)).min_by(f64::total_cmp);
-        assert_eq!(contact.is_none(), nearest_free.is_some());
-        assert!(nearest_free.is_none_or(|nearest| squared(&q_rad[0]) <= nearest));
-    }
-    assert!(passed_over > 0);
+    let samples = completer.solvers[tasks[0].arm].samples(x_wg, Effort::THOROUGH.samples);
+    assert!(samples.iter().filter(|q_rad| is_free(q_rad)).all(|q_rad| squared(q_rad) >= squared(&other[0])));
+    // Around a ball that fills the room there is no way: the nearest answer, and what it meets.
+    let (blocked, contact) = complete(&[PersonPart { radius_m: 2.0, ..ball[0] }]);
+    assert_eq!(blocked, nearest);
+    assert!(contact.is_some_and(|contact| contact.is_of_person()));
 }
 
 #[test]

@@ -19,7 +19,7 @@ use std::borrow::Cow;
 
 use nalgebra::Isometry3;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Serialize, de::Error as _};
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 pub use super::pose_form::{
     MatrixRecord, PoseForm, PoseRecord, RpyRecord, rotation_from_rows, rotation_from_rpy, rotation_from_xyzw,
@@ -31,7 +31,7 @@ pub type Pose = Isometry3<f64>;
 /// For `#[serde(with = "frames::pose")]`: writes a [`Pose`] as a [`PoseRecord`] and reads any
 /// [`PoseForm`].
 pub mod pose {
-    use serde::{Deserializer, Serializer};
+    use serde::Serializer;
 
     use super::*;
 
@@ -47,6 +47,15 @@ pub mod pose {
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Pose, D::Error> {
         Pose::try_from(PoseForm::deserialize(deserializer)?).map_err(D::Error::custom)
     }
+}
+
+/// For `#[serde(deserialize_with = "frames::optional_pose")]`: reads a pose from one of its forms, or none from `null`.
+///
+/// # Errors
+/// If the form is malformed or the pose is not rigid.
+pub fn optional_pose<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Pose>, D::Error> {
+    let form = Option::<PoseForm>::deserialize(deserializer)?;
+    form.map(Pose::try_from).transpose().map_err(D::Error::custom)
 }
 
 /// The JSON Schema of a wrench: an array of six numbers.
