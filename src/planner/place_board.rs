@@ -9,8 +9,8 @@ use crate::{
     robot::Robot,
 };
 
-/// Poses of the board that are tried. Two grasps at opposite edges are reached at about one in a hundred, at worse ones at one
-/// in a thousand.
+/// Poses of the board that are tried: hundreds of times as many as one needs to find two grasps at opposite edges of the default
+/// board, and some seconds if there is none.
 pub const BOARD_DRAWS: usize = 10_000;
 
 /// A board that is held.

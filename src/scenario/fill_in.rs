@@ -58,20 +58,20 @@ pub fn fill_in(
         None => board_pose(check, robot, &file, &facts, &mut notes)?,
     };
     let q_rad = angles(check, robot, &file, &facts, &x_wo, scenario, &mut notes)?;
-    let mut arms = Vec::with_capacity(facts.len());
-    for ((input, facts), q_rad) in file.arms.iter().zip(&facts).zip(q_rad) {
-        let x_og = facts.x_og.unwrap_or_else(|| {
-            notes.push(format!("the plan leaves out x_og of {}: it follows from q_rad", input.name));
-            x_wo.inverse() * chain(robot, &file, facts.index).gripper_pose(&q_rad)
-        });
-        arms.push(ArmHold {
-            name: input.name.clone(),
-            joints: joint_names(robot, facts.index),
-            q_rad,
-            x_og,
-            grip_force_n: input.grip_force_n.unwrap_or_else(|| grip_force_n(robot, input, facts, scenario, &mut notes)),
-        });
-    }
+    let hold = |((input, facts), q_rad): ((&ArmInput, &ArmFacts), Vec<f64>)| ArmHold {
+        name: input.name.clone(),
+        joints: joint_names(robot, facts.index),
+        x_og: facts.x_og.unwrap_or_else(|| x_wo.inverse() * chain(robot, &file, facts.index).gripper_pose(&q_rad)),
+        q_rad,
+        grip_force_n: input.grip_force_n.unwrap_or_else(|| default_grip_force_n(robot, facts.index, scenario)),
+    };
+    let arms: Vec<_> = file.arms.iter().zip(&facts).zip(q_rad).map(hold).collect();
+    notes.extend(left_out(&file, "x_og", |input| input.x_og.is_none(), "it follows from q_rad"));
+    let of_grip = match scenario {
+        Some(_) => "the scenario's grip.force_n",
+        None => "the most that the gripper gives",
+    };
+    notes.extend(left_out(&file, "grip_force_n", |input| input.grip_force_n.is_none(), of_grip));
     let PlanFile { format, name, robot, operation, object, human, comfort, stability, clearance, planner, .. } = file;
     let object = PlacedObject { size_m: object.size_m, mass_kg: object.mass_kg, x_wo };
     let (scenario, benchdog) = (own, file.benchdog);
@@ -198,7 +198,7 @@ fn board_pose(
 ) -> Result<Pose, InputError> {
     for (input, facts) in file.arms.iter().zip(facts) {
         if let (Some(q_rad), Some(x_og)) = (&facts.q_rad, &facts.x_og) {
-            notes.push(format!("the plan leaves out x_wo: it follows from q_rad and x_og of {}", input.name));
+            notes.push(format!("the plan's file leaves out x_wo: it follows from q_rad and x_og of {}", input.name));
             return Ok(chain(robot, file, facts.index).gripper_pose(q_rad) * x_og.inverse());
         }
     }
@@ -240,7 +240,7 @@ fn angles(
             check.value(&format!("arms[{task}].x_og"), found, expected)
         },
     )?;
-    notes.push(angles_note(file, facts, contact.is_none()));
+    notes.extend(angles_note(file, contact.is_none()));
     Ok(q_rad)
 }
 
@@ -276,35 +276,25 @@ fn person_parts(posture: &HumanPosture, file: &PlanFile, scenario: Option<&Scena
     human.capsules_w(&posture.x_wb, &posture.q_rad).map(PersonPart::from).to_vec()
 }
 
-fn angles_note(file: &PlanFile, facts: &[ArmFacts], is_free: bool) -> String {
-    let left_out = || file.arms.iter().zip(facts).filter(|(_, facts)| facts.q_rad.is_none());
-    let names: Vec<_> = left_out().map(|(input, _)| input.name.as_str()).collect();
-    let near = if left_out().all(|(_, facts)| facts.seed_rad.is_some()) {
-        "seed_rad"
-    } else if left_out().all(|(_, facts)| facts.seed_rad.is_none()) {
-        "the middle of the joint ranges"
-    } else {
-        "seed_rad or the middle of the joint ranges"
+fn angles_note(file: &PlanFile, is_free: bool) -> Option<String> {
+    let seeded = file.arms.iter().filter(|input| input.q_rad.is_none()).map(|input| input.seed_rad.is_some());
+    let near = match seeded.clone().all(|seeded| seeded) {
+        true => "seed_rad",
+        false if seeded.clone().any(|seeded| seeded) => "seed_rad or the middle of the joint ranges",
+        false => "the middle of the joint ranges",
     };
     let of = if is_free { "of the answers without a contact" } else { "all answers have a contact; of them" };
-    format!(
-        "the plan leaves out q_rad of {}: filled in by inverse kinematics, {of} the nearest to {near}",
-        names.join(" and ")
-    )
+    let origin = format!("filled in by inverse kinematics, {of} the nearest to {near}");
+    left_out(file, "q_rad", |input| input.q_rad.is_none(), &origin)
 }
 
-/// The grip force of an arm whose file has none.
-fn grip_force_n(
-    robot: &Robot,
-    input: &ArmInput,
-    facts: &ArmFacts,
-    scenario: Option<&Scenario>,
-    notes: &mut Vec<String>,
-) -> f64 {
-    let (force_n, reason) = match scenario {
-        Some(scenario) => (scenario.grip.force_n, "the scenario's grip.force_n"),
-        None => (robot.arms[facts.index].gripper.max_force_n, "the most that its gripper gives"),
-    };
-    notes.push(format!("the plan leaves out grip_force_n of {}: {force_n} N, {reason}", input.name));
-    force_n
+/// A note about a key that some arms leave out; `None` if all have it.
+fn left_out(file: &PlanFile, key: &str, lacks: impl Fn(&ArmInput) -> bool, origin: &str) -> Option<String> {
+    let names: Vec<_> = file.arms.iter().filter(|input| lacks(input)).map(|input| input.name.as_str()).collect();
+    (!names.is_empty()).then(|| format!("the plan's file leaves out {key} of {}: {origin}", names.join(" and ")))
+}
+
+/// The grip force of an arm whose file has none, N.
+fn default_grip_force_n(robot: &Robot, arm: usize, scenario: Option<&Scenario>) -> f64 {
+    scenario.map_or(robot.arms[arm].gripper.max_force_n, |scenario| scenario.grip.force_n)
 }
