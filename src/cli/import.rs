@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     check::{CheckedPlan, fingers_across},
-    complete::{ArmTask, Completer, Effort, Target},
+    complete::{ArmTask, Completer, Effort, Reached, Target},
     model::{
         FORMAT,
         frames::Pose,
@@ -148,7 +148,7 @@ fn placement(
     let tasks: Vec<_> = holds.iter().map(task).collect();
     let completer = Completer::new(robot, size_m);
     let completion = completer.complete_with_clearance(&tasks, &x_wo, &[], clearance_m, Effort::THOROUGH);
-    let (q_rad, _) = completion.reached().map_err(|(task, found)| {
+    let Reached { q_rad, .. } = completion.reached().map_err(|(task, found)| {
         let Hold { arm, grasp, .. } = &holds[task];
         let expected = format!("a pose that the {} arm reaches within its joint limits", robot.arms[*arm].name);
         file.error(grasp, found, expected)

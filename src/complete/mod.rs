@@ -51,17 +51,21 @@ pub enum Target {
     },
 }
 
+/// The angles of all arms.
+#[derive(Clone, Debug)]
+pub struct Reached {
+    /// The angles of each task, rad.
+    pub q_rad: Vec<Vec<f64>>,
+    /// The first contact; `None` if the angles are free of contacts. With a contact, none of the combinations that were tested
+    /// was free, and this is the one nearest to the seeds.
+    pub contact: Option<Violation>,
+}
+
 /// The angles of all arms, or why there are none.
 #[derive(Clone, Debug)]
 pub enum Completion {
     /// Every arm reaches its pose.
-    Found {
-        /// The angles of each task, rad.
-        q_rad: Vec<Vec<f64>>,
-        /// The first contact; `None` if the angles are free of contacts. With a contact, none of the combinations that were
-        /// tested was free, and this is the one nearest to the seeds.
-        contact: Option<Violation>,
-    },
+    Found(Reached),
     /// A pose is farther from the arm's first joint than its reach.
     OutOfReach {
         /// Index of the task.
@@ -79,13 +83,13 @@ pub enum Completion {
 }
 
 impl Completion {
-    /// The angles of each task with the first contact, as in [`Completion::Found`].
+    /// The angles.
     ///
     /// # Errors
     /// The index of the task whose pose is not reached, and what was found, in words.
-    pub fn reached(self) -> Result<(Vec<Vec<f64>>, Option<Violation>), (usize, String)> {
+    pub fn reached(self) -> Result<Reached, (usize, String)> {
         match self {
-            Self::Found { q_rad, contact } => Ok((q_rad, contact)),
+            Self::Found(reached) => Ok(reached),
             Self::OutOfReach { task, distance_m, reach_m } => Err((
                 task,
                 format!("a gripper {distance_m:.3} m from the shoulder of an arm that reaches at most {reach_m:.3} m"),
@@ -142,21 +146,18 @@ impl<'a> Completer<'a> {
                 Err(_) => return Completion::NotFound { task: number },
             }
         }
-        let mut nearest: Option<(Vec<Vec<f64>>, Violation)> = None;
+        let mut nearest: Option<Reached> = None;
         for combination in Combinations::new(&answers).take(effort.combinations) {
             let contact = self.contact(tasks, &combination.q_rad, x_wo, person, clearance_m);
             let q_rad = || combination.q_rad.iter().map(|q_rad| q_rad.to_vec()).collect();
             match (contact, &nearest) {
-                (None, _) => return Completion::Found { q_rad: q_rad(), contact: None },
-                (Some(contact), None) => nearest = Some((q_rad(), contact)),
+                (None, _) => return Completion::Found(Reached { q_rad: q_rad(), contact: None }),
+                (Some(contact), None) => nearest = Some(Reached { q_rad: q_rad(), contact: Some(contact) }),
                 (Some(_), Some(_)) => {}
             }
         }
         // Every task has an answer, so there is a combination unless there are no tasks.
-        nearest.map_or_else(
-            || Completion::Found { q_rad: Vec::new(), contact: None },
-            |(q_rad, contact)| Completion::Found { q_rad, contact: Some(contact) },
-        )
+        Completion::Found(nearest.unwrap_or_else(|| Reached { q_rad: Vec::new(), contact: None }))
     }
 
     /// As [`Completer::complete`]: the angles with the clearance; else those without a contact, else the nearest.
@@ -170,7 +171,7 @@ impl<'a> Completer<'a> {
         effort: Effort,
     ) -> Completion {
         match self.complete(tasks, x_wo, person, clearance_m, effort) {
-            Completion::Found { contact: Some(_), .. } if clearance_m > 0.0 => {
+            Completion::Found(Reached { contact: Some(_), .. }) if clearance_m > 0.0 => {
                 self.complete(tasks, x_wo, person, 0.0, effort)
             }
             completion => completion,

@@ -20,7 +20,7 @@ fn tasks(plan: &Plan, robot: &Robot, seed_rad: impl Fn(&[f64]) -> Option<Vec<f64
 
 fn found(completion: Completion) -> (Vec<Vec<f64>>, Option<Violation>) {
     match completion {
-        Completion::Found { q_rad, contact } => (q_rad, contact),
+        Completion::Found(Reached { q_rad, contact }) => (q_rad, contact),
         other => panic!("{other:?}"),
     }
 }

@@ -4,7 +4,7 @@ use rand_pcg::Pcg64;
 
 use super::domain::SearchDomain;
 use crate::{
-    complete::{ArmTask, Completer, Completion, Effort, Target},
+    complete::{ArmTask, Completer, Completion, Effort, Reached, Target},
     model::frames::Pose,
     robot::Robot,
 };
@@ -47,7 +47,7 @@ pub fn place_board(
         };
         let tasks: Vec<_> = grasps.iter().map(task).collect();
         match completer.complete(&tasks, &x_wo, &[], clearance_m, Effort::QUICK) {
-            Completion::Found { q_rad, contact: None } => Some(PlacedBoard { x_wo, q_rad, draw }),
+            Completion::Found(Reached { q_rad, contact: None }) => Some(PlacedBoard { x_wo, q_rad, draw }),
             _ => None,
         }
     })

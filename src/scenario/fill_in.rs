@@ -9,7 +9,7 @@ use super::{
 use crate::{
     check::{BOARD_SIDE_M, Flaw},
     collision::PersonPart,
-    complete::{ArmTask, Completer, Completion, Effort, Target},
+    complete::{ArmTask, Completer, Completion, Effort, Reached, Target},
     human::{Human, default_tool},
     model::{
         frames::Pose,
@@ -234,12 +234,12 @@ fn angles(
             return Err(refused(check, &Flaw::BoardSide { axis, found_m, range_m }));
         }
     }
-    let (q_rad, contact) = completed(&Completer::new(robot, size_m), &tasks, file, x_wo, scenario).reached().map_err(
-        |(task, found)| {
+    let Reached { q_rad, contact } = completed(&Completer::new(robot, size_m), &tasks, file, x_wo, scenario)
+        .reached()
+        .map_err(|(task, found)| {
             let expected = format!("a pose that the {} arm reaches within its joint limits", file.arms[task].name);
             check.value(&format!("arms[{task}].x_og"), found, expected)
-        },
-    )?;
+        })?;
     notes.extend(angles_note(file, contact.is_none()));
     Ok(q_rad)
 }
@@ -260,7 +260,7 @@ fn completed(
         completer.complete_with_clearance(tasks, x_wo, person, clearance_mm * 1e-3, Effort::THOROUGH)
     };
     match attempt(&person) {
-        Completion::Found { contact: Some(_), .. } if !person.is_empty() => attempt(&[]),
+        Completion::Found(Reached { contact: Some(_), .. }) if !person.is_empty() => attempt(&[]),
         completion => completion,
     }
 }

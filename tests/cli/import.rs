@@ -86,10 +86,10 @@ fn grasps_of_moveit_are_judged() {
 #[test]
 fn a_pose_of_the_board_is_found() {
     let folder = files();
-    for (arms, verdicts) in [
-        (&["--arm", "left=grasp_0", "--arm", "right=grasp_2"][..], &["holds"][..]),
-        // One arm may be too weak for the load, but it is judged.
-        (&["--arm", "right=grasp_2"], &["holds", "slips", "deflects", "overloads"]),
+    for (arms, verdict) in [
+        (&["--arm", "left=grasp_0", "--arm", "right=grasp_2"][..], "holds"),
+        // The cut's 30 N act 0.2 m from the one pair of pads, which two times 30 N at a friction of 0.6 over 20 mm cannot resist.
+        (&["--arm", "right=grasp_2"], "pivots"),
     ] {
         let printed = import(folder.path(), &[&["isaac.yaml"], arms].concat());
         assert!(printed.contains("the first of the search domain that the arms reach"), "{printed}");
@@ -98,8 +98,7 @@ fn a_pose_of_the_board_is_found() {
         assert!(contents(folder.path()) == first, "the same files, the same plan");
         let output = benchdog(folder.path(), &["simulate", "plan.json", "--record", "never"]);
         assert!([Some(0), Some(1)].contains(&output.status.code()), "{}", stderr(&output));
-        let verdict = json(&folder.path().join("out/cut-rim/verdict.json"))["verdict"].clone();
-        assert!(verdicts.contains(&verdict.as_str().unwrap()), "{verdict}");
+        assert_eq!(json(&folder.path().join("out/cut-rim/verdict.json"))["verdict"], verdict);
         std::fs::remove_dir_all(folder.path().join("out")).unwrap();
     }
 }
@@ -168,7 +167,7 @@ fn what_cannot_be_imported() {
     );
     refused(
         &["isaac.yaml", "--arm", "left=grasp_0", "--board-pose", "5 0 0 0 0 0"],
-        "isaac.yaml:10: grasps.grasp_0: found a gripper 4.759 m from the shoulder of an arm that reaches at most 1.306 m, \
+        "isaac.yaml:10: grasps.grasp_0: found a gripper 4.730 m from the shoulder of an arm that reaches at most 1.414 m, \
          expected a pose that the left arm reaches within its joint limits",
     );
     refused(

@@ -306,7 +306,7 @@ fn malformed_or_unreachable_grasps() {
         ),
         (
             r#"{"xyz_m": [3, 0, 0], "rpy_rad": [1.5707963267948966, 0, 0]}"#,
-            "bad.json:7: arms[0].x_og: found a gripper 3.160 m from the shoulder of an arm that reaches at most 1.306 m, \
+            "bad.json:7: arms[0].x_og: found a gripper 3.293 m from the shoulder of an arm that reaches at most 1.414 m, \
              expected a pose that the left arm reaches within its joint limits"
                 .into(),
         ),
