@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Poses of the board that are tried: hundreds of times as many as one needs to find two grasps at opposite edges of the default
-/// board, and some seconds if there is none.
+/// board, and some seconds where no pose fits.
 pub const BOARD_DRAWS: usize = 10_000;
 
 /// A board that is held.
@@ -25,7 +25,7 @@ pub struct PlacedBoard {
 }
 
 /// The first of the search domain's poses, drawn with `seed`, at which every arm reaches its grasp and the robot keeps
-/// `clearance_m` from itself and from the board; `None` if there is none among [`BOARD_DRAWS`]. `grasps` are arms, as indices into
+/// `clearance_m` from itself and from the board; `None` if no one of [`BOARD_DRAWS`] is so. `grasps` are arms, as indices into
 /// [`Robot::arms`], with X_OG. The person and the load have no part in it.
 #[must_use]
 pub fn place_board(

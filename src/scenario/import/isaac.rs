@@ -7,7 +7,8 @@ use serde_saphyr::Spanned;
 
 use super::{
     super::{InputError, InputErrorKind},
-    ForeignGrasp, yaml,
+    grasp::ForeignGrasp,
+    yaml,
 };
 use crate::model::frames::PoseRecord;
 

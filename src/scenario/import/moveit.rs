@@ -7,7 +7,7 @@ use serde_saphyr::Spanned;
 
 use super::{
     super::InputError,
-    ForeignGrasp,
+    grasp::ForeignGrasp,
     yaml::{self, Xyz, Xyzw},
 };
 use crate::model::frames::PoseRecord;

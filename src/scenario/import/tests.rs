@@ -1,6 +1,7 @@
 use nalgebra::Vector3;
 
 use super::*;
+use crate::model::frames::Pose;
 
 const ISAAC: &str = "format: isaac_grasp
 format_version: 1.0
