@@ -111,13 +111,13 @@ fn errors_name_the_line_and_the_key() {
         ),
         (ISAAC, "0.2,", ".nan,", "grasps.yaml:8: non-finite float"),
         (ISAAC, "0.2, ", "", "grasps.yaml:8: "),
-        (ISAAC, "    orientation: {w: 0.0, xyz: [1.0, 0.0, 0.0]}\n", "", "grasps.yaml:7: missing field `orientation`"),
-        (ISAAC, "grasp_a", "grasp_b", "grasps.yaml:12: "),
+        (ISAAC, "    orientation: {w: 0.0, xyz: [1.0, 0.0, 0.0]}\n", "", "grasps.yaml:10: missing field `orientation`"),
+        (ISAAC, "grasp_a", "grasp_b", "grasps.yaml:12: duplicate mapping key: grasp_b"),
         (
             MOVEIT,
-            "id: ''",
-            "id: first",
-            "grasps.yaml:23: first.grasp_pose: found the name first again, expected every name once",
+            "---\nid: ''",
+            "---\nid: first",
+            "grasps.yaml:24: first.grasp_pose: found the name first again, expected every name once",
         ),
         (MOVEIT, "w: 0.0", "w: zero", "grasps.yaml:19: "),
         (

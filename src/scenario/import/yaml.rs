@@ -23,9 +23,10 @@ fn syntax(path: &Path, error: &Error) -> InputError {
     }
 }
 
-/// A message without the place, which the error states itself.
+/// A message without the place, which the error states itself, and without the crate's own options.
 fn first_sentence(message: &str) -> String {
     let message = message.lines().next().unwrap_or(message);
+    let message = message.split(", set DuplicateKeyPolicy").next().unwrap_or(message);
     message.split(" at line ").next().unwrap_or(message).trim_start_matches("error: ").to_owned()
 }
 
