@@ -10,6 +10,6 @@ mod flaw;
 mod posture;
 mod tolerances;
 
-pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan, Contact};
+pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan, Contact, fingers_across};
 pub use flaw::{Flaw, Flaws};
 pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, POSTURE_DEG, POSTURE_M, PoseTolerance};

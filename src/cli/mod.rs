@@ -11,6 +11,7 @@ mod export;
 mod finish;
 mod front;
 mod help;
+mod import;
 mod inputs;
 #[cfg(feature = "recording")]
 mod inspect;
@@ -68,6 +69,7 @@ pub fn main() -> ExitCode {
         Command::Schema(args) => schema::schema(args),
         Command::Margin(args) => margin::margin(args),
         Command::Export(args) => export::export(args),
+        Command::Import(args) => import::import(args),
         #[cfg(feature = "recording")]
         Command::Inspect(args) => inspect::inspect(args),
         #[cfg(feature = "recording")]

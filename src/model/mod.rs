@@ -11,6 +11,7 @@ mod omitted;
 pub mod operation;
 mod person;
 pub mod plan;
+mod pose_form;
 pub mod scenario;
 pub mod tool_part;
 pub mod trace;

@@ -288,7 +288,7 @@ pub struct OperationSection {
     /// For `wrench`: the wrench on the board about the tool tip, O axes, N and N m.
     pub wrench_o: Option<[f64; 6]>,
     /// For `wrench`: the tool's pose in O.
-    pub x_ot: Option<crate::model::frames::PoseRecord>,
+    pub x_ot: Option<crate::model::frames::PoseForm>,
 }
 
 /// `[limits]`.

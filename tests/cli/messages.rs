@@ -80,6 +80,7 @@ fn the_help_of_every_command() {
         "simulate",
         "margin",
         "export",
+        "import",
         "curve",
         "reproduce",
         "inspect",
