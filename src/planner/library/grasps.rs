@@ -135,7 +135,7 @@ pub fn draw_arm_grasp(
     Some(ArmGrasp { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
 }
 
-/// A grasp on an edge with the pads on the board whose pose X_OG is accepted.
+/// A grasp on an edge that fits the gripper and whose pose X_OG is accepted.
 pub fn draw_grasp(
     robot: &GraspingRobot,
     arm: &GraspingArm,
@@ -144,6 +144,6 @@ pub fn draw_grasp(
     random: &mut Pcg64,
 ) -> Option<EdgeGrasp> {
     (0..GRASP_ATTEMPTS)
-        .map(|_| domain::draw_grasp(edge, robot.size_m, random))
-        .find(|grasp| robot.pads_on_board(arm, grasp) && accepts(&grasp.x_og(robot.size_m)))
+        .map(|_| domain::draw_grasp(edge, robot.size_m, arm.depth_m, random))
+        .find(|grasp| robot.fits(arm, grasp) && accepts(&grasp.x_og(robot.size_m)))
 }

@@ -8,6 +8,7 @@ mod failures;
 mod grasp;
 mod grasping_robot;
 mod grasps;
+mod palm;
 mod postures;
 mod reach;
 mod resample;

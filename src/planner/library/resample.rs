@@ -175,7 +175,7 @@ mod tests {
                 let missed = arm.chain.gripper_pose(&own.q_rad).inverse() * (x_wo * own.grasp.x_og(robot.size_m));
                 // The tolerance of docs/method.md#34-constraints: 1e-6 m and rad.
                 assert!(missed.translation.vector.norm() < 1e-6 && missed.rotation.angle() < 1e-6);
-                assert!(robot.pads_on_board(arm, &own.grasp));
+                assert!(robot.fits(arm, &own.grasp));
             }
             let [left, right] = [0, 1].map(|arm: usize| arms[arm].grasp.edge);
             assert!(left == right || left == right.turned(2));
