@@ -6,8 +6,10 @@
 
 use nalgebra::Point3;
 use rand_pcg::Pcg64;
+use rayon::prelude::*;
 
 use super::{
+    board_grasps::grasps_of_board,
     failures::{DrawFailure, DrawFailures},
     grasp::{ArmGrasp, BoardGrasp},
     grasping_robot::{GraspingArm, GraspingRobot},
@@ -23,8 +25,8 @@ use crate::{
     planner::{
         domain::{self, draw_edge, draw_other_edge},
         params::library::{
-            COARSE_STRIDE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASP_ATTEMPTS, GRASPS, HOPELESS_SHARE,
-            SEED,
+            BOARDS_AT_ONCE, BOARDS_PER_GRASP, COARSE_STRIDE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS,
+            GRASP_ATTEMPTS, GRASPS, GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
         },
     },
     robot::Robot,
@@ -79,6 +81,9 @@ impl GraspLibrary {
 
 /// At most `wanted` grasps from a stream of random numbers, and what the other draws failed at.
 fn draw_entries(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+    if robot.arms.len() > 2 {
+        return draw_entries_by_board(robot, wanted, stream);
+    }
     let mut random = Pcg64::new(SEED, stream);
     let mut entries = Vec::with_capacity(wanted);
     let mut failures = DrawFailures::default();
@@ -98,8 +103,36 @@ fn max_draws(wanted: usize, found: usize) -> u64 {
     (DRAWS_PER_GRASP * if found == 0 { wanted / HOPELESS_SHARE } else { wanted }) as u64
 }
 
-fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry, DrawFailure> {
-    let (first, others) = robot.arms.split_first().ok_or(DrawFailure::NoArm)?;
+/// As [`draw_entries`] for more than two arms, whose single draws hardly ever fit together: grasps of all arms are drawn for
+/// each board. Every board has a random stream of its own.
+fn draw_entries_by_board(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+    let of_board = |number: usize| {
+        let mut random = Pcg64::new(SEED, (stream << 64) + number as u128 + 1);
+        let (_, x_wo) = draw_first(robot, &mut random)?;
+        grasps_of_board(robot, &x_wo, &mut random)
+    };
+    let mut entries = Vec::with_capacity(wanted);
+    let mut failures = DrawFailures::default();
+    let most = BOARDS_PER_GRASP * wanted;
+    for first in (0..most).step_by(BOARDS_AT_ONCE) {
+        if entries.len() >= wanted || (entries.is_empty() && first >= most / HOPELESS_SHARE) {
+            break;
+        }
+        let boards = first..most.min(first + BOARDS_AT_ONCE);
+        for found in boards.into_par_iter().map(of_board).collect::<Vec<_>>() {
+            match found {
+                Ok(found) => entries.extend(found.into_iter().take(GRASPS_PER_BOARD)),
+                Err(failure) => failures.count(failure),
+            }
+        }
+    }
+    entries.truncate(wanted);
+    (entries, failures)
+}
+
+/// A grasp of the first arm and the pose of the board that it holds.
+fn draw_first(robot: &GraspingRobot, random: &mut Pcg64) -> Result<(ArmGrasp, Pose), DrawFailure> {
+    let first = robot.arms.first().ok_or(DrawFailure::NoArm)?;
     let edge = draw_edge(random);
     let grasp = draw_grasp(robot, first, edge, |_| true, random).ok_or(DrawFailure::Pads { arm: 0 })?;
     let x_go = grasp.x_og(robot.size_m).inverse();
@@ -107,8 +140,14 @@ fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry,
     let (q_rad, x_wo) = (0..FIRST_ARM_ATTEMPTS)
         .find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))
         .ok_or(DrawFailure::Domain)?;
-    let mut arms = vec![ArmGrasp { grasp, q_rad }];
-    for (number, arm) in others.iter().enumerate() {
+    Ok((ArmGrasp { grasp, q_rad }, x_wo))
+}
+
+fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry, DrawFailure> {
+    let (first, x_wo) = draw_first(robot, random)?;
+    let edge = first.grasp.edge;
+    let mut arms = vec![first];
+    for (number, arm) in robot.arms.iter().skip(1).enumerate() {
         let edge = draw_other_edge(edge, random);
         let reached = draw_arm_grasp(robot, arm, edge, &x_wo, random);
         arms.push(reached.ok_or(DrawFailure::Reach { arm: number + 1 })?);

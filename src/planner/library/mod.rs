@@ -3,6 +3,7 @@
 //! Nothing here knows the task: a grasp library depends on the robot and the board's size alone, a posture map on the
 //! person, the tool and its load. Candidates are pairs of the two ([`super::screen`]).
 
+mod board_grasps;
 mod direction;
 mod failures;
 mod grasp;
