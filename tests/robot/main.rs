@@ -5,7 +5,9 @@ mod chains;
 mod common;
 
 mod collision;
+mod decomposed;
 mod description;
 mod inverse_kinematics;
 mod reference;
 mod self_motion;
+mod serial;
