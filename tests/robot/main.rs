@@ -3,6 +3,8 @@
 mod chains;
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/serial.rs"]
+mod serial;
 
 mod collision;
 mod decomposed;
@@ -10,4 +12,3 @@ mod description;
 mod inverse_kinematics;
 mod reference;
 mod self_motion;
-mod serial;

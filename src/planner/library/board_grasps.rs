@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// Collision-free grasps of a board at a pose: of two arms at most a few with one pattern, of more arms at most one for each
+/// Collision-free grasps of a board at a pose: at most a few with one pattern, and of more than two arms at most one for each
 /// grasp of the first arm. Without any, the test at which the board failed.
 pub fn grasps_of_board(
     robot: &GraspingRobot,
@@ -33,7 +33,8 @@ pub fn grasps_of_board(
     let mut combinations = Combinations::new(&reached);
     let mut entries: Vec<LibraryEntry> = Vec::new();
     let mut patterns = Vec::new();
-    let mut failure = DrawFailure::NoArm;
+    // Without any combination the second arm reaches no edge that matches the first one's.
+    let mut failure = DrawFailure::Reach { arm: 1 };
     while let Some(arms) = combinations.next() {
         let pattern = pattern(&arms);
         if patterns.iter().filter(|other| **other == pattern).count() >= RESAMPLED_PER_PATTERN {
@@ -159,4 +160,76 @@ impl<'a> Combinations<'a> {
 /// True if the second gripper of a plan may hold this edge beside the first.
 fn edges_match([first, second]: [Edge; 2]) -> bool {
     second == first || second == first.turned(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::model::grasp::EdgeGrasp;
+
+    /// The grasps of several arms: the edge of each, and its number as the depth.
+    fn reached(edges: &[Vec<usize>]) -> Vec<Vec<ArmGrasp>> {
+        let grasp = |(number, edge): (usize, &usize)| ArmGrasp {
+            grasp: EdgeGrasp {
+                edge: Edge::ALL[*edge],
+                along_m: 0.0,
+                depth_m: number as f64,
+                angle_rad: 0.0,
+                flipped: false,
+            },
+            q_rad: Vec::new(),
+        };
+        edges.iter().map(|edges| edges.iter().enumerate().map(grasp).collect()).collect()
+    }
+
+    proptest! {
+        /// Grasps that collide by themselves and in pairs are known only from tests of whole combinations. What passes is what a
+        /// test of every combination would pass, in the same order, and no pair is tested twice.
+        #[test]
+        fn combinations_are_those_without_a_colliding_part(
+            edges in prop::collection::vec(prop::collection::vec(0..4_usize, 1..6), 1..=4), seed in any::<u64>(),
+        ) {
+            let reached = reached(&edges);
+            // Drawn collisions of an arm's grasp (a = b), and of two arms' grasps.
+            let collides = |(a, i): (usize, usize), (b, j): (usize, usize)| {
+                let mixed = (((a * 8 + i) * 8 + b) * 8 + j) as u64;
+                seed.rotate_left(mixed as u32 % 61).wrapping_mul(mixed | 1) >> 61 == 0
+            };
+            let collision = |numbers: &[usize]| {
+                let own = |arm: usize| (arm, numbers[arm]);
+                let pairs = (0..numbers.len()).flat_map(|b| (0..=b).map(move |a| (a, b)));
+                pairs.into_iter().find(|&(a, b)| collides(own(a), own(b)))
+            };
+            let mut combinations = Combinations::new(&reached);
+            let (mut passed, mut tests) = (Vec::new(), 0);
+            while let Some(arms) = combinations.next() {
+                tests += 1;
+                let numbers: Vec<usize> = arms.iter().map(|arm| arm.grasp.depth_m as usize).collect();
+                match collision(&numbers) {
+                    None => {
+                        combinations.advance(numbers.len() - 1);
+                        passed.push(numbers);
+                    }
+                    Some((a, b)) if a == b => combinations.exclude(a),
+                    Some((a, b)) => combinations.exclude_pair([b, a]),
+                }
+            }
+            let mut every = vec![Vec::new()];
+            for grasps in &edges {
+                every = every.iter().flat_map(|numbers: &Vec<usize>| {
+                    (0..grasps.len()).map(move |number| [&numbers[..], &[number]].concat())
+                }).collect();
+            }
+            every.retain(|numbers| {
+                let edge = |arm: usize| Edge::ALL[edges[arm][numbers[arm]]];
+                (numbers.len() < 2 || edges_match([edge(0), edge(1)])) && collision(numbers).is_none()
+            });
+            let sizes: Vec<usize> = edges.iter().map(Vec::len).collect();
+            let pairs: usize = (0..sizes.len()).map(|b| sizes[b] * (1 + sizes[..b].iter().sum::<usize>())).sum();
+            prop_assert!(tests <= every.len() + pairs);
+            prop_assert_eq!(passed, every);
+        }
+    }
 }
