@@ -24,7 +24,7 @@ impl RankedSolutions {
         Self { solutions }
     }
 
-    /// All solutions that are known ([`InverseKinematics::all`]) of an arm with its gripper at `x_wg`, W. Empty if there is none.
+    /// All solutions that are known ([`InverseKinematics::all`]) of an arm with its gripper at `x_wg`, W. Empty without a solution.
     pub fn of_arm(arm: &InverseKinematics, x_wg: &Pose, starts: usize, cost: impl Fn(&[f64]) -> f64) -> Self {
         Self::new(arm.all(x_wg, starts), cost)
     }

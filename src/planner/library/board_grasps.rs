@@ -5,10 +5,11 @@ use std::collections::HashSet;
 use rand_pcg::Pcg64;
 
 use super::{
+    draws::draw_arm_grasp,
+    entry::LibraryEntry,
     failures::DrawFailure,
     grasp::{ArmGrasp, BoardGrasp, pattern},
     grasping_robot::{GraspingArm, GraspingRobot},
-    grasps::{LibraryEntry, draw_arm_grasp},
 };
 use crate::{
     collision::{Body, Violation},

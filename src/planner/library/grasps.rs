@@ -4,29 +4,25 @@
 //! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that size: the first
 //! arm's configuration and grasp are drawn, which gives the board's pose; inverse kinematics brings the other arms there.
 
-use nalgebra::Point3;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use super::{
     board_grasps::grasps_of_board,
+    draws::{draw_arm_grasp, draw_grasp},
+    entry::LibraryEntry,
     failures::{DrawFailure, DrawFailures},
     grasp::{ArmGrasp, BoardGrasp},
-    grasping_robot::{GraspingArm, GraspingRobot},
-    postures::Posture,
+    grasping_robot::GraspingRobot,
 };
 use crate::{
     collision::Violation,
-    comfort,
-    model::{
-        frames::Pose,
-        grasp::{Edge, EdgeGrasp},
-    },
+    model::frames::Pose,
     planner::{
-        domain::{self, draw_edge, draw_other_edge},
+        domain::{draw_edge, draw_other_edge},
         params::library::{
-            BOARDS_AT_ONCE, BOARDS_PER_GRASP, COARSE_STRIDE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS,
-            GRASP_ATTEMPTS, GRASPS, GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
+            BOARDS_AT_ONCE, BOARDS_PER_GRASP, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASPS,
+            GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
         },
     },
     robot::Robot,
@@ -40,27 +36,6 @@ pub struct GraspLibrary {
     pub entries: Vec<LibraryEntry>,
     /// What the draws failed at that gave no grasp.
     pub failures: DrawFailures,
-}
-
-/// A grasp of a library, with what screening asks about it.
-#[derive(Clone, Debug)]
-pub struct LibraryEntry {
-    pub grasp: BoardGrasp,
-    /// The robot's points of the peripersonal metric, W.
-    pub robot_points_w: Vec<Point3<f64>>,
-    /// Some of them, for a first ranking.
-    pub coarse_points_w: Vec<Point3<f64>>,
-    /// The posture that the board was put for; it responds to the grasp exactly.
-    pub posture: Option<Posture>,
-}
-
-impl LibraryEntry {
-    /// An entry from a grasp and the poses of the robot's links in it.
-    pub fn new(robot: &GraspingRobot, grasp: BoardGrasp, link_poses: &[Pose]) -> Self {
-        let robot_points_w = comfort::robot_points_w(&robot.robot, link_poses);
-        let coarse_points_w = robot_points_w.iter().step_by(COARSE_STRIDE).copied().collect();
-        Self { grasp, robot_points_w, coarse_points_w, posture: None }
-    }
 }
 
 impl GraspLibrary {
@@ -157,32 +132,4 @@ fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry,
         None => Ok(LibraryEntry::new(robot, BoardGrasp { x_wo, arms }, &link_poses)),
         Some(Violation { bodies, .. }) => Err(DrawFailure::Collision { bodies }),
     }
-}
-
-/// A grasp of one arm on an edge of a board at a known pose, with a configuration; `None` if no drawn grasp is reached.
-pub fn draw_arm_grasp(
-    robot: &GraspingRobot,
-    arm: &GraspingArm,
-    edge: Edge,
-    x_wo: &Pose,
-    random: &mut Pcg64,
-) -> Option<ArmGrasp> {
-    let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
-    let grasp = draw_grasp(robot, arm, edge, near, random)?;
-    let x_wg = x_wo * grasp.x_og(robot.size_m);
-    let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
-    Some(ArmGrasp { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
-}
-
-/// A grasp on an edge that fits the gripper and whose pose X_OG is accepted.
-pub fn draw_grasp(
-    robot: &GraspingRobot,
-    arm: &GraspingArm,
-    edge: Edge,
-    accepts: impl Fn(&Pose) -> bool,
-    random: &mut Pcg64,
-) -> Option<EdgeGrasp> {
-    (0..GRASP_ATTEMPTS)
-        .map(|_| domain::draw_grasp(edge, robot.size_m, arm.depth_m, random))
-        .find(|grasp| robot.fits(arm, grasp) && accepts(&grasp.x_og(robot.size_m)))
 }

@@ -5,6 +5,8 @@
 
 mod board_grasps;
 mod direction;
+mod draws;
+mod entry;
 mod failures;
 mod grasp;
 mod grasping_robot;
@@ -14,8 +16,10 @@ mod postures;
 mod reach;
 mod resample;
 
+pub use draws::draw_grasp;
+pub use entry::LibraryEntry;
 pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, largest_joint_difference_rad, pattern};
 pub use grasping_robot::{GraspingArm, GraspingRobot};
-pub use grasps::{GraspLibrary, LibraryEntry, draw_grasp};
+pub use grasps::GraspLibrary;
 pub use postures::{COARSE_POINTS, MEDIUM_POINTS, Posture, PostureLoad, PostureMap, posture_muscular, within_strength};
 pub use resample::{grasps_for, resample};

@@ -11,7 +11,7 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use super::{board_grasps::grasps_of_board, grasping_robot::GraspingRobot, grasps::LibraryEntry, postures::Posture};
+use super::{board_grasps::grasps_of_board, entry::LibraryEntry, grasping_robot::GraspingRobot, postures::Posture};
 use crate::{
     model::frames::Pose,
     planner::domain::{SearchDomain, uniform},

@@ -241,7 +241,7 @@ impl Kind {
 }
 
 impl Pair {
-    /// The pair among three axes; `None` if there is none or if all three are parallel.
+    /// The pair among three axes; `None` without one or if all three are parallel.
     fn of(axes: &[Axis]) -> Option<Self> {
         let [first, second, third] = [&axes[0], &axes[1], &axes[2]];
         let [before, after] = [first.is_parallel_to(second), second.is_parallel_to(third)];
