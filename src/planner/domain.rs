@@ -15,7 +15,7 @@ use crate::{
     robot::{Chain, Gripper, SearchBox},
 };
 
-/// Depth of the gripper's origin inside the edge, m (docs/method.md#25-edge-grasps).
+/// Depth of the gripper's origin inside the edge, m, of a gripper whose palm allows it (docs/method.md#25-edge-grasps).
 pub const DEPTH_M: [f64; 2] = [0.020, 0.060];
 /// Angle of the gripper in the board's plane, rad (docs/method.md#25-edge-grasps).
 pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
@@ -120,13 +120,13 @@ pub fn draw_other_edge(edge: Edge, random: &mut Pcg64) -> Edge {
     if random.random_bool(OPPOSITE_EDGE) { edge.turned(2) } else { edge }
 }
 
-/// A uniformly distributed grasp on an edge; its pads may lie partly off the board.
-pub fn draw_grasp(edge: Edge, size_m: [f64; 3], random: &mut Pcg64) -> EdgeGrasp {
+/// A uniformly distributed grasp on an edge with a depth in this range, m; its pads may lie partly off the board.
+pub fn draw_grasp(edge: Edge, size_m: [f64; 3], depth_m: [f64; 2], random: &mut Pcg64) -> EdgeGrasp {
     let (_, half_length_m) = edge.reach_and_half_length_m(size_m);
     EdgeGrasp {
         edge,
         along_m: uniform(random, -half_length_m, half_length_m),
-        depth_m: uniform(random, DEPTH_M[0], DEPTH_M[1]),
+        depth_m: uniform(random, depth_m[0], depth_m[1]),
         angle_rad: uniform(random, ANGLE_RAD[0], ANGLE_RAD[1]),
         flipped: random.random_bool(0.5),
     }

@@ -64,7 +64,8 @@ pub fn read(path: &Path, robot: Option<&Robot>, scenario: Option<&Scenario>) -> 
         Some(robot) if robot.description == file.robot => robot.at_gap(file.object.size_m[2]),
         _ => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            let options = scenario.or(file.scenario.as_ref()).map(|scenario| options_of(&scenario.robot)).unwrap_or_default();
+            let options =
+                scenario.or(file.scenario.as_ref()).map(|scenario| options_of(&scenario.robot)).unwrap_or_default();
             load_robot(&file.robot, folder, &options, file.object.size_m[2]).map_err(|e| check.robot("robot", e))?
         }
     };

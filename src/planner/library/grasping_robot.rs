@@ -2,12 +2,13 @@
 
 use super::{
     grasp::{ArmGrasp, BoardGrasp},
+    palm::Palm,
     reach::ReachMap,
 };
 use crate::{
     collision::{CollisionModel, Scene},
     model::{frames::Pose, grasp::EdgeGrasp},
-    planner::domain::{self, SearchDomain},
+    planner::domain::{self, DEPTH_M, SearchDomain},
     robot::{ArmState, Chain, InverseKinematics, Robot},
 };
 
@@ -37,21 +38,30 @@ pub struct GraspingArm {
     pub chain: Chain,
     pub inverse: InverseKinematics,
     pub reach: ReachMap,
+    /// Range of the depth of a grasp, m.
+    pub depth_m: [f64; 2],
+    /// Its palm, if it is near the board at some depth.
+    pub palm: Option<Palm>,
     finger_travel_m: [f64; 2],
 }
 
 impl GraspingRobot {
     /// Prepares a robot for boards with these sides and this clearance, m.
     pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
+        let collision = CollisionModel::new(robot);
         let arms = robot.arms.iter().enumerate().map(|(index, arm)| {
             let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, size_m[2]));
             let chain = Chain::new(robot, index, finger_travel_m[0]);
+            let palm = palm(robot, index, &chain);
+            let depth_m = palm.depths_m(&collision, &arm.gripper, size_m, clearance_m);
             GraspingArm {
                 index,
                 name: arm.name.clone(),
                 joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
                 inverse: InverseKinematics::for_chain(&chain),
                 reach: ReachMap::new(&chain),
+                depth_m,
+                palm: (depth_m[1] < DEPTH_M[1]).then_some(palm),
                 chain,
                 finger_travel_m,
             }
@@ -63,7 +73,7 @@ impl GraspingRobot {
             robot: robot.clone(),
             size_m,
             arms,
-            collision: CollisionModel::new(robot),
+            collision,
             clearance_m,
             moved_by: moved_by(robot),
             grasping: (0..robot.arms.len()).collect(),
@@ -105,15 +115,28 @@ impl GraspingRobot {
         })
     }
 
-    /// True if the pads of an arm's gripper lie on the board.
-    pub fn pads_on_board(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
+    /// True if the pads of an arm's gripper lie on the board and its palm is clear of it.
+    pub fn fits(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
+        let is_clear = |palm: &Palm| palm.is_clear(&self.collision, grasp, self.size_m, self.clearance_m);
         domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
+            && arm.palm.as_ref().is_none_or(is_clear)
     }
 
     /// See [`domain::pad_margins_m`].
     pub fn pad_margins_m(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> [f64; 4] {
         domain::pad_margins_m(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
     }
+}
+
+/// The links that are fixed to an arm's gripper, its palm among them, but not the fingers.
+fn palm(robot: &Robot, arm: usize, chain: &Chain) -> Palm {
+    let q_rad = vec![0.0; chain.dof()];
+    let link_poses = robot.link_poses(&robot.positions(&[ArmState { arm, q_rad: &q_rad, finger_travel_m: [0.0; 2] }]));
+    let x_gw = chain.gripper_pose(&q_rad).inverse();
+    let carriers = robot.carriers();
+    let of_gripper = carriers[robot.arms[arm].gripper.frame_link];
+    let links = (0..robot.links.len()).filter(|&link| carriers[link] == of_gripper);
+    Palm { links: links.map(|link| (link, x_gw * link_poses[link])).collect() }
 }
 
 /// See [`GraspingRobot::moved_by`].
