@@ -20,7 +20,7 @@ use crate::{
 pub(super) fn log(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Result<(), RecordError> {
     let carriers = robot.carriers();
     for (index, link) in robot.links.iter().enumerate() {
-        let parts = link.drawn();
+        let parts = robot.drawn(index);
         if parts.is_empty() {
             continue;
         }
@@ -42,9 +42,9 @@ pub(super) fn log(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Re
 
 /// Logs all links at fixed poses.
 pub(super) fn log_posture(messages: &mut Messages, robot: &Robot, x_wl: &[Pose]) -> Result<(), RecordError> {
-    for (link, x_wl) in robot.links.iter().zip(x_wl) {
+    for (index, (link, x_wl)) in robot.links.iter().zip(x_wl).enumerate() {
         let path = entity(&["scene", "robot", &link.name]);
-        log_link(messages, &path, link, &link.drawn())?;
+        log_link(messages, &path, link, &robot.drawn(index))?;
         messages.log_static(&path, &transform(x_wl))?;
     }
     Ok(())

@@ -14,11 +14,14 @@ use super::{
 };
 
 /// Names of the built-in robots.
-pub const BUILTIN: &[&str] = &["baxter"];
+pub const BUILTIN: &[&str] = &["baxter", "dual-panda", "dual-ur5"];
 
 /// Files of the built-in robots, in the order of [`BUILTIN`]: description, then URDF.
-const BUILTIN_FILES: [[&str; 2]; BUILTIN.len()] =
-    [[include_str!("../../assets/baxter.toml"), include_str!("../../assets/baxter.urdf")]];
+const BUILTIN_FILES: [[&str; 2]; BUILTIN.len()] = [
+    [include_str!("../../assets/baxter.toml"), include_str!("../../assets/baxter.urdf")],
+    [include_str!("../../assets/dual-panda.toml"), include_str!("../../assets/dual-panda.urdf")],
+    [include_str!("../../assets/dual-ur5.toml"), include_str!("../../assets/dual-ur5.urdf")],
+];
 
 impl Robot {
     /// Loads a built-in robot by its name, or a robot by the path of its description file. A relative path starts at

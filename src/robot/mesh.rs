@@ -15,7 +15,7 @@ use parry3d_f64::{
 
 use super::{
     geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry},
-    tree::Link,
+    tree::{Link, Robot},
 };
 use crate::model::frames::Pose;
 
@@ -243,12 +243,17 @@ pub enum DrawnForm {
     Surface(TriangleMesh),
 }
 
-impl Link {
-    /// What is drawn of the link: its visuals if they have meshes that can be read, else its collision shapes.
+impl Robot {
+    /// What is drawn of a link: its visuals if they have meshes that can be read, else its collision shapes. Of a robot with
+    /// visual meshes, links without visuals are not drawn: vendors use them for safety zones.
     #[must_use]
-    pub fn drawn(&self) -> Vec<DrawnPart> {
-        let is_mesh = |visual: &Visual| matches!(visual.geometry, VisualGeometry::Mesh(_));
-        let visuals = self.visuals.iter().any(is_mesh).then(|| self.visuals.iter().map(drawn_visual));
+    pub fn drawn(&self, link: usize) -> Vec<DrawnPart> {
+        let has_mesh = |link: &Link| link.visuals.iter().any(|v| matches!(v.geometry, VisualGeometry::Mesh(_)));
+        let link = &self.links[link];
+        if link.visuals.is_empty() && self.links.iter().any(has_mesh) {
+            return Vec::new();
+        }
+        let visuals = has_mesh(link).then(|| link.visuals.iter().map(drawn_visual));
         let visuals = visuals.and_then(|visuals| visuals.collect::<Result<Vec<_>, _>>().ok());
         visuals.map_or_else(
             || {
@@ -257,7 +262,7 @@ impl Link {
                     form: DrawnForm::Shape(placed.shape.clone()),
                     rgba: Some(placed.rgba),
                 };
-                self.shapes.iter().map(shape).collect()
+                link.shapes.iter().map(shape).collect()
             },
             |visuals| visuals.into_iter().flatten().collect(),
         )

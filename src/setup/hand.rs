@@ -17,6 +17,9 @@ const PAD_DEPTH_M: f64 = 1.5e-3;
 /// Smallest and largest side of a guessed pad, m.
 const PAD_SIDE_M: [f64; 2] = [0.008, 0.080];
 
+/// Distance of a board's edge from the palm at least, m: the usual clearance, and as much to search in.
+const PALM_CLEARANCE_M: f64 = 0.015;
+
 /// Side of a clamp's pads, m, its opening, m, and its distance in front of the hand, m: assumed.
 const CLAMP_PAD_M: f64 = 0.040;
 const CLAMP_OPENING_M: [f64; 2] = [0.0, 0.060];
@@ -228,9 +231,20 @@ impl Scene<'_> {
                 *common = [common[0].max(own[0]), common[1].min(own[1])];
             }
         }
-        let millimetre_tenths = |v: f64| (v * 1e4).round() / 1e4;
+        // A board reaches to the palm at most.
+        let palm_m = self.palm_front_m(&x_wg[0]) + PALM_CLEARANCE_M;
+        if palm_m < common[1][1] - PAD_SIDE_M[0] {
+            common[1][0] = common[1][0].max(palm_m);
+        }
+        let millimetre_tenths = |v: f64| (v * 1e4).round() / 1e4 + 0.0;
         let size = common.map(|[low, high]| millimetre_tenths((high - low).clamp(PAD_SIDE_M[0], PAD_SIDE_M[1])));
         (size, common.map(|[low, high]| millimetre_tenths((low + high) / 2.0)))
+    }
+
+    /// How far the links at the end of the run reach along z of G, m.
+    fn palm_front_m(&self, x_wg: &Pose) -> f64 {
+        let points = self.run.end_links.iter().flat_map(|&link| self.points_w(link));
+        points.map(|p_w| (x_wg.inverse() * p_w).z).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Two links of the hand that a linkage moves in parallel; else why there are none.

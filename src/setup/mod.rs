@@ -84,20 +84,22 @@ pub fn setup(input: &SetupInput, folder: &Path) -> Result<Setup, SetupError> {
     let names = Names { urdf: &urdf, packages: &packages };
     let load = |text: &str| Robot::from_text("new description", text, folder);
     let placeholder = BodyPoint { link: 0, p_l: nalgebra::Point3::origin() };
-    let first = Rest { body_points: vec![placeholder], ..Rest::default() };
-    let mut robot = load(&write::description(&bare, &names, &arms, &first))?;
+    let with = |yaw_deg: f64, decompose: &[usize]| {
+        let body_points = vec![placeholder];
+        let rest = Rest { yaw_deg, decompose: decompose.to_vec(), body_points, ..Rest::default() };
+        load(&write::description(&bare, &names, &arms, &rest))
+    };
+    let yaw_deg = place::yaw_deg(&with(0.0, &[])?);
+    let mut robot = with(yaw_deg, &[])?;
     let mut decompose = pairs::in_the_way(&robot);
     if !decompose.is_empty() {
-        let with = |links: &[usize]| {
-            let rest = Rest { decompose: links.to_vec(), body_points: vec![placeholder], ..Rest::default() };
-            load(&write::description(&bare, &names, &arms, &rest))
-        };
-        decompose = pairs::worth_decomposing(&robot, &with(&decompose)?, &decompose);
-        robot = with(&decompose)?;
+        decompose = pairs::worth_decomposing(&robot, &with(yaw_deg, &decompose)?, &decompose);
+        robot = with(yaw_deg, &decompose)?;
     }
     let floor_z_m = place::floor_z_m(&robot);
     robot.floor_z_m = floor_z_m.0;
     let rest = Rest {
+        yaw_deg,
         decompose,
         floor_z_m,
         search_box: place::search_box(&robot),

@@ -22,9 +22,9 @@ const SEED: u64 = 1;
 /// The share of postures from which on an overlap is taken for one of the shapes and not of the parts.
 const ALWAYS: f64 = 0.95;
 
-/// The share of postures from which on this is so for links with few joints between them: the limits of joints keep the
-/// parts themselves apart.
-const OFTEN: f64 = 0.10;
+/// For links with at most so many joints between them: the share of postures from which on an overlap is taken for one of the
+/// shapes. The limits of few joints keep the parts themselves apart; every other joint of most arms only rolls.
+const OFTEN: [(usize, f64); 2] = [(2, 0.10), (3, 0.20)];
 
 /// Why a pair may overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,7 +33,7 @@ pub enum Reason {
     Adjacent,
     /// They overlap in nearly all postures.
     Always,
-    /// They overlap often, and at most two joints are between them.
+    /// They overlap often, and few joints are between them.
     Often,
     /// They overlap with all arms in the middle of their ranges.
     Middle,
@@ -48,7 +48,8 @@ impl Reason {
             Self::Adjacent => "neighbours: one joint moves one against the other",
             Self::Always => "overlap in nearly all of 2,000 random postures",
             Self::Often => {
-                "at most two joints apart, and overlap in over 10 % of random postures: shapes larger than their parts"
+                "few joints apart, and overlap in over 10 % (two joints) or 20 % (three) of random postures: shapes larger than \
+                 their parts"
             }
             Self::Middle => {
                 "overlap with the arms in the middle of their ranges: check that the parts do not touch there"
@@ -98,13 +99,14 @@ pub(super) fn allowed(robot: &Robot, disabled: Option<&[[String; 2]]>) -> Vec<Al
             }
         }
     }
-    let (adjacent, near) = (adjacent(robot), apart(robot, 2));
+    let adjacent = adjacent(robot);
+    let near = OFTEN.map(|(joints, share)| (apart(robot, joints), share));
     for (links, share) in overlaps(robot, &model).shares {
         if adjacent.contains(&links) {
             reasons.entry(links).or_insert(Reason::Adjacent);
         } else if share >= ALWAYS {
             reasons.entry(links).or_insert(Reason::Always);
-        } else if share >= OFTEN && near.contains(&links) {
+        } else if near.iter().any(|(pairs, least)| share >= *least && pairs.contains(&links)) {
             reasons.entry(links).or_insert(Reason::Often);
         }
     }

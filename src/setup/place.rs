@@ -17,6 +17,9 @@ const BENCH_M: f64 = 0.80;
 /// Height of the board's centre above the floor that a person can work at, m.
 const WORK_HEIGHT_M: [f64; 2] = [0.62, 1.52];
 
+/// The least mean of the horizontal offsets from shoulder to gripper, as a share of the reach, that tells a robot's front.
+const LEAST_FORWARD: f64 = 0.1;
+
 /// Number of postures of each arm.
 const SAMPLES: usize = 4_000;
 
@@ -59,6 +62,23 @@ pub(super) fn floor_z_m(robot: &Robot) -> (f64, bool) {
 
 fn chains(robot: &Robot) -> impl Iterator<Item = Chain> {
     (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0))
+}
+
+/// By how many degrees about z the robot must be turned so that its arms reach forward along +x of W, a multiple of 90. Joint
+/// limits make the arms of a robot with a front reach there; those of an industrial arm reach all around, and it stays.
+pub(super) fn yaw_deg(robot: &Robot) -> f64 {
+    let mut random = Pcg64::new(SEED.into(), 1);
+    let mean = |chain: &Chain, random: &mut Pcg64| {
+        let offsets = samples_w(chain, random).into_iter().map(|point| point - chain.shoulder_w());
+        offsets.sum::<Vector3<f64>>() / (SAMPLES as f64 * chain.reach_m())
+    };
+    let chains: Vec<Chain> = chains(robot).collect();
+    let forward = chains.iter().map(|chain| mean(chain, &mut random)).sum::<Vector3<f64>>() / chains.len() as f64;
+    if forward.xy().norm() < LEAST_FORWARD {
+        return 0.0;
+    }
+    let quarters = (forward.y.atan2(forward.x).to_degrees() / 90.0).round();
+    -90.0 * quarters + 0.0
 }
 
 /// A box of places in front of the robot, at a person's working height, that all grippers come near; `None` if there are none.

@@ -15,6 +15,8 @@ use crate::{
 /// What the description says beside the arms.
 #[derive(Default)]
 pub(super) struct Rest {
+    /// Turn of the root about z, degrees.
+    pub yaw_deg: f64,
     /// Height of the floor, m, and true if a bench under the robot is assumed.
     pub floor_z_m: (f64, bool),
     pub search_box: Option<SearchBox>,
@@ -55,6 +57,14 @@ pub(super) fn description(robot: &Robot, names: &Names<'_>, arms: &[ArmDraft], r
     }
     allowed_collisions(&mut text, robot, &rest.allowed);
     body_points(&mut text, robot, &rest.body_points);
+    if rest.yaw_deg != 0.0 {
+        let _ = write!(
+            text,
+            "\n# ASSUMED: the arms reach forward along another axis of the root link than x, so the robot is turned.\n\
+             [base]\nrpy_deg = [0.0, 0.0, {:?}]\n",
+            rest.yaw_deg
+        );
+    }
     posture(&mut text, robot, arms);
     if let Some(SearchBox { x_m, y_m, z_m }) = rest.search_box {
         let _ = write!(

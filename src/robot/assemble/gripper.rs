@@ -10,7 +10,7 @@ use crate::{
     model::frames::Pose,
     robot::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
-        geometry::{PlacedShape, Shape},
+        geometry::{PlacedShape, Shape, Visual, VisualGeometry},
         linkage::Linkage,
         tree::{Finger, Gripper, JointKind, Pad, Robot},
     },
@@ -171,7 +171,13 @@ impl Assembler<'_> {
                 of(sides[0], sides[1]),
             ));
             let x_ls = Isometry3::from(nalgebra::Translation3::from(centre));
-            jaw.shapes.push(PlacedShape { x_ls, shape: Shape::Box { half_m }, rgba: JAW_RGBA });
+            let shape = Shape::Box { half_m };
+            jaw.visuals.push(Visual {
+                x_lv: x_ls,
+                geometry: VisualGeometry::Primitive(shape.clone()),
+                rgba: Some(JAW_RGBA),
+            });
+            jaw.shapes.push(PlacedShape { x_ls, shape, rgba: JAW_RGBA });
             let joint = self.robot.links[link].parent_joint.unwrap_or_default();
             Finger {
                 joint,

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     model::frames::Pose,
-    robot::{DrawnForm, Link, Robot, Shape, TriangleMesh},
+    robot::{DrawnForm, DrawnPart, Link, Robot, Shape, TriangleMesh},
 };
 
 /// The group of geoms that are only seen; a viewer can hide it.
@@ -41,7 +41,7 @@ pub(super) fn fixed(
     let Some(first) = arms.first() else { return Ok(()) };
     for (index, link) in robot.links.iter().enumerate() {
         if arms.iter().all(|arm| arm.bodies.placements[index].body.is_none()) {
-            drawn(xml, link, &first.bodies.placements[index].x_bl)?;
+            drawn(xml, link, &robot.drawn(index), &first.bodies.placements[index].x_bl)?;
         }
     }
     Ok(())
@@ -49,17 +49,17 @@ pub(super) fn fixed(
 
 /// What is drawn of all links that are fixed to a moving body.
 pub(super) fn moving(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, body: usize) -> io::Result<()> {
-    let links = robot.links.iter().zip(&arm.bodies.placements);
-    for (link, placement) in links.filter(|(_, placement)| placement.body == Some(body)) {
-        drawn(xml, link, &placement.x_bl)?;
+    let links = robot.links.iter().zip(&arm.bodies.placements).enumerate();
+    for (index, (link, placement)) in links.filter(|(_, (_, placement))| placement.body == Some(body)) {
+        drawn(xml, link, &robot.drawn(index), &placement.x_bl)?;
     }
     Ok(())
 }
 
 /// The meshes that the geoms of the robot name. MuJoCo needs no volume of what has no mass.
 pub(super) fn assets(xml: &mut Xml, robot: &Robot) -> io::Result<()> {
-    let meshes = robot.links.iter().flat_map(|link| {
-        let parts = link.drawn().into_iter().enumerate();
+    let meshes = robot.links.iter().enumerate().flat_map(|(index, link)| {
+        let parts = robot.drawn(index).into_iter().enumerate();
         parts.filter_map(|(number, part)| surface(&part.form).map(|surface| (part_name(link, number), surface.clone())))
     });
     let meshes: Vec<(String, TriangleMesh)> = meshes.collect();
@@ -96,8 +96,8 @@ fn surface(form: &DrawnForm) -> Option<&TriangleMesh> {
 }
 
 /// What is drawn of a link whose pose in its body is `x_bl`.
-fn drawn(xml: &mut Xml, link: &Link, x_bl: &Pose) -> io::Result<()> {
-    for (number, part) in link.drawn().iter().enumerate() {
+fn drawn(xml: &mut Xml, link: &Link, parts: &[DrawnPart], x_bl: &Pose) -> io::Result<()> {
+    for (number, part) in parts.iter().enumerate() {
         let name = part_name(link, number);
         let look = (SEEN_GROUP, part.rgba.unwrap_or(PLAIN_RGBA));
         let x_bp = x_bl * part.x_lp;
