@@ -37,9 +37,9 @@ baxter baxter_description/urdf/baxter.urdf holds
 panda panda_description/urdf/panda.urdf holds
 ur5 ur_description/urdf/ur5_robot.urdf
 ur10 ur_description/urdf/ur10_robot.urdf
-pr2 pr2_description/urdf/pr2.urdf
-tiago-dual tiago_description/robots/tiago_dual.urdf
-tiago-pro tiago_pro_description/robots/tiago_pro.urdf
+pr2 pr2_description/urdf/pr2.urdf holds
+tiago-dual tiago_description/robots/tiago_dual.urdf holds
+tiago-pro tiago_pro_description/robots/tiago_pro.urdf holds
 icub icub_description/robots/icub.urdf
 talos talos_data/robots/talos_full_v2.urdf
 xarm7 xarm_description/urdf/xarm7.urdf

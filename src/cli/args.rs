@@ -51,7 +51,7 @@ pub enum Command {
     #[cfg(feature = "recording")]
     View(ViewArgs),
     /// Write the description of a robot from its URDF
-    #[command(subcommand)]
+    #[command(subcommand, after_help = help::ROBOT_NEW)]
     Robot(RobotCommand),
     /// Check the installation: assets, versions, physics and solver; or the description of a robot
     Doctor(DoctorArgs),

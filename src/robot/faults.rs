@@ -26,7 +26,7 @@ pub enum RobotError {
     Invalid(Faults),
 }
 
-/// What is wrong with a robot's files, in the order of reading; at least one fault.
+/// What is wrong with a robot's files, in the order of the lines; at least one fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Faults {
     faults: Vec<Fault>,
@@ -122,7 +122,9 @@ impl Collector {
     }
 
     /// The error that has these faults.
-    pub fn into_error(self) -> RobotError {
+    pub fn into_error(mut self) -> RobotError {
+        // In the order of the lines; those of the URDF, which has none, come first.
+        self.faults.sort_by_key(|fault| fault.line);
         RobotError::Invalid(Faults { faults: self.faults })
     }
 }

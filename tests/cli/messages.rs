@@ -225,8 +225,14 @@ fn all_faults_of_a_description() {
     ]);
     assert_seen("doctor-faults", several.path(), &["doctor", "robot.toml"]);
     let meshes = robot(&[
-        ("<box size=\"0.1471 0.08 0.068\"/>", "<mesh filename=\"package://baxter_description/neck.stl\"/>"),
-        ("<cylinder radius=\"0.1\"", "<mesh filename=\"${meshes}/arm.stl\"/><cylinder radius=\"0.1\""),
+        (
+            "<collision name=\"neck\"><origin xyz=\"-0.0911 0 0.6696\"/><geometry><box size=\"0.1471 0.08 0.068\"/>",
+            "<collision name=\"neck\"><geometry><mesh filename=\"package://baxter_description/neck.stl\"/>",
+        ),
+        (
+            "<collision name=\"base plate\"><origin xyz=\"0 0 -0.0361\"/><geometry><box size=\"0.3599 0.3599 0.0507\"/>",
+            "<collision name=\"base plate\"><geometry><mesh filename=\"${meshes}/base.stl\"/>",
+        ),
     ]);
     assert_seen("doctor-meshes", meshes.path(), &["doctor", "robot.toml"]);
 }
