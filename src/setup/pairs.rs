@@ -26,10 +26,13 @@ const ALWAYS: f64 = 0.95;
 /// shapes. The limits of few joints keep the parts themselves apart; every other joint of most arms only rolls.
 const OFTEN: [(usize, f64); 2] = [(2, 0.10), (3, 0.20)];
 
+/// Neighbours that are nearer than this in the middle of their range are so by design, m: the usual clearance.
+const NEIGHBOURS_M: f64 = 0.005;
+
 /// Why a pair may overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reason {
-    /// They overlap in a posture at least, and one joint moves one link against the other.
+    /// They overlap or are as near as parts of one joint, and one joint moves one link against the other.
     Adjacent,
     /// They overlap in nearly all postures.
     Always,
@@ -109,6 +112,10 @@ pub(super) fn allowed(robot: &Robot, disabled: Option<&[[String; 2]]>) -> Vec<Al
         } else if near.iter().any(|(pairs, least)| share >= *least && pairs.contains(&links)) {
             reasons.entry(links).or_insert(Reason::Often);
         }
+    }
+    let near = model.links_nearer_than(&robot.link_poses(&positions(robot, &middle(robot), 0.5)), NEIGHBOURS_M);
+    for links in near.into_iter().filter(|links| adjacent.contains(links)) {
+        reasons.entry(links).or_insert(Reason::Adjacent);
     }
     let in_the_middle = robot.link_poses(&positions(robot, &middle(robot), 0.5));
     for links in model.overlapping_links(&in_the_middle) {
