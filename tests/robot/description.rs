@@ -44,7 +44,7 @@ fn unknown_robots_and_missing_files_are_told_apart() {
     let unknown = Robot::load("no_such_robot", Path::new(".")).unwrap_err();
     assert_eq!(
         unknown.to_string(),
-        "found robot \"no_such_robot\", expected a built-in robot (baxter) or the path of a description file"
+        "found robot \"no_such_robot\", expected a built-in robot (baxter, dual-panda, dual-ur5) or the path of a description file"
     );
     let nowhere = Path::new("/nowhere");
     let missing = Robot::load("missing.toml", nowhere).unwrap_err();
