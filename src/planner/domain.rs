@@ -2,15 +2,16 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use nalgebra::{Isometry3, Point3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64;
 
-use super::params::library::OPPOSITE_EDGE;
+use super::params::library::{OPPOSITE_EDGE, PAD_TO_HOLE_M};
 use crate::{
     model::{
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::{EdgeGrasp, pad_corners_m},
     },
     robot::{Chain, Gripper},
 };
@@ -105,46 +106,59 @@ pub fn uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * random.random::<f64>()
 }
 
-/// A uniformly distributed edge.
-pub fn draw_edge(random: &mut Pcg64) -> Edge {
-    Edge::ALL[random.random_range(0..Edge::ALL.len())]
+/// The edges of a board that the search grasps: all four of a box, of a plate those at least as long as the narrowest pad of the
+/// grippers is wide.
+pub fn graspable_edges<'g>(board: &BoardShape, grippers: impl Iterator<Item = &'g Gripper>) -> Vec<Edge> {
+    let narrowest_m = grippers.map(|gripper| gripper.fingers[0].pad.size_m[0]).fold(f64::INFINITY, f64::min);
+    let is_long = |edge: &Edge| {
+        let [low_m, high_m] = board.edge(*edge).along_m;
+        board.plate.is_none() || high_m - low_m >= narrowest_m
+    };
+    board.edges().filter(is_long).collect()
+}
+
+/// A uniformly distributed one of these edges; `None` if there is no edge.
+pub fn draw_edge(edges: &[Edge], random: &mut Pcg64) -> Option<Edge> {
+    (!edges.is_empty()).then(|| edges[random.random_range(0..edges.len())])
 }
 
 /// The edge of a further gripper: opposite to the first one's, or the same (docs/method.md#25-edge-grasps).
-pub fn draw_other_edge(edge: Edge, random: &mut Pcg64) -> Edge {
-    if random.random_bool(OPPOSITE_EDGE) { edge.turned(2) } else { edge }
+pub fn draw_other_edge(edge: Edge, opposite: Edge, random: &mut Pcg64) -> Edge {
+    if random.random_bool(OPPOSITE_EDGE) { opposite } else { edge }
 }
 
 /// A uniformly distributed grasp on an edge; its pads may lie partly off the board.
-pub fn draw_grasp(edge: Edge, size_m: [f64; 3], random: &mut Pcg64) -> EdgeGrasp {
-    let (_, half_length_m) = edge.reach_and_half_length_m(size_m);
+pub fn draw_grasp(edge: Edge, board: &BoardShape, random: &mut Pcg64) -> EdgeGrasp {
+    let [low_m, high_m] = board.edge(edge).along_m;
     EdgeGrasp {
         edge,
-        along_m: uniform(random, -half_length_m, half_length_m),
+        along_m: uniform(random, low_m, high_m),
         depth_m: uniform(random, DEPTH_M[0], DEPTH_M[1]),
         angle_rad: uniform(random, ANGLE_RAD[0], ANGLE_RAD[1]),
         flipped: random.random_bool(0.5),
     }
 }
 
-/// True if every corner of the gripper's pads lies on the board's face.
-pub fn pads_on_board(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> bool {
-    pad_margins_m(gripper, grasp, size_m).iter().all(|&margin_m| margin_m >= 0.0)
+/// True if the gripper's pads lie on the material of the board's face.
+pub fn pads_on_board(gripper: &Gripper, grasp: &EdgeGrasp, board: &BoardShape) -> bool {
+    pad_margins_m(gripper, grasp, board).iter().all(|&margin_m| margin_m >= 0.0)
 }
 
-/// Distance of the pads' outermost corner inside each edge of the board, m: +x_O, -x_O, +y_O, -y_O; negative outside.
-pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> [f64; 4] {
-    let x_og = grasp.x_og(size_m);
-    let pad = &gripper.fingers[0].pad;
-    let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
-    corners.iter().fold([f64::INFINITY; 4], |margins_m, [side_x, side_z]| {
-        let x_g = pad.centre_m[0] + side_x * pad.size_m[0] / 2.0;
-        let z_g = pad.centre_m[1] + side_z * pad.size_m[1] / 2.0;
-        let p_o = x_og * Point3::new(x_g, 0.0, z_g);
-        let [half_x_m, half_y_m, _] = size_m.map(|side_m| side_m / 2.0);
-        let corner_m = [half_x_m - p_o.x, half_x_m + p_o.x, half_y_m - p_o.y, half_y_m + p_o.y];
+/// Distance of the pads' outermost corner inside each edge of the board, m, negative outside: of a box +x_O, -x_O, +y_O, -y_O;
+/// of a plate its edges in order, then what the pads keep from the convex hull of each hole beyond [`PAD_TO_HOLE_M`].
+pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, board: &BoardShape) -> Vec<f64> {
+    let corners_m = pad_corners_m(&grasp.x_og(board), gripper.fingers[0].pad.size_m, gripper.fingers[0].pad.centre_m);
+    if let Some(plate) = &board.plate {
+        let mut margins_m = plate.patch_margins_m(&corners_m);
+        margins_m.iter_mut().skip(plate.sides().len()).for_each(|margin_m| *margin_m -= PAD_TO_HOLE_M);
+        return margins_m;
+    }
+    let [half_x_m, half_y_m, _] = board.size_m.map(|side_m| side_m / 2.0);
+    let margins_m = corners_m.iter().fold([f64::INFINITY; 4], |margins_m, [x_m, y_m]| {
+        let corner_m = [half_x_m - x_m, half_x_m + x_m, half_y_m - y_m, half_y_m + y_m];
         std::array::from_fn(|side| margins_m[side].min(corner_m[side]))
-    })
+    });
+    margins_m.to_vec()
 }
 
 #[cfg(test)]

@@ -13,8 +13,9 @@ use super::{
 };
 use crate::{
     model::{
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::EdgeGrasp,
         measures::{Event, EventKind, HandMeasures, JointMeasures, Measures},
         operation::Operation,
         plan::{ArmHold, PlacedObject, Plan},
@@ -117,7 +118,7 @@ fn plan(robot: &Robot) -> Plan {
     let x_wo = Pose::from_parts(Vector3::new(0.6, 0.0, 0.25).into(), UnitQuaternion::from_rotation_matrix(&upright));
     let hold = |arm: usize, edge| {
         let grasp = EdgeGrasp { edge, along_m: 0.0, depth_m: 0.035, angle_rad: 0.0, flipped: false };
-        let x_og = grasp.x_og(SIZE_M);
+        let x_og = grasp.x_og(&BoardShape::cuboid(SIZE_M));
         let chain = Chain::new(robot, arm, 0.0);
         let middle: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(a, b)| (a + b) / 2.0).collect();
         let ik = InverseKinematics::for_chain(&chain);
@@ -134,8 +135,8 @@ fn plan(robot: &Robot) -> Plan {
         name: "cut-05".into(),
         robot: "baxter".into(),
         operation: Operation::cut([0.0, 0.12], -Vector3::x(), 30.0, SIZE_M[2]),
-        object: PlacedObject { size_m: SIZE_M, mass_kg: 0.21, x_wo },
-        arms: vec![hold(0, Edge::PlusX), hold(1, Edge::MinusX)],
+        object: PlacedObject::cuboid(SIZE_M, 0.21, x_wo),
+        arms: vec![hold(0, Edge::PLUS_X), hold(1, Edge::MINUS_X)],
         human: None,
         comfort: None,
         stability: None,

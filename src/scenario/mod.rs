@@ -10,6 +10,7 @@ pub mod file;
 pub mod load_section;
 mod locate;
 pub mod material;
+mod object_section;
 pub mod plan_file;
 mod resolve;
 mod robot_file;

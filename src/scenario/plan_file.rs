@@ -11,7 +11,7 @@ use super::{
     robot_file::load_robot,
 };
 use crate::{
-    check::{CheckedPlan, Flaw},
+    check::{CheckedPlan, Flaw, check_plate},
     human::default_tool,
     model::{
         plan::Plan,
@@ -50,6 +50,9 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
     if let Some(scenario) = &plan.scenario {
         let check = check.under("scenario.");
         check.format(scenario.format)?;
+        if let Some(flaw) = check_plate(scenario.object.plate.as_ref()) {
+            return Err(check.value(&flaw.key(), flaw.found(), flaw.expected()));
+        }
         resolve::check_values(&check, scenario, &robot)?;
     }
     Ok((plan, robot))

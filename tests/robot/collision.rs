@@ -1,9 +1,11 @@
 //! Collision checks of the built-in Baxter against distances computed by hand and by brute force over all pairs of primitives.
 
+use std::sync::LazyLock;
+
 use benchdog::{
-    collision::{Body, CollisionModel, PersonClearance, PersonPart, Scene},
+    collision::{BoardBody, Body, CollisionModel, PersonClearance, PersonPart, Scene},
     human::{BodyPart, Side},
-    model::frames::Pose,
+    model::{board::BoardShape, frames::Pose},
     robot::{ArmState, PlacedShape, Robot, Shape},
 };
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -18,6 +20,7 @@ use proptest::prelude::*;
 use crate::common::baxter;
 
 const BOARD_SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
+static BOARD: LazyLock<BoardBody> = LazyLock::new(|| BoardBody::new(&BoardShape::cuboid(BOARD_SIZE_M)));
 
 /// The manufacturer's neutral posture of an arm, rad: elbow bent, forearm level.
 const NEUTRAL_RAD: [f64; 7] = [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0];
@@ -46,7 +49,7 @@ fn part(p0: [f64; 3], p1: [f64; 3], radius_m: f64) -> PersonPart {
 }
 
 fn scene<'a>(link_poses: &'a [Pose], holding: &'a [usize], x_wo: Pose, person: &'a [PersonPart]) -> Scene<'a> {
-    Scene { link_poses, holding, board_size_m: BOARD_SIZE_M, x_wo, person, clearance_m: 0.0 }
+    Scene { link_poses, holding, board: &BOARD, x_wo, person, clearance_m: 0.0 }
 }
 
 #[test]
@@ -186,7 +189,7 @@ fn capsule_w(part: &PersonPart) -> Shapes {
 /// always have.
 fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
     let links = links_w(robot, scene.link_poses);
-    let board = board_w(scene.board_size_m, &scene.x_wo);
+    let board = board_w(BOARD_SIZE_M, &scene.x_wo);
     let mut margin_m = f64::INFINITY;
     for a in 0..links.len() {
         for b in a + 1..links.len() {
@@ -299,7 +302,7 @@ fn tool_hand_and_forearm_are_ignored_near_the_board() {
     let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
     let in_the_board = part([-3.1, 0.0, 0.0], [-2.9, 0.0, 0.0], 0.05);
     let nearest = |part| {
-        let person = PersonClearance::new(&[part], BOARD_SIZE_M);
+        let person = PersonClearance::new(&[part], &BOARD);
         model.nearest_to_person(&person, &poses, &far_away(), 0.0).map(|nearest| nearest.bodies[0])
     };
     assert_eq!(nearest(in_the_board), Some(Body::Board));
@@ -322,7 +325,8 @@ fn a_scene_that_is_not_finite_is_not_free() {
     let mut broken = poses.clone();
     broken[7] = nowhere;
     let person = [part([f64::INFINITY, 0.0, 0.0], [2.0, 0.0, 0.0], 0.1)];
-    let endless = Scene { board_size_m: [f64::NAN, 0.4, 0.03], ..scene(&poses, &[], far_away(), &[]) };
+    let of_nan = BoardBody::new(&BoardShape::cuboid([f64::NAN, 0.4, 0.03]));
+    let endless = Scene { board: &of_nan, ..scene(&poses, &[], far_away(), &[]) };
     let cases = [
         (scene(&broken, &[], far_away(), &[]), Body::Link(7)),
         (scene(&poses[..5], &[], far_away(), &[]), Body::Link(5)),
@@ -354,7 +358,7 @@ proptest! {
             UnitQuaternion::from_euler_angles(turn[0], turn[1], turn[2]),
         );
         let part = part(ends[0], ends[1], radius_m);
-        let person = PersonClearance::new(&[part], BOARD_SIZE_M);
+        let person = PersonClearance::new(&[part], &BOARD);
         let found = model.nearest_to_person(&person, &poses, &x_wo, f64::INFINITY).unwrap();
         let bodies = links_w(robot, &poses).into_iter().chain([board_w(BOARD_SIZE_M, &x_wo)]);
         let expected_m = bodies.map(|body| distance_m(&body, &capsule_w(&part))).fold(f64::INFINITY, f64::min);

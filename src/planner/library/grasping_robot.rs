@@ -1,12 +1,16 @@
-//! A robot prepared to grasp boards of one size: kinematics, reach maps and collision model.
+//! A robot prepared to grasp boards of one shape: kinematics, reach maps and collision model.
 
 use super::{
     grasp::{ArmGrasp, BoardGrasp},
     reach::ReachMap,
 };
 use crate::{
-    collision::{CollisionModel, Scene},
-    model::{frames::Pose, grasp::EdgeGrasp},
+    collision::{BoardBody, CollisionModel, Scene},
+    model::{
+        board::{BoardShape, Edge},
+        frames::Pose,
+        grasp::EdgeGrasp,
+    },
     planner::domain::{self, SearchDomain},
     robot::{ArmState, Chain, InverseKinematics, Robot},
 };
@@ -14,8 +18,10 @@ use crate::{
 /// A robot with its fingers opened to a board's thickness.
 pub struct GraspingRobot {
     pub robot: Robot,
-    /// Sides of the board, m.
-    pub size_m: [f64; 3],
+    pub board: BoardShape,
+    /// The edges of the board that the search grasps.
+    pub edges: Vec<Edge>,
+    board_body: BoardBody,
     pub arms: Vec<GraspingArm>,
     /// Where the search looks for poses of the board.
     pub domain: SearchDomain,
@@ -41,10 +47,10 @@ pub struct GraspingArm {
 }
 
 impl GraspingRobot {
-    /// Prepares a robot for boards with these sides and this clearance, m.
-    pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
+    /// Prepares a robot for boards of this shape and this clearance, m.
+    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
         let arms = robot.arms.iter().enumerate().map(|(index, arm)| {
-            let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, size_m[2]));
+            let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, board.thickness_m()));
             let chain = Chain::new(robot, index, finger_travel_m[0]);
             GraspingArm {
                 index,
@@ -61,7 +67,9 @@ impl GraspingRobot {
         Self {
             domain: SearchDomain::of(chains, robot.floor_z_m),
             robot: robot.clone(),
-            size_m,
+            edges: domain::graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper)),
+            board_body: BoardBody::new(board),
+            board: board.clone(),
             arms,
             collision: CollisionModel::new(robot),
             clearance_m,
@@ -83,8 +91,8 @@ impl GraspingRobot {
 
     /// The collision scene of robot and board without a person.
     pub fn scene<'s>(&'s self, link_poses: &'s [Pose], x_wo: Pose) -> Scene<'s> {
-        let (holding, board_size_m, clearance_m) = (&self.grasping[..], self.size_m, self.clearance_m);
-        Scene { link_poses, holding, board_size_m, x_wo, person: &[], clearance_m }
+        let (holding, board, clearance_m) = (&self.grasping[..], &self.board_body, self.clearance_m);
+        Scene { link_poses, holding, board, x_wo, person: &[], clearance_m }
     }
 
     /// True if the arms and the board are clear of each other.
@@ -97,7 +105,7 @@ impl GraspingRobot {
     /// follow.
     pub fn follow(&self, arms: &mut [ArmGrasp], x_wo: &Pose) -> bool {
         self.arms.iter().zip(arms).all(|(arm, own)| {
-            let x_wg = x_wo * own.grasp.x_og(self.size_m);
+            let x_wg = x_wo * own.grasp.x_og(&self.board);
             let found = arm.inverse.local(&x_wg, &own.q_rad).found();
             let reached = found.is_some();
             own.q_rad = found.unwrap_or_default();
@@ -107,12 +115,17 @@ impl GraspingRobot {
 
     /// True if the pads of an arm's gripper lie on the board.
     pub fn pads_on_board(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
-        domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
+        domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, &self.board)
+    }
+
+    /// Of the edges that the search grasps the one most opposite to another.
+    pub fn opposite(&self, edge: Edge) -> Edge {
+        self.board.most_opposite(edge, &self.edges)
     }
 
     /// See [`domain::pad_margins_m`].
-    pub fn pad_margins_m(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> [f64; 4] {
-        domain::pad_margins_m(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
+    pub fn pad_margins_m(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> Vec<f64> {
+        domain::pad_margins_m(&self.robot.arms[arm.index].gripper, grasp, &self.board)
     }
 }
 

@@ -1,7 +1,7 @@
-//! The grasp library: collision-free grasps of boards of one size.
+//! The grasp library: collision-free grasps of boards of one shape.
 //!
 //! Whether a robot can grasp a board in some pose depends neither on the person nor on the task, and is the constraint that
-//! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that size: the first
+//! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that shape: the first
 //! arm's configuration and grasp are drawn, which gives the board's pose; inverse kinematics brings the other arms there.
 
 use nalgebra::Point3;
@@ -17,8 +17,9 @@ use crate::{
     collision::Violation,
     comfort,
     model::{
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::EdgeGrasp,
     },
     planner::{
         domain::{self, draw_edge, draw_other_edge},
@@ -30,9 +31,9 @@ use crate::{
     robot::Robot,
 };
 
-/// Collision-free grasps of a robot for boards of one size with one clearance. It depends on nothing else.
+/// Collision-free grasps of a robot for boards of one shape with one clearance. It depends on nothing else.
 pub struct GraspLibrary {
-    /// The robot, prepared for boards of that size.
+    /// The robot, prepared for boards of that shape.
     pub robot: GraspingRobot,
     /// The grasps.
     pub entries: Vec<LibraryEntry>,
@@ -62,10 +63,10 @@ impl LibraryEntry {
 }
 
 impl GraspLibrary {
-    /// The library of a robot for boards with these sides, m, that keeps a clearance, m; it has fewer than the usual number of
+    /// The library of a robot for boards of this shape that keeps a clearance, m; it has fewer than the usual number of
     /// entries where grasps are rare.
-    pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
-        let robot = GraspingRobot::new(robot, size_m, clearance_m);
+    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
+        let robot = GraspingRobot::new(robot, board, clearance_m);
         let (entries, failures) = draw_entries(&robot, GRASPS, 0);
         Self { robot, entries, failures }
     }
@@ -100,16 +101,16 @@ fn max_draws(wanted: usize, found: usize) -> u64 {
 
 fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry, DrawFailure> {
     let (first, others) = robot.arms.split_first().ok_or(DrawFailure::NoArm)?;
-    let edge = draw_edge(random);
+    let edge = draw_edge(&robot.edges, random).ok_or(DrawFailure::Pads { arm: 0 })?;
     let grasp = draw_grasp(robot, first, edge, |_| true, random).ok_or(DrawFailure::Pads { arm: 0 })?;
-    let x_go = grasp.x_og(robot.size_m).inverse();
+    let x_go = grasp.x_og(&robot.board).inverse();
     let in_domain = |x_wo: &Pose| robot.domain.contains(x_wo);
     let (q_rad, x_wo) = (0..FIRST_ARM_ATTEMPTS)
         .find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))
         .ok_or(DrawFailure::Domain)?;
     let mut arms = vec![ArmGrasp { grasp, q_rad }];
     for (number, arm) in others.iter().enumerate() {
-        let edge = draw_other_edge(edge, random);
+        let edge = draw_other_edge(edge, robot.opposite(edge), random);
         let reached = draw_arm_grasp(robot, arm, edge, &x_wo, random);
         arms.push(reached.ok_or(DrawFailure::Reach { arm: number + 1 })?);
     }
@@ -130,7 +131,7 @@ pub fn draw_arm_grasp(
 ) -> Option<ArmGrasp> {
     let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
     let grasp = draw_grasp(robot, arm, edge, near, random)?;
-    let x_wg = x_wo * grasp.x_og(robot.size_m);
+    let x_wg = x_wo * grasp.x_og(&robot.board);
     let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
     Some(ArmGrasp { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
 }
@@ -144,6 +145,6 @@ pub fn draw_grasp(
     random: &mut Pcg64,
 ) -> Option<EdgeGrasp> {
     (0..GRASP_ATTEMPTS)
-        .map(|_| domain::draw_grasp(edge, robot.size_m, random))
-        .find(|grasp| robot.pads_on_board(arm, grasp) && accepts(&grasp.x_og(robot.size_m)))
+        .map(|_| domain::draw_grasp(edge, &robot.board, random))
+        .find(|grasp| robot.pads_on_board(arm, grasp) && accepts(&grasp.x_og(&robot.board)))
 }

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     collision::{Body, Violation},
-    model::{frames::Pose, grasp::Edge},
+    model::{board::Edge, frames::Pose},
     planner::{
         domain::{SearchDomain, draw_edge, uniform},
         params::library::{RESAMPLED_GRASPS, RESAMPLED_PER_PATTERN},
@@ -83,7 +83,7 @@ fn grasps_of_board(robot: &GraspingRobot, x_wo: &Pose, random: &mut Pcg64) -> Ve
     let mut colliding: Vec<Vec<bool>> = reached.iter().map(|grasps| vec![false; grasps.len()]).collect();
     let mut entries: Vec<LibraryEntry> = Vec::new();
     let mut patterns = Vec::new();
-    for numbers in combinations(&reached) {
+    for numbers in combinations(robot, &reached) {
         if numbers.iter().zip(&colliding).any(|(&number, colliding)| colliding[number]) {
             continue;
         }
@@ -112,7 +112,7 @@ fn grasps_of_board(robot: &GraspingRobot, x_wo: &Pose, random: &mut Pcg64) -> Ve
 /// The drawn grasps of one arm that it reaches, with configurations.
 fn reached_grasps(robot: &GraspingRobot, arm: &GraspingArm, x_wo: &Pose, random: &mut Pcg64) -> Vec<ArmGrasp> {
     let draw = |_| {
-        let edge = draw_edge(random);
+        let edge = draw_edge(&robot.edges, random)?;
         draw_arm_grasp(robot, arm, edge, x_wo, random)
     };
     (0..RESAMPLED_GRASPS).filter_map(draw).collect()
@@ -120,12 +120,12 @@ fn reached_grasps(robot: &GraspingRobot, arm: &GraspingArm, x_wo: &Pose, random:
 
 /// Every choice of one grasp per arm in which all edges are the first one's or opposite to it
 /// (docs/method.md#25-edge-grasps), as indices.
-fn combinations(reached: &[Vec<ArmGrasp>]) -> Vec<Vec<usize>> {
+fn combinations(robot: &GraspingRobot, reached: &[Vec<ArmGrasp>]) -> Vec<Vec<usize>> {
     let mut chosen = vec![Vec::new()];
     for grasps in reached {
         let longer = |numbers: &Vec<usize>| {
             let first = numbers.first().map(|&first| reached[0][first].grasp.edge);
-            let fits = |edge: Edge| first.is_none_or(|first| edge == first || edge == first.turned(2));
+            let fits = |edge: Edge| first.is_none_or(|first| edge == first || edge == robot.opposite(first));
             let fitting = grasps.iter().enumerate().filter(|(_, arm)| fits(arm.grasp.edge));
             fitting.map(|(number, _)| [&numbers[..], &[number]].concat()).collect::<Vec<_>>()
         };
@@ -155,7 +155,7 @@ mod tests {
 
     fn library() -> GraspLibrary {
         let loaded = paper::operations()[0].load().unwrap();
-        GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m, loaded.scenario.limits.clearance_m())
+        GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), loaded.scenario.limits.clearance_m())
     }
 
     #[test]
@@ -172,13 +172,13 @@ mod tests {
             assert!(boards.iter().any(similar));
             assert!(robot.domain.contains(x_wo));
             for (arm, own) in robot.arms.iter().zip(arms) {
-                let missed = arm.chain.gripper_pose(&own.q_rad).inverse() * (x_wo * own.grasp.x_og(robot.size_m));
+                let missed = arm.chain.gripper_pose(&own.q_rad).inverse() * (x_wo * own.grasp.x_og(&robot.board));
                 // The tolerance of docs/method.md#34-constraints: 1e-6 m and rad.
                 assert!(missed.translation.vector.norm() < 1e-6 && missed.rotation.angle() < 1e-6);
                 assert!(robot.pads_on_board(arm, &own.grasp));
             }
             let [left, right] = [0, 1].map(|arm: usize| arms[arm].grasp.edge);
-            assert!(left == right || left == right.turned(2));
+            assert!(left == right || left == robot.opposite(right));
             let link_poses = robot.link_poses(arms);
             assert!(robot.collision.first_violation(&robot.scene(&link_poses, *x_wo)).is_none());
         }

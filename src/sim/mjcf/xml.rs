@@ -56,6 +56,14 @@ pub(super) fn geom(
     empty(xml, "geom", &attributes)
 }
 
+/// A geom of a mesh, with the same.
+pub(super) fn mesh_geom(xml: &mut Xml, name: &str, mesh: &str, (group, rgba): (u8, [f64; 4])) -> io::Result<()> {
+    let mut attributes = vec![("name", name.to_owned()), ("type", "mesh".into()), ("mesh", mesh.into())];
+    attributes.extend([("contype", "0".into()), ("conaffinity", "0".into()), ("mass", "0".into())]);
+    attributes.extend([("group", group.to_string()), ("rgba", numbers(&rgba))]);
+    empty(xml, "geom", &attributes)
+}
+
 /// A site.
 pub(super) fn site(xml: &mut Xml, name: &str, x_bs: &Pose) -> io::Result<()> {
     let mut attributes = vec![("name", name.to_owned()), ("size", "0.003".into())];
