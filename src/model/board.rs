@@ -160,6 +160,21 @@ impl BoardShape {
         }
     }
 
+    /// True if the board counts as the same after it has turned by quarters, see [`BoardShape::turned`].
+    #[must_use]
+    pub fn turns(&self, quarters: usize) -> bool {
+        self.turned(Edge(0), quarters).is_some()
+    }
+
+    /// The centre of the bounding rectangle in O, m.
+    #[must_use]
+    pub fn centre_m(&self) -> Point {
+        self.plate.as_ref().map_or([0.0; 2], |plate| {
+            let [low_m, high_m] = plate.bounds_m();
+            [0, 1].map(|axis| (low_m[axis] + high_m[axis]) / 2.0)
+        })
+    }
+
     /// Of these edges the one whose outward normal is most opposite to that of `edge`; `edge` itself if there is no other.
     #[must_use]
     pub fn most_opposite(&self, edge: Edge, among: &[Edge]) -> Edge {

@@ -193,6 +193,37 @@ impl Plate {
         of_sides.chain(self.0.hole_hulls_m.iter().map(|hull| separation_m(patch, hull))).collect()
     }
 
+    /// The least width of material across the way from one point to another, m: of all sections normal to the way between them.
+    #[must_use]
+    pub fn narrowest_section_m(&self, from: Point, to: Point) -> f64 {
+        let length_m = distance_m(from, to);
+        let unit = [(to[0] - from[0]) / length_m, (to[1] - from[1]) / length_m];
+        let place = |p: Point| {
+            [
+                (p[0] - from[0]) * unit[0] + (p[1] - from[1]) * unit[1],
+                (p[1] - from[1]) * unit[0] - (p[0] - from[0]) * unit[1],
+            ]
+        };
+        let placed: Vec<Vec<Point>> = std::iter::once(self.outline_m())
+            .chain(self.holes_m().iter().map(Vec::as_slice))
+            .map(|corners| corners.iter().map(|&corner| place(corner)).collect())
+            .collect();
+        // Between the places of corners the width changes linearly, at them it may jump.
+        let corners = placed.iter().flatten().map(|corner| corner[0]).filter(|at_m| (0.0..length_m).contains(at_m));
+        let mut places_m: Vec<f64> = corners.chain([0.0, length_m]).collect();
+        places_m.sort_by(f64::total_cmp);
+        let width = |at_m: f64| {
+            let (outline, holes) = placed.split_at(1);
+            holes.iter().fold(section_m(&outline[0], at_m), |width_m, hole| width_m - section_m(hole, at_m))
+        };
+        let spans = places_m.windows(2).filter(|span| span[1] - span[0] > SAME_CORNER_M);
+        let ends = spans.flat_map(|span| {
+            let [first, second] = [1.0 / 3.0, 2.0 / 3.0].map(|share| width(span[0] + share * (span[1] - span[0])));
+            [2.0 * first - second, 2.0 * second - first]
+        });
+        ends.fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
     /// By how many sides the outline is shifted if it is turned by quarters about O; `None` if it is another outline then.
     #[must_use]
     pub fn shift_by_quarters(&self, quarters: usize) -> Option<usize> {
@@ -262,6 +293,16 @@ impl Plate {
 
 /// Largest distance of the corners of two outlines that are the same but for a turn, m: rounding of written corners.
 const SAME_CORNER_M: f64 = 1e-9;
+
+/// Length of a polygon's section at a place along x, m.
+fn section_m(corners: &[Point], at_m: f64) -> f64 {
+    let mut crossed: Vec<f64> = sides(corners)
+        .filter(|(a, b)| (a[0] > at_m) != (b[0] > at_m))
+        .map(|(a, b)| a[1] + (at_m - a[0]) / (b[0] - a[0]) * (b[1] - a[1]))
+        .collect();
+    crossed.sort_by(f64::total_cmp);
+    crossed.chunks_exact(2).map(|pair| pair[1] - pair[0]).sum()
+}
 
 fn fault(part: PlatePart, found: impl Into<String>, expected: impl Into<String>) -> PlateFault {
     PlateFault { part, found: found.into(), expected: expected.into() }
@@ -382,6 +423,23 @@ mod tests {
         ] {
             assert!((found.depth_m(p) - expected_m).abs() < 1e-15, "{p:?}: {}", found.depth_m(p));
         }
+    }
+
+    #[test]
+    fn the_narrowest_section_is_where_the_most_is_missing() {
+        let diamond = [[0.3, 0.0], [0.0, 0.2], [-0.3, 0.0], [0.0, -0.2]];
+        let found = plate(&diamond, &[]);
+        // The width is 0.4 (1 - |x| / 0.3).
+        for (from_m, to_m, expected_m) in
+            [(-0.15, 0.0, 0.2), (0.0, 0.225, 0.1), (-0.15, 0.075, 0.2), (0.0, 0.0003, 0.3996)]
+        {
+            assert!((found.narrowest_section_m([from_m, 0.0], [to_m, 0.0]) - expected_m).abs() < 1e-12);
+        }
+        // In the other direction, and with a triangular hole that jumps to its full height.
+        assert!((found.narrowest_section_m([0.0, 0.0], [0.0, 0.1]) - 0.3).abs() < 1e-12);
+        let pierced = plate(&SQUARE, &[&[[0.0, -0.05], [0.1, -0.05], [0.0, 0.05]]]);
+        assert!((pierced.narrowest_section_m([-0.1, 0.0], [0.15, 0.0]) - 0.3).abs() < 1e-12);
+        assert!((pierced.narrowest_section_m([0.05, 0.0], [0.15, 0.0]) - 0.35).abs() < 1e-12);
     }
 
     #[test]

@@ -162,7 +162,7 @@ impl WarmStarts {
         for solution in &self.solutions {
             let at_origin = comfort::weighted(solution.comfort, &evaluator.problem.objective).objective;
             let board = &evaluator.problem.robot.board;
-            let turns: Vec<_> = (0..QUARTERS).filter(|quarters| board.turned(Edge(0), *quarters).is_some()).collect();
+            let turns: Vec<_> = (0..QUARTERS).filter(|quarters| board.turns(*quarters)).collect();
             for quarters in turns {
                 for candidate in solution.transferred(&evaluator.problem, quarters) {
                     let Some(candidate) = candidate else {

@@ -19,6 +19,7 @@ use crate::{
         measures::{Event, EventKind, HandMeasures, JointMeasures, Measures},
         operation::Operation,
         plan::{ArmHold, PlacedObject, Plan},
+        plate::PlateRecord,
         scenario::Scenario,
         tool_part::{ToolMaterial, ToolPart},
         trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
@@ -498,6 +499,21 @@ fn the_moment_of_failure_has_one_time_stamp_in_scene_plot_and_log() {
         assert_eq!(times_ns(&bytes, &["scene", "pads", "right", pad], "Boxes3D:colors"), [0]);
     }
     assert_eq!(times_ns(&bytes, &["scene", "board"], "Boxes3D:colors"), [0]);
+}
+
+#[test]
+fn a_plate_is_drawn_as_a_mesh_in_place_of_the_box() {
+    let mut example = example();
+    let outline_m = example.plan.object.shape().outline_m();
+    let holes_m = vec![vec![[0.0, 0.0], [0.05, 0.0], [0.0, 0.05]]];
+    example.plan.object.plate = Some(PlateRecord { outline_m, holes_m }.into());
+    let bytes = encode(&example.input()).unwrap();
+    assert_eq!(times_ns(&bytes, &["scene", "board"], "Mesh3D:albedo_factor"), [0]);
+    assert!(times_ns(&bytes, &["scene", "board"], "Boxes3D:colors").is_empty());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plate.rrd");
+    fs::write(&path, &bytes).unwrap();
+    assert_eq!(read_run(&path).unwrap().plan, example.plan);
 }
 
 #[test]
