@@ -164,7 +164,14 @@ pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, board: &BoardShape) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{reproduce::paper, robot::Robot};
+    use crate::{
+        model::{
+            plate::{Plate, PlateRecord, ROUND_SIDES},
+            polygon::circle,
+        },
+        reproduce::paper,
+        robot::Robot,
+    };
 
     fn domain(robot: &Robot) -> SearchDomain {
         let chains: Vec<_> = (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0)).collect();
@@ -187,6 +194,77 @@ mod tests {
         let [here, there] = [&robot, &moved].map(domain);
         assert_eq!((here.x_m, here.y_m), (there.x_m, there.y_m));
         assert_eq!(there.z_m, [-0.4, 0.5]);
+    }
+
+    /// A convex polygon about O: a regular one with displaced corners, stretched; up to ten corners.
+    fn drawn_outline(random: &mut Pcg64) -> Vec<[f64; 2]> {
+        let count = random.random_range(3..=10);
+        let [width_m, height_m] = [0.0; 2].map(|_| uniform(random, 0.15, 0.5));
+        let corner = |k: usize| {
+            let turn_rad = std::f64::consts::TAU * (k as f64 + uniform(random, -0.3, 0.3)) / count as f64;
+            let (sin, cos) = libm::sincos(turn_rad);
+            [width_m * cos, height_m * sin]
+        };
+        (0..count).map(corner).collect()
+    }
+
+    /// On hundreds of convex plates with a hole: a grasp whose margins are not negative has its whole pads on the material, at
+    /// points that are tested one by one, and one with a negative margin is near to something.
+    #[test]
+    fn drawn_grasps_have_their_pads_on_the_material() {
+        let robot = paper::operations()[0].load().unwrap().robot;
+        let gripper = &robot.arms[0].gripper;
+        let pad = &gripper.fingers[0].pad;
+        let mut random = Pcg64::new(18, 0);
+        let (mut plates, mut on, mut off) = (0, 0, 0);
+        while plates < 300 {
+            let outline_m = drawn_outline(&mut random);
+            let hole =
+                circle([uniform(&mut random, -0.05, 0.05), uniform(&mut random, -0.05, 0.05)], 0.03, ROUND_SIDES);
+            let plate = Plate::from(PlateRecord { outline_m, holes_m: vec![hole] });
+            if plate.check().is_err() {
+                continue;
+            }
+            plates += 1;
+            let board = BoardShape::plate(plate.clone(), 0.02);
+            let edges = graspable_edges(&board, std::iter::once(gripper));
+            for _ in 0..20 {
+                let Some(edge) = draw_edge(&edges, &mut random) else { continue };
+                let grasp = draw_grasp(edge, &board, &mut random);
+                let margins_m = pad_margins_m(gripper, &grasp, &board);
+                assert_eq!(margins_m.len(), plate.sides().len() + 1);
+                let x_og = grasp.x_og(&board);
+                let depths_m = (0..=8).flat_map(|i| (0..=8).map(move |j| [i, j])).map(|[i, j]| {
+                    let along =
+                        |side: usize, step: i32| pad.centre_m[side] + pad.size_m[side] * (f64::from(step) / 8.0 - 0.5);
+                    let p_o = x_og * nalgebra::Point3::new(along(0, i), 0.0, along(1, j));
+                    plate.depth_m([p_o.x, p_o.y])
+                });
+                let least_m = depths_m.fold(f64::INFINITY, f64::min);
+                if pads_on_board(gripper, &grasp, &board) {
+                    assert!(least_m > -1e-12, "{least_m}");
+                    on += 1;
+                } else {
+                    // A grid of 5 mm and the distance that pads keep from a hole.
+                    assert!(least_m < 0.005 + PAD_TO_HOLE_M, "{least_m}");
+                    off += 1;
+                }
+            }
+        }
+        assert!(on > 300 && off > 300, "{on} {off}");
+    }
+
+    #[test]
+    fn edges_that_are_shorter_than_a_pad_are_left_out() {
+        let robot = paper::operations()[0].load().unwrap().robot;
+        let edges_of = |board: &BoardShape| graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper));
+        let outline_m = vec![[0.2, -0.2], [0.2, 0.18], [0.18, 0.2], [-0.2, 0.2], [-0.2, -0.2]];
+        let plate = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
+        // The side between corners 1 and 2 is 28 mm long, a pad is 40.4 mm wide.
+        assert_eq!(edges_of(&plate), [0, 2, 3, 4].map(Edge));
+        // All edges of a box count, however short: their grasps are drawn in vain.
+        assert_eq!(edges_of(&BoardShape::cuboid([0.03, 0.02, 0.01])).len(), 4);
+        assert_eq!(draw_edge(&[], &mut Pcg64::new(1, 0)), None);
     }
 
     #[test]

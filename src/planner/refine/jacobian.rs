@@ -289,6 +289,17 @@ mod tests {
         }
     }
 
+    /// As above, on a plate with slanted edges and a hole.
+    #[test]
+    fn gradients_equal_differences_on_a_plate() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plate-with-hole.toml");
+        let mut loaded = crate::scenario::load(&path).unwrap();
+        loaded.scenario.planner.budget = Budget::Fast;
+        let clearance_m = loaded.scenario.limits.clearance_m();
+        let library = GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), clearance_m);
+        compare_starts(&loaded.scenario, &library);
+    }
+
     fn compare_starts(scenario: &Scenario, library: &GraspLibrary) {
         let problem = Problem::new(scenario, &library.robot).unwrap();
         let postures = own_postures(&problem.human, scenario);
