@@ -321,7 +321,7 @@ mod tests {
     fn triangles_cover_a_plate_with_holes_exactly() {
         let outline = regular(9, 0.4);
         let concave = vec![[-0.1, -0.1], [0.0, -0.05], [0.1, -0.1], [0.05, 0.0], [-0.05, 0.0]];
-        let holes = vec![circle([0.2, 0.1], 0.06, 32), circle([-0.15, 0.15], 0.04, 12), concave];
+        let holes = [circle([0.2, 0.1], 0.06, 32), circle([-0.15, 0.15], 0.04, 12), concave];
         for count in 0..=holes.len() {
             let holes = &holes[..count];
             let expected =
