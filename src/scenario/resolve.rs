@@ -435,3 +435,44 @@ pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         expect: Expectation::default(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        model::{plate::PlateRecord, polygon::circle},
+        scenario::read_plan,
+    };
+
+    #[test]
+    fn a_plan_for_another_plate_does_not_match() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
+        let (mut plan, robot) = read_plan(&path, None).unwrap();
+        let pierced = |plan: &mut Plan, centre_m: [f64; 2]| {
+            let outline_m = plan.object.shape().outline_m();
+            plan.object.plate = Some(PlateRecord { outline_m, holes_m: vec![circle(centre_m, 0.02, 8)] }.into());
+        };
+        pierced(&mut plan, [0.0, 0.1]);
+        let scenario = default_for_plan(&plan, &robot);
+        assert_eq!(scenario.object.mass_kg(), plan.object.mass_kg);
+        let matches = |plan: &Plan| check_plan_matches(&path, "", &scenario, plan);
+        assert!(matches(&plan).is_ok());
+        let of_rounded_corners = |plan: &mut Plan| pierced(plan, [1e-9, 0.1]);
+        let others: [fn(&mut Plan); 3] = [
+            |plan| plan.object.plate = None,
+            |plan| plan.object.com_m = Some([0.01, 0.0, 0.0]),
+            |plan| plan.object.mass_kg += 0.01,
+        ];
+        for change in others {
+            let mut other = plan.clone();
+            change(&mut other);
+            let message = matches(&other).unwrap_err().to_string();
+            assert!(message.contains("a plan for a board of"), "{message}");
+        }
+        let mut moved = plan.clone();
+        pierced(&mut moved, [0.001, 0.1]);
+        assert!(matches(&moved).is_err());
+        of_rounded_corners(&mut moved);
+        assert!(matches(&moved).is_ok());
+    }
+}

@@ -101,7 +101,7 @@ fn max_draws(wanted: usize, found: usize) -> u64 {
 
 fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry, DrawFailure> {
     let (first, others) = robot.arms.split_first().ok_or(DrawFailure::NoArm)?;
-    let edge = draw_edge(&robot.edges, random).ok_or(DrawFailure::Pads { arm: 0 })?;
+    let edge = draw_edge(&robot.edges, random).ok_or(DrawFailure::NoEdge)?;
     let grasp = draw_grasp(robot, first, edge, |_| true, random).ok_or(DrawFailure::Pads { arm: 0 })?;
     let x_go = grasp.x_og(&robot.board).inverse();
     let in_domain = |x_wo: &Pose| robot.domain.contains(x_wo);

@@ -151,7 +151,11 @@ fn arms_of(robot: &GraspingRobot, violation: &Violation) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{planner::library::GraspLibrary, reproduce::paper};
+    use crate::{
+        model::{board::BoardShape, plate::PlateRecord},
+        planner::library::GraspLibrary,
+        reproduce::paper,
+    };
 
     fn library() -> GraspLibrary {
         let loaded = paper::operations()[0].load().unwrap();
@@ -186,6 +190,19 @@ mod tests {
         let same =
             found.iter().filter(|entry| entry.grasp.arms[0].grasp.edge == entry.grasp.arms[1].grasp.edge).count();
         assert!(same > 0 && same < found.len());
+    }
+
+    /// A plate whose sides are 30 mm long has no edge for pads of 40.4 mm, and the evidence says so.
+    #[test]
+    fn a_plate_without_an_edge_for_the_pads_has_no_grasp() {
+        let loaded = paper::operations()[0].load().unwrap();
+        let outline_m = vec![[0.015, -0.015], [0.015, 0.015], [-0.015, 0.015], [-0.015, -0.015]];
+        let board = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
+        let library = GraspLibrary::new(&loaded.robot, &board, 0.005);
+        assert!(library.entries.is_empty() && library.robot.edges.is_empty());
+        assert!(resample(&library.robot, &[Pose::identity()], 20, [1, 1]).is_empty());
+        let text = library.failures.evidence(&loaded.robot).to_string();
+        assert!(text.contains("100.0 % every edge of the board is shorter than a pad is wide"), "{text}");
     }
 
     #[test]
