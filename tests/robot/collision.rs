@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use benchdog::{
     collision::{BoardBody, Body, CollisionModel, PersonClearance, PersonPart, Scene},
     human::{BodyPart, Side},
-    model::{board::BoardShape, frames::Pose},
+    model::{board::BoardShape, frames::Pose, plate::PlateRecord, polygon::circle},
     robot::{ArmState, PlacedShape, Robot, Shape},
 };
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -314,6 +314,41 @@ fn tool_hand_and_forearm_are_ignored_near_the_board() {
     assert_eq!(nearest(in_the_torso), Some(Body::Link(torso)));
     // The tool.
     assert_eq!(nearest(PersonPart { robot_clearance_m: 0.0, board_clearance_m: None, ..in_the_torso }), None);
+}
+
+/// The body of a plate with this outline and a hole in its middle.
+fn plate_body(outline_m: Vec<[f64; 2]>) -> BoardBody {
+    let plate = PlateRecord { outline_m, holes_m: vec![circle([0.0, 0.0], 0.05, 32)] };
+    BoardBody::new(&BoardShape::plate(plate.into(), BOARD_SIZE_M[2]))
+}
+
+#[test]
+fn a_plate_is_the_prism_over_its_outline_and_its_hole_is_filled() {
+    let robot = baxter();
+    let model = CollisionModel::new(robot);
+    let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
+    // The board is 3 m behind the robot, which is farther from the part.
+    let x_wo = far_away();
+    let distance_m = |board: &BoardBody, p_o: [f64; 3]| {
+        let p_w = x_wo * Point3::from(p_o);
+        let part = part(p_w.coords.into(), p_w.coords.into(), 0.01);
+        let found =
+            model.nearest_to_person(&PersonClearance::new(&[part], board), &poses, &x_wo, f64::INFINITY).unwrap();
+        (found.bodies[0] == Body::Board).then_some(found.distance_m)
+    };
+    let rectangle = plate_body(BoardShape::cuboid(BOARD_SIZE_M).outline_m());
+    let diamond = plate_body(vec![[0.25, 0.0], [0.0, 0.2], [-0.25, 0.0], [0.0, -0.2]]);
+    for p_o in [[0.3, 0.25, 0.0], [0.1, 0.1, 0.2], [0.0, 0.5, 0.1], [0.24, -0.19, 0.05]] {
+        let [of_box, of_plate] = [&BOARD, &rectangle].map(|board| distance_m(board, p_o).unwrap());
+        // parry's iteration.
+        assert!((of_box - of_plate).abs() < 1e-6, "{p_o:?}: {of_box} {of_plate}");
+    }
+    // By hand: the line 0.2 x + 0.25 y = 0.05 of the diamond, from a corner of its bounding box.
+    let expected_m = 0.05 / 0.2_f64.hypot(0.25) - 0.01;
+    assert!((distance_m(&diamond, [0.25, 0.2, 0.0]).unwrap() - expected_m).abs() < 1e-6);
+    assert!(distance_m(&rectangle, [0.25, 0.2, 0.0]).unwrap() < 0.0);
+    // In the hole.
+    assert!(distance_m(&diamond, [0.0, 0.0, 0.0]).unwrap() < 0.0);
 }
 
 #[test]
