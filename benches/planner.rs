@@ -1,4 +1,7 @@
-//! The planner: its maps, and a plan of a cut and of a hole on kept maps.
+//! The planner: its maps, and a plan of a cut and of a hole on kept maps; the maps of two Panda arms beside those of Baxter.
+
+#[path = "../tests/common/serial.rs"]
+mod serial;
 
 use std::hint::black_box;
 
@@ -25,6 +28,10 @@ fn planner(criterion: &mut Criterion) {
         planner.prepare(&scenario).expect("a valid person");
         group.bench_function(format!("plan/{name}"), |bencher| bencher.iter(|| planner.plan(black_box(&scenario))));
     }
+    let pandas = serial::pandas(&[0.45, -0.45].map(|y_m| [[0.0, y_m, 0.0], [0.0; 3]]));
+    group.bench_function("library and warm starts/drill-5, two Pandas", |bencher| {
+        bencher.iter(|| Planner::new(black_box(&pandas)).prepare(&loaded.scenario).expect("a valid person"));
+    });
     group.finish();
 }
 

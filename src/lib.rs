@@ -30,6 +30,7 @@
 //! |---|---|
 //! | [`model`] | types that the other modules exchange |
 //! | [`check`] | a plan against its robot, tool and person |
+//! | [`complete`] | the joint angles of arms whose grippers' poses are given |
 //! | [`scenario`] | scenario and plan files: reading, checks, defaults |
 //! | [`robot`] | the robot from a URDF and a description file: kinematics, dynamics, inverse kinematics |
 //! | [`human`] | the person: body, arm, strength, muscular and peripersonal comfort |
@@ -111,6 +112,7 @@ pub mod check;
 pub mod cli;
 pub mod collision;
 pub mod comfort;
+pub mod complete;
 pub mod human;
 pub mod judge;
 pub mod model;
@@ -121,6 +123,7 @@ pub mod report;
 pub mod reproduce;
 pub mod robot;
 pub mod scenario;
+pub mod setup;
 pub mod sim;
 pub mod statics;
 

@@ -212,10 +212,7 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
         flaws.push(Flaw::ArmTwice { arm, found: hold.name.clone() });
     }
     check_joints(robot, index, arm, hold, flaws);
-    let across = [hold.x_og.translation.vector.z.abs(), (hold.x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
-    if !GIVEN.allows(across) {
-        flaws.push(Flaw::FingersAcross { arm, off_m: across[0], off_rad: across[1] });
-    }
+    flaws.extend(fingers_across(arm, &hold.x_og));
     // Wrong angles or a wrong grasp put the gripper elsewhere: one fault, one flaw.
     let is_comparable = flaws.len() == before;
     let gripper = &robot.arms[index].gripper;
@@ -238,6 +235,14 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
         flaws.push(Flaw::Hand { arm, name, off_m: off[0], off_rad: off[1], tolerance: GIVEN });
     }
     Some(CheckedArm { index, hold, chain, off })
+}
+
+/// The flaw of a grasp whose fingers do not close across the board's thickness: G off the board's middle plane, or y_G off its
+/// normal.
+#[must_use]
+pub fn fingers_across(arm: usize, x_og: &Pose) -> Option<Flaw> {
+    let [off_m, off_rad] = [x_og.translation.vector.z.abs(), (x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
+    (!GIVEN.allows([off_m, off_rad])).then_some(Flaw::FingersAcross { arm, off_m, off_rad })
 }
 
 fn check_joints(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, flaws: &mut Vec<Flaw>) {

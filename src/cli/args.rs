@@ -5,7 +5,10 @@ use std::{num::NonZero, path::PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::{help, versions};
-use crate::model::scenario::{Budget, PlannerKind, PlannerSettings};
+use crate::model::{
+    frames::{Pose, PoseRecord, RpyRecord},
+    scenario::{Budget, PlannerKind, PlannerSettings},
+};
 
 /// Plans how a two-armed robot holds a board that a person drills or cuts, and verifies the plan in simulation.
 #[derive(Debug, Parser)]
@@ -29,6 +32,8 @@ pub enum Command {
     Circle(CircleArgs),
     /// Simulate and judge a plan, also one from another planner
     Simulate(SimulateArgs),
+    /// Make a plan of the grasps of another planner, from isaac_grasp or moveit_msgs/Grasp in YAML
+    Import(ImportArgs),
     /// Write the best and worst muscular comfort along a circular cut as CSV and SVG
     Curve(CurveArgs),
     /// Plan, simulate and report the paper's evaluation: 25 operations, four planners
@@ -45,11 +50,54 @@ pub enum Command {
     /// Open a recording in the rerun viewer
     #[cfg(feature = "recording")]
     View(ViewArgs),
-    /// Check the installation: assets, versions, physics and solver
-    #[command(after_help = help::DOCTOR)]
-    Doctor,
+    /// Write the description of a robot from its URDF
+    #[command(subcommand)]
+    Robot(RobotCommand),
+    /// Check the installation: assets, versions, physics and solver; or the description of a robot
+    Doctor(DoctorArgs),
     /// Print a shell's completion script
     Completions(CompletionsArgs),
+}
+
+/// A command about robots.
+#[derive(Debug, Subcommand)]
+pub enum RobotCommand {
+    /// Find arms and grippers of a URDF and write a description that can be used at once
+    New(RobotNewArgs),
+}
+
+/// `benchdog robot new`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::ROBOT_NEW)]
+pub struct RobotNewArgs {
+    /// URDF file
+    pub urdf: PathBuf,
+    /// SRDF file; the pairs of links that it disables may overlap
+    #[arg(long, value_name = "FILE")]
+    pub srdf: Option<PathBuf>,
+    /// Folder that contains packages of meshes, beside ROS_PACKAGE_PATH and the folders above the URDF; may be repeated
+    #[arg(long, value_name = "DIR")]
+    pub packages: Vec<PathBuf>,
+    /// File for the description
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Also write a scenario to this file: a board drilled with 10 N
+    #[arg(long, value_name = "FILE")]
+    pub scenario: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// `benchdog doctor`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::DOCTOR)]
+pub struct DoctorArgs {
+    /// Description of a robot to check in place of the installation
+    pub description: Option<PathBuf>,
+    /// Record the robot with pads and points, its arms in the middle of their ranges
+    #[arg(long, value_name = "FILE", requires = "description")]
+    pub record: Option<PathBuf>,
 }
 
 /// Options of `run` and `simulate`.
@@ -194,6 +242,68 @@ pub struct SimulateArgs {
     /// Reports and recordings.
     #[command(flatten)]
     pub report: ReportArgs,
+}
+
+/// `benchdog import`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::IMPORT)]
+pub struct ImportArgs {
+    /// File with grasps: isaac_grasp 1.0, or messages of moveit_msgs/Grasp, in YAML
+    #[arg(value_name = "GRASPS")]
+    pub grasps: PathBuf,
+    /// Scenario with the robot, the board and the operation
+    #[arg(long, value_name = "FILE")]
+    pub scenario: PathBuf,
+    /// An arm and its grasp by name; once for each arm that holds the board
+    #[arg(long, required = true, value_name = "ARM=GRASP", value_parser = arm_choice)]
+    pub arm: Vec<ArmChoice>,
+    /// Pose of the board in the robot's base; by default the first of the search domain that the arms reach
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = pose)]
+    pub board_pose: Option<Pose>,
+    /// Pose of our gripper frame G in the file's gripper frame
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = pose, default_value = "0 0 0 0 0 0")]
+    pub gripper_frame: Pose,
+    /// Pose of the file's object frame in our board frame O
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = pose, default_value = "0 0 0 0 0 0")]
+    pub object_frame: Pose,
+    /// Name of a frame in the file that is the robot's base; all other frames are the board's. Needs --board-pose
+    #[arg(long, value_name = "NAME", requires = "board_pose")]
+    pub world_frame: Option<String>,
+    /// File for the plan, by default standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// An arm and its grasp.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ArmChoice {
+    /// Name of the arm.
+    pub arm: String,
+    /// Name of the grasp.
+    pub grasp: String,
+}
+
+/// Parses `ARM=GRASP`.
+fn arm_choice(text: &str) -> Result<ArmChoice, String> {
+    match text.split_once('=') {
+        Some((arm, grasp)) if !arm.is_empty() && !grasp.is_empty() => {
+            Ok(ArmChoice { arm: arm.to_owned(), grasp: grasp.to_owned() })
+        }
+        _ => Err("expected ARM=GRASP, such as left=grasp_0".into()),
+    }
+}
+
+/// Parses a pose: `x y z roll pitch yaw` in m and rad, or `x y z qx qy qz qw`.
+fn pose(text: &str) -> Result<Pose, String> {
+    let numbers: Result<Vec<f64>, _> =
+        text.split([' ', ',']).filter(|part| !part.is_empty()).map(str::parse::<f64>).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z, roll, pitch, yaw]) => Pose::try_from(RpyRecord { xyz_m: [x, y, z], rpy_rad: [roll, pitch, yaw] }),
+        Ok(&[x, y, z, qx, qy, qz, qw]) => {
+            Pose::try_from(PoseRecord { translation_m: [x, y, z], rotation_xyzw: [qx, qy, qz, qw] })
+        }
+        _ => Err("expected \"x y z roll pitch yaw\" in m and rad, or \"x y z qx qy qz qw\"".into()),
+    }
 }
 
 /// `benchdog curve`.

@@ -1,8 +1,9 @@
 //! `benchdog doctor`: checks that Benchdog works on this machine.
 
 use super::{
+    args::DoctorArgs,
     exit::{CliError, Exit},
-    output,
+    output, robot_check,
     versions::LONG,
 };
 use crate::{
@@ -44,7 +45,10 @@ type Check = (&'static str, fn() -> CheckResult);
 ///
 /// # Errors
 /// If standard output cannot be written or a check fails.
-pub fn doctor() -> Result<Exit, CliError> {
+pub fn doctor(args: &DoctorArgs) -> Result<Exit, CliError> {
+    if let Some(description) = &args.description {
+        return robot_check::check(description, args);
+    }
     let checks: [Check; 5] =
         [("versions", versions), ("robot", robot), ("person", person), ("solver", solver), ("physics", physics)];
     let mut wrong = Vec::new();

@@ -62,6 +62,12 @@ pub enum CliError {
     /// The simulation cannot be set up from a plan.
     #[error("failed to simulate the plan: {0}")]
     Simulation(crate::sim::SimError),
+    /// A robot cannot be loaded.
+    #[error(transparent)]
+    Robot(#[from] crate::robot::RobotError),
+    /// No description can be written.
+    #[error(transparent)]
+    Setup(#[from] crate::setup::SetupError),
     /// The person or the tool is invalid.
     #[error(transparent)]
     Human(#[from] crate::human::HumanError),
@@ -120,6 +126,8 @@ impl CliError {
             | Self::Input(_)
             | Self::Simulation(_)
             | Self::Human(_)
+            | Self::Robot(_)
+            | Self::Setup(_)
             | Self::Plan(_)
             | Self::Flaws(_)
             | Self::OverwritesInput(_)

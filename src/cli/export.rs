@@ -3,7 +3,7 @@
 use super::{
     args::ExportArgs,
     exit::{CliError, Exit},
-    inputs,
+    inputs, output,
 };
 use crate::{
     check::CheckedPlan,
@@ -15,6 +15,7 @@ use crate::{
 pub fn export(args: &ExportArgs) -> Result<Exit, CliError> {
     let loaded = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
     inputs::protect(&loaded.inputs, [args.mjcf.clone()])?;
+    output::notes(&loaded.filled_in);
     let checked = CheckedPlan::new(&loaded.robot, &loaded.plan, &loaded.scenario.human, &loaded.scenario.tool)?;
     let conditions = Conditions::of(&loaded.scenario);
     let text = sim::mjcf(&checked, &conditions, &loaded.scenario.limits).map_err(CliError::Simulation)?;

@@ -74,6 +74,24 @@ Examples:
   benchdog export plan.json --mjcf scene.xml
   python3 tools/crosscheck.py plan.json     plays the export in MuJoCo and compares the verdicts";
 
+/// `benchdog import --help`.
+pub const IMPORT: &str = "\
+Examples:
+  benchdog import grasps.yaml --scenario panel.toml --arm left=grasp_0 -o plan.json
+  benchdog import grasps.yaml --scenario panel.toml --arm left=grasp_0 --arm right=grasp_3 \\
+      --board-pose '0.6 0.1 0.2 0 1.57 0' --gripper-frame '0 0 0.1 0 1.5708 0' -o plan.json
+  benchdog simulate plan.json
+
+A POSE is 'x y z roll pitch yaw' in m and rad, about fixed axes as in a URDF, or
+'x y z qx qy qz qw'. Our frames: O is the board's centre, x along its width, z out of the worked
+face. G is the frame of the robot's gripper: z out of the gripper, y along which the fingers open;
+its origin is in the board's middle plane and y along the board's normal, to 1 mm and 0.1 degrees.
+Robot, board, operation and grip force are the scenario's; the arms' angles follow by inverse
+kinematics. The gripper's opening in the file is not used: the fingers close on the board.
+The plan has no person. Without --board-pose the poses of the planner's search domain are tried in
+the order of the scenario's seed; neither person nor load has a part in the choice. The exit code
+is 3 if no pose is reached.";
+
 /// `benchdog curve --help`.
 pub const CURVE: &str = "\
 Examples:
@@ -120,10 +138,19 @@ The viewer is not part of benchdog. `pip install rerun-sdk==0.36.3` or
 
 /// `benchdog doctor --help`.
 pub const DOCTOR: &str = "\
-Example:
+Examples:
   benchdog doctor
+  benchdog doctor my-robot.toml --record my-robot.rrd
 
 The exit code is 0 if all checks pass. A missing viewer is reported but is not a failure.";
+
+/// `benchdog robot new --help`.
+pub const ROBOT_NEW: &str = "\
+Examples:
+  benchdog robot new ur5.urdf -o my-robot.toml --scenario my-drill.toml
+  benchdog robot new pr2.urdf --srdf pr2.srdf --packages ~/ros/share -o my-robot.toml
+
+Figures that no URDF has are assumed and marked in the description. docs/robot.md shows the way from a URDF to a verdict.";
 
 /// `benchdog completions --help`.
 pub const COMPLETIONS: &str = "\

@@ -51,7 +51,9 @@ struct Margin {
 
 /// Finds and reports the margin of a plan.
 pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
-    let LoadedPlan { plan, robot, scenario, .. } = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
+    let LoadedPlan { plan, filled_in, robot, scenario, .. } =
+        scenario::load_plan(&args.plan, args.scenario.as_deref())?;
+    output::notes(&filled_in);
     let checked = CheckedPlan::new(&robot, &plan, &scenario.human, &scenario.tool)?;
     let margin = margin_of(&checked, &scenario)?;
     match args.format {

@@ -11,6 +11,7 @@ mod export;
 mod finish;
 mod front;
 mod help;
+mod import;
 mod inputs;
 #[cfg(feature = "recording")]
 mod inspect;
@@ -28,6 +29,8 @@ mod recording;
 #[path = "no_recording.rs"]
 mod recording;
 mod reproduce;
+mod robot;
+mod robot_check;
 mod run;
 mod schema;
 mod select;
@@ -41,6 +44,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use args::RobotCommand;
 pub use args::{Cli, Command};
 pub use exit::Exit;
 
@@ -65,11 +69,13 @@ pub fn main() -> ExitCode {
         Command::Schema(args) => schema::schema(args),
         Command::Margin(args) => margin::margin(args),
         Command::Export(args) => export::export(args),
+        Command::Import(args) => import::import(args),
         #[cfg(feature = "recording")]
         Command::Inspect(args) => inspect::inspect(args),
         #[cfg(feature = "recording")]
         Command::View(args) => view::view(args),
-        Command::Doctor => doctor::doctor(),
+        Command::Robot(RobotCommand::New(args)) => robot::new(args),
+        Command::Doctor(args) => doctor::doctor(args),
         Command::Completions(args) => completions::completions(args),
     });
     match outcome {

@@ -19,3 +19,8 @@ pub fn print(text: &str) -> Result<(), CliError> {
 pub fn message(message: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{message}");
 }
+
+/// Writes notes to standard error.
+pub fn notes(notes: &[String]) {
+    notes.iter().for_each(|note| message(&format!("note: {note}")));
+}

@@ -50,16 +50,23 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
             }
         },
     };
-    run_plan(scenario, &loaded.robot, plan)
+    run_plan(scenario, &loaded.robot, plan, &loaded.filled_in)
 }
 
-/// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. A plan whose bodies meet in the
+/// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. The notes of the verdict begin with
+/// what was filled in. A plan whose bodies meet in the
 /// planned pose is not simulated; its verdict is `collides`, or `touches` if one is the person. Nor is one whose person would
 /// not stand or see so; its verdict is `infeasible`.
 ///
 /// # Errors
 /// If the simulation cannot be set up from the plan.
-pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
+pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan, filled_in: &[String]) -> Result<Run, CliError> {
+    let mut run = run_complete_plan(scenario, robot, plan)?;
+    run.verdict.notes.splice(..0, filled_in.iter().cloned());
+    Ok(run)
+}
+
+fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
     let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
     let posture = checked.posture();
     if let Some(contact) = checked.first_contact(0.0) {

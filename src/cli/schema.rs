@@ -8,8 +8,8 @@ use super::{
     output,
 };
 use crate::{
-    model::{plan::Plan, verdict::Verdict},
-    scenario::file::ScenarioFile,
+    model::verdict::Verdict,
+    scenario::{file::ScenarioFile, plan_input::PlanFile},
 };
 
 /// Prints a schema.
@@ -22,7 +22,7 @@ pub fn schema(args: &SchemaArgs) -> Result<Exit, CliError> {
 fn schema_text(of: SchemaOf) -> String {
     let schema: Schema = match of {
         SchemaOf::Scenario => schema_for!(ScenarioFile),
-        SchemaOf::Plan => schema_for!(Plan),
+        SchemaOf::Plan => schema_for!(PlanFile),
         SchemaOf::Verdict => schema_for!(Verdict),
     };
     // A JSON value can always be printed: its keys are strings and its numbers finite.

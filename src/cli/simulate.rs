@@ -15,13 +15,14 @@ use crate::{
 
 /// Simulates and judges a plan under the given scenario, the one in the plan, or the defaults for its operation.
 pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
-    let LoadedPlan { path, plan, robot, scenario, inputs } = scenario::load_plan(&args.plan, args.scenario.as_deref())?;
+    let LoadedPlan { path, plan, filled_in, robot, scenario, inputs } =
+        scenario::load_plan(&args.plan, args.scenario.as_deref())?;
     finish::protect(&args.report, &plan.name, Some(&path), &inputs)?;
     finish::keep_other_plan(&args.report, &plan)?;
     report::file::check_folder(&args.report.out)?;
     let start = Instant::now();
     let mut finished = FinishedRun::catch(&plan.name.clone(), || {
-        let run = pipeline::run_plan(&scenario, &robot, plan)?;
+        let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in)?;
         finish::write_run(run, &scenario, &robot, Some(&path), &args.report)
     })?;
     finished.wall_s = Some(start.elapsed().as_secs_f64());

@@ -3,10 +3,12 @@
 //! Primitives of robot and board and capsules of the person are compared with parry. Bounding spheres of links and of
 //! primitives exclude pairs that are far apart. The required distances are those of docs/method.md#35-clearances.
 
+mod board_distance;
 mod clearances;
 mod link_shapes;
 mod near_pairs;
 mod nearest;
+mod overlaps;
 mod person_clearance;
 mod self_pairs;
 mod shapes;

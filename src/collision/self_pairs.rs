@@ -1,7 +1,7 @@
 //! The pairs of links that must not touch, and the distance that each can be asked to keep (docs/method.md#35-clearances).
 
 use super::{link_shapes::LinkShapes, shapes::Measure};
-use crate::robot::{JointKind, Robot};
+use crate::robot::Robot;
 
 /// Pairs with at most this many moving joints between their links have a largest distance: the design of the arm.
 const JOINTS_BETWEEN: usize = 2;
@@ -29,24 +29,25 @@ impl SelfPair {
     }
 }
 
-/// All pairs of links with primitives but those that are fixed to each other and the robot's allowed collisions.
+/// All pairs of links with shapes but those that do not move against each other and the robot's allowed collisions.
 pub(super) fn self_pairs(robot: &Robot, links: &[LinkShapes]) -> Vec<SelfPair> {
-    let groups = rigid_groups(robot);
+    let active = robot.active_joints();
+    let groups = rigid_groups(robot, &active);
     (0..links.len())
         .flat_map(|a| (a + 1..links.len()).map(move |b| [a, b]))
         .filter(|&[a, b]| !links[a].pieces.is_empty() && !links[b].pieces.is_empty() && groups[a] != groups[b])
         .filter(|pair| !robot.allowed_collisions.contains(pair))
-        .map(|pair| SelfPair { links: pair, most_m: most_m(robot, links, pair) })
+        .map(|pair| SelfPair { links: pair, most_m: most_m(robot, &active, links, pair) })
         .collect()
 }
 
 /// A share of the largest distance of two links over the positions of the joints between them; infinite if these are many.
-fn most_m(robot: &Robot, links: &[LinkShapes], [a, b]: [usize; 2]) -> f64 {
-    let joints = joints_between(robot, a, b);
+fn most_m(robot: &Robot, active: &[bool], links: &[LinkShapes], [a, b]: [usize; 2]) -> f64 {
+    let joints = joints_between(robot, active, a, b);
     if joints.len() > JOINTS_BETWEEN {
         return f64::INFINITY;
     }
-    let mut positions = vec![0.0; robot.joints.len()];
+    let mut positions = robot.positions(&[]);
     let mut farthest_m = 0.0_f64;
     for number in 0..POSITIONS.pow(joints.len() as u32) {
         for (place, &joint) in joints.iter().enumerate() {
@@ -69,12 +70,12 @@ fn range(robot: &Robot, joint: usize) -> [f64; 2] {
 }
 
 /// The moving joints that are above one of two links and not above both.
-fn joints_between(robot: &Robot, a: usize, b: usize) -> Vec<usize> {
+fn joints_between(robot: &Robot, active: &[bool], a: usize, b: usize) -> Vec<usize> {
     let above = |link: usize| {
         let parent = |link: &usize| robot.links[*link].parent_joint.map(|joint| robot.joints[joint].parent_link);
         let links = std::iter::successors(Some(link), parent);
         let joints = links.filter_map(|link| robot.links[link].parent_joint);
-        joints.filter(|&joint| robot.joints[joint].kind != JointKind::Fixed).collect::<Vec<_>>()
+        joints.filter(|&joint| active[joint]).collect::<Vec<_>>()
     };
     let [of_a, of_b] = [above(a), above(b)];
     let own = |own: &[usize], other: &[usize]| own.iter().copied().filter(|joint| !other.contains(joint)).collect();
@@ -83,11 +84,11 @@ fn joints_between(robot: &Robot, a: usize, b: usize) -> Vec<usize> {
     between
 }
 
-/// For every link the first link of its rigid group. Links joined by fixed joints do not move relative to each other.
-fn rigid_groups(robot: &Robot) -> Vec<usize> {
+/// For every link the first link of its rigid group. Links move against each other by the joints of arms and grippers only.
+fn rigid_groups(robot: &Robot, active: &[bool]) -> Vec<usize> {
     let mut groups: Vec<usize> = (0..robot.links.len()).collect();
-    for joint in &robot.joints {
-        if joint.kind == JointKind::Fixed {
+    for (joint, active) in robot.joints.iter().zip(active) {
+        if !active {
             groups[joint.child_link] = groups[joint.parent_link];
         }
     }

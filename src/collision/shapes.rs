@@ -72,11 +72,11 @@ impl Piece {
 
     /// All primitives of a link.
     pub fn of_link(link: &Link) -> Vec<Self> {
-        link.shapes.iter().map(|placed| Self::primitive(&placed.x_ls, placed.shape)).collect()
+        link.shapes.iter().map(|placed| Self::of_shape(&placed.x_ls, &placed.shape)).collect()
     }
 
-    fn primitive(x_ls: &Pose, shape: Shape) -> Self {
-        match shape {
+    fn of_shape(x_ls: &Pose, shape: &Shape) -> Self {
+        match *shape {
             Shape::Box { half_m: [x, y, z] } => {
                 Self::at(x_ls, SharedShape::cuboid(x, y, z), DVec3::new(x, y, z).length())
             }
@@ -88,6 +88,16 @@ impl Piece {
                 Self::at(&(x_ls * y_to_z), shape, radius_m.hypot(half_length_m))
             }
             Shape::Sphere { radius_m } => Self::at(x_ls, SharedShape::ball(radius_m), radius_m),
+            Shape::Hull(ref hull) => {
+                let points: Vec<DVec3> = hull.points_m.iter().map(|p| DVec3::new(p.x, p.y, p.z)).collect();
+                let radius_m = points.iter().map(|point| point.length()).fold(0.0, f64::max);
+                // The surface of a convex hull is one of a convex polyhedron but for faces of rounding size; the hull of its
+                // corners is then computed once more.
+                let shape = SharedShape::convex_mesh(points.clone(), &hull.triangles)
+                    .or_else(|| SharedShape::convex_hull(&points))
+                    .unwrap_or_else(|| SharedShape::ball(radius_m));
+                Self::at(x_ls, shape, radius_m)
+            }
         }
     }
 
@@ -205,7 +215,7 @@ impl Placed<'_> {
 
     /// Distance between two primitives, m; zero if they overlap.
     pub fn distance_m(&self, other: &Placed<'_>) -> f64 {
-        // All pairs are supported, since boxes, cylinders, balls and capsules are support-mapped.
+        // All pairs are supported, since boxes, cylinders, balls, capsules and convex polyhedra are support-mapped.
         query::distance(&self.pose, &**self.shape, &other.pose, &**other.shape).map_or(0.0, |found| found.distance)
     }
 }

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    frames::{Pose, PoseRecord, pose},
+    frames::{Pose, PoseForm, pose},
     plate::{OutlineSide, Plate},
     polygon::Point,
 };
@@ -239,7 +239,7 @@ pub struct PlacedObject {
     pub com_m: Option<[f64; 3]>,
     /// Pose of the board in W.
     #[serde(with = "pose")]
-    #[schemars(with = "PoseRecord")]
+    #[schemars(with = "PoseForm")]
     pub x_wo: Pose,
 }
 

@@ -17,69 +17,21 @@
 
 use std::borrow::Cow;
 
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::Isometry3;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Serialize, de::Error as _};
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
+
+pub use super::pose_form::{
+    MatrixRecord, PoseForm, PoseRecord, RpyRecord, rotation_from_rows, rotation_from_rpy, rotation_from_xyzw,
+};
 
 /// A rigid transform; `x_ab * p_b = p_a`.
 pub type Pose = Isometry3<f64>;
 
-/// Largest deviation of a quaternion's length from 1 in a file. Six written digits stay within it.
-const UNIT_TOLERANCE: f64 = 1e-5;
-
-/// A quaternion whose length deviates less than this is kept bit by bit: a plan read from a file then gives the same
-/// simulation as the plan that was written.
-const NORMALISED: f64 = 1e-12;
-
-/// A [`Pose`] in a file: `{"translation_m": [x, y, z], "rotation_xyzw": [x, y, z, w]}`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PoseRecord {
-    /// Position of the frame's origin, m.
-    pub translation_m: [f64; 3],
-    /// Unit quaternion, scalar last.
-    pub rotation_xyzw: [f64; 4],
-}
-
-impl From<&Pose> for PoseRecord {
-    fn from(pose: &Pose) -> Self {
-        Self { translation_m: pose.translation.vector.into(), rotation_xyzw: pose.rotation.quaternion().coords.into() }
-    }
-}
-
-/// The rotation of a quaternion, scalar last.
-///
-/// # Errors
-/// If the quaternion is not finite or its length differs from 1 by more than 1e-5.
-pub fn rotation_from_xyzw(xyzw: [f64; 4]) -> Result<UnitQuaternion<f64>, String> {
-    let [x, y, z, w] = xyzw;
-    let quaternion = Quaternion::new(w, x, y, z);
-    let length = quaternion.norm();
-    let deviation = (length - 1.0).abs();
-    if deviation.is_nan() || deviation > UNIT_TOLERANCE {
-        return Err(format!("found a quaternion of length {length}, expected unit length"));
-    }
-    Ok(if deviation <= NORMALISED {
-        UnitQuaternion::new_unchecked(quaternion)
-    } else {
-        UnitQuaternion::new_normalize(quaternion)
-    })
-}
-
-impl TryFrom<PoseRecord> for Pose {
-    type Error = String;
-
-    fn try_from(record: PoseRecord) -> Result<Self, String> {
-        if !record.translation_m.iter().all(|v| v.is_finite()) {
-            return Err("found a translation that is not finite, expected metres".into());
-        }
-        Ok(Isometry3::from_parts(Translation3::from(record.translation_m), rotation_from_xyzw(record.rotation_xyzw)?))
-    }
-}
-
-/// For `#[serde(with = "frames::pose")]`: serialises a [`Pose`] as a [`PoseRecord`].
+/// For `#[serde(with = "frames::pose")]`: writes a [`Pose`] as a [`PoseRecord`] and reads any
+/// [`PoseForm`].
 pub mod pose {
-    use serde::{Deserializer, Serializer};
+    use serde::Serializer;
 
     use super::*;
 
@@ -88,13 +40,22 @@ pub mod pose {
         PoseRecord::from(pose).serialize(serializer)
     }
 
-    /// Reads a pose from a [`PoseRecord`].
+    /// Reads a pose from one of its forms.
     ///
     /// # Errors
-    /// If the record is malformed or its quaternion is not of unit length.
+    /// If the form is malformed or the pose is not rigid.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Pose, D::Error> {
-        Pose::try_from(PoseRecord::deserialize(deserializer)?).map_err(D::Error::custom)
+        Pose::try_from(PoseForm::deserialize(deserializer)?).map_err(D::Error::custom)
     }
+}
+
+/// For `#[serde(deserialize_with = "frames::optional_pose")]`: reads a pose from one of its forms, or none from `null`.
+///
+/// # Errors
+/// If the form is malformed or the pose is not rigid.
+pub fn optional_pose<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Pose>, D::Error> {
+    let form = Option::<PoseForm>::deserialize(deserializer)?;
+    form.map(Pose::try_from).transpose().map_err(D::Error::custom)
 }
 
 /// The JSON Schema of a wrench: an array of six numbers.

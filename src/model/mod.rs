@@ -15,6 +15,7 @@ mod person;
 pub mod plan;
 pub mod plate;
 pub mod polygon;
+mod pose_form;
 pub mod scenario;
 pub mod tool_part;
 pub mod trace;

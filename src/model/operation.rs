@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    frames::{Pose, PoseRecord, WrenchSchema, pose},
+    frames::{Pose, PoseForm, WrenchSchema, pose},
     wrench::Wrench,
 };
 
@@ -51,7 +51,7 @@ pub struct Operation {
     pub wrench_o: Wrench,
     /// The tool's pose in O: z_T points out of the tool into the material; for a blade x_T is the cutting direction.
     #[serde(with = "pose")]
-    #[schemars(with = "PoseRecord")]
+    #[schemars(with = "PoseForm")]
     pub x_ot: Pose,
 }
 

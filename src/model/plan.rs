@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    frames::{Pose, PoseRecord, pose},
+    frames::{Pose, PoseForm, pose},
     omitted::is_default,
     operation::Operation,
     scenario::{Hand, Limits, Person, PlannerKind, Scenario, Sex},
@@ -68,7 +68,7 @@ pub struct ArmHold {
     pub q_rad: Vec<f64>,
     /// The gripper's pose in O.
     #[serde(with = "pose")]
-    #[schemars(with = "PoseRecord")]
+    #[schemars(with = "PoseForm")]
     pub x_og: Pose,
     /// The force that closes each finger, N.
     pub grip_force_n: f64,
@@ -93,7 +93,7 @@ pub struct HumanPosture {
     pub lean_deg: f64,
     /// Pose of the body in W; its origin is on the floor between the feet.
     #[serde(with = "pose")]
-    #[schemars(with = "PoseRecord")]
+    #[schemars(with = "PoseForm")]
     pub x_wb: Pose,
     /// Joint angles of the working arm, rad. For a left-handed person those of the mirrored right arm.
     pub q_rad: [f64; 7],

@@ -3,6 +3,8 @@
 //! Most keys of a scenario file are optional; `crate::scenario` reads, checks and completes the file. A plan contains the
 //! resolved scenario, so that its values can be recomputed from the plan's file alone.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -62,6 +64,12 @@ pub struct Scenario {
 pub struct RobotParameters {
     /// The name of a built-in robot, or the path of a description file.
     pub description: String,
+    /// Folders in which packages are looked for before those of the description.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub packages: Vec<String>,
+    /// Positions of joints that are not part of an arm or a gripper, in place of those of the description, rad or m.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub posture: BTreeMap<String, f64>,
     /// One entry per arm, in the description's order.
     pub arms: Vec<ArmParameters>,
 }

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     model::frames::Pose,
     robot::{
-        Chain, InverseKinematics,
+        Chain,
         bimanual::{Combination, Combinations, RankedSolutions},
     },
 };
@@ -51,12 +51,7 @@ pub fn other_configurations(evaluator: &mut Evaluator<'_>, found: &Feasible, apa
 /// All solutions of an arm for a grasp, those farthest from the joint limits first.
 fn solutions(arm: &GraspingArm, x_wo: &Pose, x_og: &Pose) -> RankedSolutions {
     let least_margin = |q_rad: &[f64]| -limit_margin(&arm.chain, q_rad);
-    match &arm.inverse {
-        InverseKinematics::ClosedForm(closed_form) => RankedSolutions::of_grasp(closed_form, x_wo, x_og, least_margin),
-        InverseKinematics::General(_) => {
-            RankedSolutions::new(arm.inverse.samples(&(x_wo * x_og), SOLUTION_STARTS), least_margin)
-        }
-    }
+    RankedSolutions::of_arm(&arm.inverse, &(x_wo * x_og), SOLUTION_STARTS, least_margin)
 }
 
 /// The least distance of a joint from its nearer limit as a share of half its range: 1 in the middle, 0 at a limit.

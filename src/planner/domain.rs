@@ -13,10 +13,10 @@ use crate::{
         frames::Pose,
         grasp::{EdgeGrasp, pad_corners_m},
     },
-    robot::{Chain, Gripper},
+    robot::{Chain, Gripper, SearchBox},
 };
 
-/// Depth of the gripper's origin inside the edge, m (docs/method.md#25-edge-grasps).
+/// Depth of the gripper's origin inside the edge, m, of a gripper whose palm allows it (docs/method.md#25-edge-grasps).
 pub const DEPTH_M: [f64; 2] = [0.020, 0.060];
 /// Angle of the gripper in the board's plane, rad (docs/method.md#25-edge-grasps).
 pub const ANGLE_RAD: [f64; 2] = [-FRAC_PI_4, FRAC_PI_4];
@@ -53,7 +53,12 @@ pub struct SearchDomain {
 impl SearchDomain {
     /// The domain of a robot with these arms: a box in front of the shoulders and at the person's working height. The arms'
     /// reach is the shortest one's, from its first joint to the gripper.
-    pub fn of<'c>(arms: impl Iterator<Item = &'c Chain> + Clone, floor_z_m: f64) -> Self {
+    ///
+    /// A box of the robot's description comes first.
+    pub fn of<'c>(arms: impl Iterator<Item = &'c Chain> + Clone, floor_z_m: f64, given: Option<SearchBox>) -> Self {
+        if let Some(SearchBox { x_m, y_m, z_m }) = given {
+            return Self { x_m, y_m, z_m, facing_rad: FACING_RAD };
+        }
         let count = arms.clone().count().max(1) as f64;
         let shoulders_m = arms.clone().map(Chain::shoulder_w).sum::<Vector3<f64>>() / count;
         let reach_m = arms.map(Chain::reach_m).fold(f64::INFINITY, f64::min);
@@ -127,13 +132,13 @@ pub fn draw_other_edge(edge: Edge, opposite: Edge, random: &mut Pcg64) -> Edge {
     if random.random_bool(OPPOSITE_EDGE) { opposite } else { edge }
 }
 
-/// A uniformly distributed grasp on an edge; its pads may lie partly off the board.
-pub fn draw_grasp(edge: Edge, board: &BoardShape, random: &mut Pcg64) -> EdgeGrasp {
+/// A uniformly distributed grasp on an edge with a depth in this range, m; its pads may lie partly off the board.
+pub fn draw_grasp(edge: Edge, board: &BoardShape, depth_m: [f64; 2], random: &mut Pcg64) -> EdgeGrasp {
     let [low_m, high_m] = board.edge(edge).along_m;
     EdgeGrasp {
         edge,
         along_m: uniform(random, low_m, high_m),
-        depth_m: uniform(random, DEPTH_M[0], DEPTH_M[1]),
+        depth_m: uniform(random, depth_m[0], depth_m[1]),
         angle_rad: uniform(random, ANGLE_RAD[0], ANGLE_RAD[1]),
         flipped: random.random_bool(0.5),
     }
@@ -175,7 +180,7 @@ mod tests {
 
     fn domain(robot: &Robot) -> SearchDomain {
         let chains: Vec<_> = (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0)).collect();
-        SearchDomain::of(chains.iter(), robot.floor_z_m)
+        SearchDomain::of(chains.iter(), robot.floor_z_m, robot.search_box)
     }
 
     /// The box that was chosen for Baxter by hand, from where boards can be held: x 0.35 to 0.85, y -0.25 to 0.25, z -0.3 to
@@ -230,7 +235,7 @@ mod tests {
             let edges = graspable_edges(&board, std::iter::once(gripper));
             for _ in 0..20 {
                 let Some(edge) = draw_edge(&edges, &mut random) else { continue };
-                let grasp = draw_grasp(edge, &board, &mut random);
+                let grasp = draw_grasp(edge, &board, DEPTH_M, &mut random);
                 let margins_m = pad_margins_m(gripper, &grasp, &board);
                 assert_eq!(margins_m.len(), plate.sides().len() + 1);
                 let x_og = grasp.x_og(&board);

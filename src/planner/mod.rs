@@ -25,6 +25,7 @@ mod normalise;
 mod outcome;
 mod params;
 pub mod path;
+mod place_board;
 #[allow(clippy::module_inception)]
 mod planner;
 mod problem;
@@ -43,6 +44,7 @@ mod warm_starts;
 
 pub use front::{Front, FrontPoint};
 pub use outcome::{EmptyLibrary, Infeasible, MOST_FRICTION, NearMiss, Outcome, PlanError, Remedy, UnnaturalHolds};
+pub use place_board::{BOARD_DRAWS, PlacedBoard, place_board};
 pub use planner::{Planner, Search};
 pub use select::differ;
 pub use stats::{Observer, Progress};

@@ -110,14 +110,23 @@ fn tenths_of_percent(counts: &[u64]) -> Vec<u64> {
     shares.into_iter().map(|share| share as u64).collect()
 }
 
+/// The most shares that a message lists.
+const MOST_SHARES: usize = 8;
+
 /// Writes counts as shares that sum to 100 %, such as `: 60.2 % stability, 39.8 % robot reach`. Shares that are rounded to zero are
 /// left out.
 fn write_shares<S: std::fmt::Display>(f: &mut std::fmt::Formatter<'_>, counts: &[(S, u64)]) -> std::fmt::Result {
     let shares = tenths_of_percent(&counts.iter().map(|&(_, count)| count).collect::<Vec<_>>());
-    let written = counts.iter().zip(shares).filter(|&(_, share)| share > 0);
-    for (index, ((what, _), share)) in written.enumerate() {
+    let written: Vec<_> = counts.iter().zip(shares).filter(|&(_, share)| share > 0).collect();
+    // One that would be alone among the others is written itself.
+    let listed = if written.len() > MOST_SHARES + 1 { MOST_SHARES } else { written.len() };
+    for (index, ((what, _), share)) in written[..listed].iter().enumerate() {
         let mark = if index == 0 { ":" } else { "," };
         write!(f, "{mark} {}.{} % {what}", share / 10, share % 10)?;
+    }
+    let rest: u64 = written[listed..].iter().map(|(_, share)| share).sum();
+    if rest > 0 {
+        write!(f, ", {}.{} % {} others", rest / 10, rest % 10, written.len() - listed)?;
     }
     Ok(())
 }

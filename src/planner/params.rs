@@ -27,6 +27,12 @@ pub mod library {
     pub const DRAWS_PER_GRASP: usize = 200;
     /// The share of those draws after which the search is given up if nothing at all was found.
     pub const HOPELESS_SHARE: usize = 20;
+    /// Boards whose grasps are drawn for a robot with more than two arms, per grasp that is wanted, at most.
+    pub const BOARDS_PER_GRASP: usize = 4;
+    /// Boards that are drawn before the grasps so far are counted.
+    pub const BOARDS_AT_ONCE: usize = 256;
+    /// Grasps that are taken of each of these boards.
+    pub const GRASPS_PER_BOARD: usize = 2;
     /// Probability that a further gripper holds the edge opposite to the first one's instead of the same edge.
     pub const OPPOSITE_EDGE: f64 = 0.5;
     /// Distance of planned pads from a hole, m: twice the slip that is allowed by default, so that a pad that holds does not reach it.
@@ -34,8 +40,8 @@ pub mod library {
     /// Every n-th of the robot's points is in the coarse point set.
     pub const COARSE_STRIDE: usize = 3;
 
-    /// Grasps that are drawn for each arm on a resampled board.
-    pub const RESAMPLED_GRASPS: usize = 40;
+    /// Grasps that are drawn for each arm on a board at a known pose, by the number of arms: combinations grow with its power.
+    pub const GRASPS_PER_ARM: [usize; 4] = [40, 40, 20, 16];
     /// Grasps of one pattern that are kept of a resampled board.
     pub const RESAMPLED_PER_PATTERN: usize = 2;
 

@@ -1,10 +1,7 @@
 //! The 3-D scene: robot, board, operation, person, tool, pads and forces.
 
 use nalgebra::{Point3, Vector3};
-use rerun::{
-    Arrows3D, Boxes3D, Cylinders3D, Ellipsoids3D, EntityPath, FillMode, LineStrips3D, Points3D, Transform3D,
-    ViewCoordinates,
-};
+use rerun::{Arrows3D, Boxes3D, EntityPath, FillMode, LineStrips3D, Points3D, Transform3D, ViewCoordinates};
 
 use super::{
     crossings,
@@ -13,15 +10,12 @@ use super::{
     frames::{Frames, arm_indices, frames, quaternion, vec3},
     input::RecordingInput,
     messages::Messages,
-    palette, person, plate,
+    palette, person, plate, robot,
 };
-use crate::{
-    model::{
-        frames::Pose,
-        operation::{Operation, OperationKind},
-        trace::Sample,
-    },
-    robot::{PlacedShape, Robot, Shape},
+use crate::model::{
+    frames::Pose,
+    operation::{Operation, OperationKind},
+    trace::Sample,
 };
 
 /// Length of a force's arrow, m/N: 30 N are 0.12 m.
@@ -42,7 +36,7 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     messages.log_static(&entity(&["scene"]), &ViewCoordinates::RIGHT_HAND_Z_UP())?;
     let arms = arm_indices(input)?;
     let frames = frames(input, &arms);
-    log_robot(messages, input.robot, &frames)?;
+    robot::log(messages, input.robot, &frames)?;
     log_board(messages, input, &frames)?;
     if let Some(person) = input.person {
         person::log(messages, person)?;
@@ -53,65 +47,6 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
         log_pads(messages, input, &frames, arm, robot_arm)?;
     }
     log_load(messages, &frames)
-}
-
-fn log_robot(messages: &mut Messages, robot: &Robot, frames: &Frames) -> Result<(), RecordError> {
-    let carriers = robot.carriers();
-    for (index, link) in robot.links.iter().enumerate().filter(|(_, link)| !link.shapes.is_empty()) {
-        let path = entity(&["scene", "robot", &link.name]);
-        log_shapes(messages, &path, &link.shapes)?;
-        match carriers[index] {
-            Some(_) => {
-                let poses = frames.x_wl.iter().map(|x_wl| x_wl[index]);
-                log_poses(messages, &path, &frames.times_s, poses)?;
-            }
-            None => {
-                let x_wl = frames.x_wl.first().map_or_else(Pose::identity, |x_wl| x_wl[index]);
-                messages.log_static(&path, &transform(&x_wl))?;
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Logs the shapes of a link, grouped by kind.
-fn log_shapes(messages: &mut Messages, path: &EntityPath, shapes: &[PlacedShape]) -> Result<(), RecordError> {
-    let (mut boxes, mut cylinders, mut spheres) = (Vec::new(), Vec::new(), Vec::new());
-    for placed in shapes {
-        let (centre, rotation) = (vec3(&placed.x_ls.translation.vector), quaternion(&placed.x_ls.rotation));
-        match placed.shape {
-            Shape::Box { half_m } => boxes.push((half_m.map(|v| v as f32), centre, rotation)),
-            Shape::Cylinder { radius_m, half_length_m } => {
-                cylinders.push((2.0 * half_length_m as f32, radius_m as f32, centre, rotation));
-            }
-            Shape::Sphere { radius_m } => spheres.push(([radius_m as f32; 3], centre)),
-        }
-    }
-    if !boxes.is_empty() {
-        let archetype = Boxes3D::from_half_sizes(boxes.iter().map(|b| b.0))
-            .with_centers(boxes.iter().map(|b| b.1))
-            .with_quaternions(boxes.iter().map(|b| b.2))
-            .with_colors([palette::robot()])
-            .with_fill_mode(FillMode::Solid);
-        messages.log_static(path, &archetype)?;
-    }
-    if !cylinders.is_empty() {
-        let archetype =
-            Cylinders3D::from_lengths_and_radii(cylinders.iter().map(|c| c.0), cylinders.iter().map(|c| c.1))
-                .with_centers(cylinders.iter().map(|c| c.2))
-                .with_quaternions(cylinders.iter().map(|c| c.3))
-                .with_colors([palette::robot()])
-                .with_fill_mode(FillMode::Solid);
-        messages.log_static(path, &archetype)?;
-    }
-    if !spheres.is_empty() {
-        let archetype = Ellipsoids3D::from_half_sizes(spheres.iter().map(|s| s.0))
-            .with_centers(spheres.iter().map(|s| s.1))
-            .with_colors([palette::robot()])
-            .with_fill_mode(FillMode::Solid);
-        messages.log_static(path, &archetype)?;
-    }
-    Ok(())
 }
 
 fn log_board(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
@@ -237,7 +172,7 @@ fn log_forces(
     messages.log_columns(path, times_s, arrows.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-fn log_poses(
+pub(super) fn log_poses(
     messages: &mut Messages,
     path: &EntityPath,
     times_s: &[f64],
@@ -249,6 +184,6 @@ fn log_poses(
     messages.log_columns(path, times_s, transforms.columns_of_unit_batches().map_err(RecordError::encode)?)
 }
 
-fn transform(pose: &Pose) -> Transform3D {
+pub(super) fn transform(pose: &Pose) -> Transform3D {
     Transform3D::new().with_translation(vec3(&pose.translation.vector)).with_quaternion(quaternion(&pose.rotation))
 }

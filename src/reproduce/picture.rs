@@ -16,7 +16,7 @@ use crate::{
         scenario::Person,
         tool_part::ToolMaterial,
     },
-    robot::{Robot, Shape},
+    robot::Robot,
 };
 
 /// Scale, px/m.
@@ -128,7 +128,7 @@ fn scene(plan: &Plan, robot: &Robot) -> Result<Scene, HumanError> {
     let x_wl = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     for (link, x_wl) in robot.links.iter().zip(&x_wl) {
         for placed in &link.shapes {
-            let points_w = corners(placed.shape).into_iter().map(|p| x_wl * placed.x_ls * p).collect();
+            let points_w = placed.shape.surface_points().into_iter().map(|p| x_wl * placed.x_ls * p).collect();
             scene.items.push(Item::Hull(points_w, robot_paint(placed.rgba)));
         }
     }
@@ -179,38 +179,6 @@ fn tool_paint(material: ToolMaterial) -> String {
 fn robot_paint(rgba: [f64; 4]) -> String {
     let [r, g, b] = [0, 1, 2].map(|channel| (255.0 * (0.45 + 0.55 * rgba[channel].clamp(0.0, 1.0))) as u8);
     format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#444444\"")
-}
-
-/// Points whose convex hull is the shape, or an approximation of a round one.
-fn corners(shape: Shape) -> Vec<Point3<f64>> {
-    const ROUND: u32 = 20;
-    let circle = |k: u32| libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(ROUND));
-    match shape {
-        Shape::Box { half_m: [x, y, z] } => {
-            let signs = [-1.0, 1.0];
-            signs
-                .iter()
-                .flat_map(|i| signs.iter().flat_map(move |j| signs.map(|k| Point3::new(i * x, j * y, k * z))))
-                .collect()
-        }
-        Shape::Cylinder { radius_m, half_length_m } => (0..ROUND)
-            .flat_map(|k| {
-                let (sin, cos) = circle(k);
-                [-half_length_m, half_length_m].map(|z| Point3::new(radius_m * cos, radius_m * sin, z))
-            })
-            .collect(),
-        // Circles about the three axes of the shape. In any direction of view their hull is close to the outline.
-        Shape::Sphere { radius_m } => (0..3)
-            .flat_map(|axis| (0..ROUND).map(move |k| (axis, k)))
-            .map(|(axis, k)| {
-                let (sin, cos) = circle(k);
-                let mut point = Point3::origin();
-                point[axis] = radius_m * cos;
-                point[(axis + 1) % 3] = radius_m * sin;
-                point
-            })
-            .collect(),
-    }
 }
 
 impl View {

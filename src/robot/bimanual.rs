@@ -5,7 +5,7 @@
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use super::inverse::ClosedForm;
+use super::inverse::InverseKinematics;
 use crate::model::frames::Pose;
 
 /// One arm's solutions in order of cost.
@@ -24,11 +24,9 @@ impl RankedSolutions {
         Self { solutions }
     }
 
-    /// The samples of all branches of an arm with its gripper at `x_og` on an object at `x_wo`. Empty if there is no solution.
-    pub fn of_grasp(arm: &ClosedForm, x_wo: &Pose, x_og: &Pose, cost: impl Fn(&[f64]) -> f64) -> Self {
-        let motion = arm.branches(&(x_wo * x_og));
-        let samples = motion.branches().iter().flat_map(|branch| branch.samples());
-        Self::new(samples.map(|sample| sample.q_rad.to_vec()), cost)
+    /// All solutions that are known ([`InverseKinematics::all`]) of an arm with its gripper at `x_wg`, W. Empty without a solution.
+    pub fn of_arm(arm: &InverseKinematics, x_wg: &Pose, starts: usize, cost: impl Fn(&[f64]) -> f64) -> Self {
+        Self::new(arm.all(x_wg, starts), cost)
     }
 
     /// The number of solutions.

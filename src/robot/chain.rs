@@ -1,10 +1,13 @@
-//! One arm as a serial chain of revolute joints, with rigidly connected links merged.
+//! One arm as a serial chain of revolute and prismatic joints, with rigidly connected links merged.
+//!
+//! Positions, velocities and torques of a prismatic joint are in m, m/s and N where those of a revolute joint are in rad,
+//! rad/s and N m.
 //!
 //! Gripper and fingers are rigid parts of the last link.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Unit, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Translation3, Unit, UnitQuaternion, Vector3, Vector6};
 
-use super::tree::{ArmState, Robot};
+use super::tree::{ArmState, JointKind, Robot};
 use crate::model::{GRAVITY_W, frames::Pose};
 
 /// An arm's joints, the fixed transforms between them, and the merged inertia of the links that each carries.
@@ -18,13 +21,36 @@ pub struct Chain {
     effort_nm: Vec<f64>,
 }
 
-/// A revolute joint and the inertia of the links that it carries.
+/// A joint and the inertia of the links that it carries.
 #[derive(Clone, Debug)]
 struct ChainJoint {
+    slides: bool,
     /// Pose of the joint's frame in the frame of the previous joint, in W for the first.
     x_pj: Pose,
     axis_j: Unit<Vector3<f64>>,
     inertia: SpatialInertia,
+}
+
+impl ChainJoint {
+    /// The pose in W of the moving frame, from that of the previous joint.
+    fn moved(&self, x_wp: &Pose, position: f64) -> Pose {
+        let x_wj = x_wp * self.x_pj;
+        if self.slides {
+            x_wj * Translation3::from(self.axis_j.into_inner() * position)
+        } else {
+            x_wj * UnitQuaternion::from_axis_angle(&self.axis_j, position)
+        }
+    }
+
+    /// Velocity of a point that the joint moves, for a unit rate, m/s: `lever_w` is the point from the joint's origin.
+    fn velocity_w(&self, axis_w: &Vector3<f64>, lever_w: &Vector3<f64>) -> Vector3<f64> {
+        if self.slides { *axis_w } else { axis_w.cross(lever_w) }
+    }
+
+    /// Angular velocity for a unit rate, rad/s.
+    fn turn_w(&self, axis_w: &Vector3<f64>) -> Vector3<f64> {
+        if self.slides { Vector3::zeros() } else { *axis_w }
+    }
 }
 
 /// Mass properties of rigidly connected links, in the frame of the joint that carries them.
@@ -34,6 +60,14 @@ struct SpatialInertia {
     com_j: Vector3<f64>,
     /// About the centre of mass, kg m^2.
     inertia_j: Matrix3<f64>,
+}
+
+/// The links that a joint carries.
+#[derive(Clone, Debug)]
+struct Carried {
+    mass_kg: f64,
+    /// First moment of the mass about the joint's origin, kg m, W axes.
+    lever_kg_m: Vector3<f64>,
 }
 
 impl Chain {
@@ -50,6 +84,7 @@ impl Chain {
         let joints = (0..arm.joints.len()).map(|number| {
             let carried = (0..robot.links.len()).filter(|&link| carrier[link] == Some(number));
             ChainJoint {
+                slides: robot.joints[arm.joints[number]].kind == JointKind::Prismatic,
                 x_pj: if number == 0 { x_wj[0] } else { x_wj[number - 1].inverse() * x_wj[number] },
                 axis_j: robot.joints[arm.joints[number]].axis_j,
                 inertia: merge(robot, carried, &x_wj[number], &x_wl),
@@ -96,7 +131,7 @@ impl Chain {
     pub fn gripper_pose(&self, q_rad: &[f64]) -> Pose {
         let mut x_wj = Pose::identity();
         for (joint, &angle) in self.joints.iter().zip(q_rad) {
-            x_wj = x_wj * joint.x_pj * UnitQuaternion::from_axis_angle(&joint.axis_j, angle);
+            x_wj = joint.moved(&x_wj, angle);
         }
         x_wj * self.x_lg
     }
@@ -105,7 +140,7 @@ impl Chain {
     pub fn joint_frames(&self, q_rad: &[f64]) -> Vec<Pose> {
         let mut x_wj = Pose::identity();
         let turn = |(joint, &angle): (&ChainJoint, &f64)| {
-            x_wj = x_wj * joint.x_pj * UnitQuaternion::from_axis_angle(&joint.axis_j, angle);
+            x_wj = joint.moved(&x_wj, angle);
             x_wj
         };
         self.joints.iter().zip(q_rad).map(turn).collect()
@@ -125,9 +160,9 @@ impl Chain {
     }
 
     /// The angle of the last joint that minimises the rotation error of G to `x_wg` with all other joints at `q_rad`, rad, in
-    /// [-pi, pi].
-    pub fn last_angle_towards(&self, q_rad: &[f64], x_wg: &Pose) -> f64 {
-        let Some(joint) = self.joints.last() else { return 0.0 };
+    /// [-pi, pi]; `None` if that joint is prismatic.
+    pub fn last_angle_towards(&self, q_rad: &[f64], x_wg: &Pose) -> Option<f64> {
+        let joint = self.joints.last().filter(|joint| !joint.slides)?;
         let mut q_rad = q_rad.to_vec();
         if let Some(last) = q_rad.last_mut() {
             *last = 0.0;
@@ -137,7 +172,12 @@ impl Chain {
         // The twist of the rotation about the axis, from the quaternion's projection on it.
         let along = wanted.vector().dot(&joint.axis_j);
         let angle_rad = 2.0 * along.atan2(wanted.scalar());
-        angle_rad.sin().atan2(angle_rad.cos())
+        Some(angle_rad.sin().atan2(angle_rad.cos()))
+    }
+
+    /// True if the first joint is revolute.
+    pub fn begins_revolute(&self) -> bool {
+        self.joints.first().is_some_and(|joint| !joint.slides)
     }
 
     /// The Jacobian of G, 6 x dof: rows 0 to 2 the velocity of G's origin (m/s), rows 3 to 5 the angular velocity
@@ -153,10 +193,10 @@ impl Chain {
         let mut jacobian = Matrix6xX::zeros(self.dof());
         for (number, (joint, x_wj)) in self.joints.iter().zip(frames).enumerate() {
             let axis_w = x_wj.rotation * joint.axis_j.into_inner();
-            let linear = axis_w.cross(&(p_wg - x_wj.translation.vector));
+            let linear = joint.velocity_w(&axis_w, &(p_wg - x_wj.translation.vector));
             let mut column = jacobian.column_mut(number);
             column.fixed_rows_mut::<3>(0).copy_from(&linear);
-            column.fixed_rows_mut::<3>(3).copy_from(&axis_w);
+            column.fixed_rows_mut::<3>(3).copy_from(&joint.turn_w(&axis_w));
         }
         jacobian
     }
@@ -165,16 +205,18 @@ impl Chain {
     pub(super) fn pose_and_columns(&self, q_rad: &[f64], columns: &mut [Vector6<f64>]) -> Pose {
         let mut x_wj = Pose::identity();
         for ((joint, &angle), column) in self.joints.iter().zip(q_rad).zip(columns.iter_mut()) {
-            x_wj = x_wj * joint.x_pj * UnitQuaternion::from_axis_angle(&joint.axis_j, angle);
+            x_wj = joint.moved(&x_wj, angle);
             let axis_w = x_wj.rotation * joint.axis_j.into_inner();
             column.fixed_rows_mut::<3>(0).copy_from(&x_wj.translation.vector);
             column.fixed_rows_mut::<3>(3).copy_from(&axis_w);
         }
         let x_wg = x_wj * self.x_lg;
-        for column in columns {
+        for (joint, column) in self.joints.iter().zip(columns) {
             let origin_w = column.fixed_rows::<3>(0).into_owned();
             let axis_w = column.fixed_rows::<3>(3).into_owned();
-            column.fixed_rows_mut::<3>(0).copy_from(&axis_w.cross(&(x_wg.translation.vector - origin_w)));
+            let linear = joint.velocity_w(&axis_w, &(x_wg.translation.vector - origin_w));
+            column.fixed_rows_mut::<3>(0).copy_from(&linear);
+            column.fixed_rows_mut::<3>(3).copy_from(&joint.turn_w(&axis_w));
         }
         x_wg
     }
@@ -189,25 +231,37 @@ impl Chain {
         self.joints.iter().zip(frames).map(|(joint, x_wj)| x_wj.rotation * joint.axis_j.into_inner()).collect()
     }
 
-    /// The joint torques that hold the arm against gravity, N m: the gradient of the potential energy, `tau_i = -g . z_i x l_i` with `l_i = sum_{k >= i} (c_k - p_i) m_k`.
+    /// The joint torques that hold the arm against gravity, N m, or forces of prismatic joints, N: the gradient of the potential
+    /// energy, `tau_i = -g . z_i x l_i` with `l_i = sum_{k >= i} (c_k - p_i) m_k`; `-g . z_i sum_{k >= i} m_k` of a prismatic
+    /// joint.
     pub fn gravity_torque_nm(&self, q_rad: &[f64]) -> DVector<f64> {
         let frames = self.joint_frames(q_rad);
-        let (axes_w, levers_kg_m) = (self.axes_w(&frames), self.carried_moments_w(&frames));
-        let torques =
-            axes_w.iter().zip(&levers_kg_m).map(|(axis_w, lever_kg_m)| -axis_w.dot(&lever_kg_m.cross(&GRAVITY_W)));
+        let (axes_w, carried) = (self.axes_w(&frames), self.carried_w(&frames));
+        let torques = self.joints.iter().zip(&axes_w).zip(&carried).map(|((joint, axis_w), carried)| {
+            if joint.slides {
+                -axis_w.dot(&(GRAVITY_W * carried.mass_kg))
+            } else {
+                -axis_w.dot(&carried.lever_kg_m.cross(&GRAVITY_W))
+            }
+        });
         DVector::from_iterator(self.dof(), torques)
     }
 
     /// The derivative of the gravity torques by the angles, dof x dof, N m/rad: the Hessian of the potential energy,
-    /// `dtau_i/dq_j = -g . z_i x (z_j x l_j)` for `i <= j`, and symmetric.
+    /// `dtau_i/dq_j = -g . z_i x (z_j x l_j)` for `i <= j`, and symmetric. A prismatic joint j moves the moment by
+    /// `z_j sum m_k`; the force of a prismatic joint i does not depend on the joints after it.
     pub fn gravity_stiffness_nm_rad(&self, q_rad: &[f64]) -> DMatrix<f64> {
         let frames = self.joint_frames(q_rad);
-        let (axes_w, levers_kg_m) = (self.axes_w(&frames), self.carried_moments_w(&frames));
+        let (axes_w, carried) = (self.axes_w(&frames), self.carried_w(&frames));
         let mut stiffness = DMatrix::zeros(self.dof(), self.dof());
-        for (column, lever_kg_m) in levers_kg_m.iter().enumerate() {
-            let turned = axes_w[column].cross(lever_kg_m);
-            for row in 0..=column {
-                let entry = -axes_w[row].dot(&turned.cross(&GRAVITY_W));
+        for (column, carried) in carried.iter().enumerate() {
+            let moved = if self.joints[column].slides {
+                axes_w[column] * carried.mass_kg
+            } else {
+                axes_w[column].cross(&carried.lever_kg_m)
+            };
+            for row in (0..=column).filter(|&row| !self.joints[row].slides) {
+                let entry = -axes_w[row].dot(&moved.cross(&GRAVITY_W));
                 stiffness[(row, column)] = entry;
                 stiffness[(column, row)] = entry;
             }
@@ -215,18 +269,18 @@ impl Chain {
         stiffness
     }
 
-    /// The first moment of the mass that each joint carries about the joint's origin, kg m, W axes.
-    fn carried_moments_w(&self, frames: &[Pose]) -> Vec<Vector3<f64>> {
-        let mut levers_kg_m = vec![Vector3::zeros(); self.dof()];
+    /// What each joint carries.
+    fn carried_w(&self, frames: &[Pose]) -> Vec<Carried> {
+        let mut carried = vec![Carried { mass_kg: 0.0, lever_kg_m: Vector3::zeros() }; self.dof()];
         let mut mass_kg = 0.0;
         let mut moment_kg_m = Vector3::zeros();
         for (number, (joint, x_wj)) in self.joints.iter().zip(frames).enumerate().rev() {
             let segment = &joint.inertia;
             mass_kg += segment.mass_kg;
             moment_kg_m += (x_wj.rotation * segment.com_j + x_wj.translation.vector) * segment.mass_kg;
-            levers_kg_m[number] = moment_kg_m - x_wj.translation.vector * mass_kg;
+            carried[number] = Carried { mass_kg, lever_kg_m: moment_kg_m - x_wj.translation.vector * mass_kg };
         }
-        levers_kg_m
+        carried
     }
 
     /// The joint-space inertia, dof x dof, kg m^2: `sum_k m_k Jv_k' Jv_k + Jw_k' I_k Jw_k`, without motor inertia.
@@ -239,11 +293,14 @@ impl Chain {
             let com_w = x_wj.rotation * segment.com_j + x_wj.translation.vector;
             let rotation = x_wj.rotation.to_rotation_matrix();
             let inertia_w = rotation.matrix() * segment.inertia_j * rotation.matrix().transpose();
-            let velocity = |joint: usize| axes_w[joint].cross(&(com_w - frames[joint].translation.vector));
+            let velocity = |joint: usize| {
+                self.joints[joint].velocity_w(&axes_w[joint], &(com_w - frames[joint].translation.vector))
+            };
+            let turn = |joint: usize| self.joints[joint].turn_w(&axes_w[joint]);
             for row in 0..=number {
                 for column in 0..=number {
                     mass[(row, column)] += segment.mass_kg * velocity(row).dot(&velocity(column))
-                        + axes_w[row].dot(&(inertia_w * axes_w[column]));
+                        + turn(row).dot(&(inertia_w * turn(column)));
                 }
             }
         }
@@ -264,10 +321,18 @@ impl Chain {
         self.joints[0].x_pj.translation.vector
     }
 
-    /// An upper bound of the distance between [`Chain::shoulder_w`] and G's origin, m: the sum of all offsets.
+    /// An upper bound of the distance between [`Chain::shoulder_w`] and G's origin, m: the sum of all offsets, and of the farther
+    /// limits of prismatic joints.
     pub fn reach_m(&self) -> f64 {
         let offsets = self.joints.iter().skip(1).map(|joint| joint.x_pj.translation.vector.norm());
-        offsets.sum::<f64>() + self.x_lg.translation.vector.norm()
+        let slides = self.joints.iter().enumerate().filter(|(_, joint)| joint.slides);
+        let strokes = slides.map(|(number, _)| self.lower[number].abs().max(self.upper[number].abs()));
+        offsets.chain(strokes).sum::<f64>() + self.x_lg.translation.vector.norm()
+    }
+
+    /// True if no joint is prismatic.
+    pub fn is_revolute(&self) -> bool {
+        self.joints.iter().all(|joint| !joint.slides)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! This file defines the format; [`super::assemble`] checks the entries against the URDF.
 
-use std::{fmt, marker::PhantomData, ops::Range};
+use std::{collections::BTreeMap, fmt, marker::PhantomData};
 
 use serde::{
     Deserialize, Deserializer,
@@ -10,22 +10,8 @@ use serde::{
 };
 use toml::Spanned;
 
-use super::tree::RobotError;
+use super::faults::{Fault, Source};
 use crate::model::FORMAT;
-
-/// A text with the name of its file, for messages.
-pub(super) struct Source<'a> {
-    pub file: &'a str,
-    pub text: &'a str,
-}
-
-impl Source<'_> {
-    /// An error at a position of this text.
-    pub fn error(&self, span: Range<usize>, problem: &str) -> RobotError {
-        let line = 1 + self.text.bytes().take(span.start).filter(|&byte| byte == b'\n').count();
-        RobotError::Invalid { file: self.file.into(), problem: format!("line {line}: {problem}") }
-    }
-}
 
 /// An array of exactly `N` values. The reader of TOML drops what exceeds the length of a Rust array.
 pub(super) struct Exactly<T, const N: usize>(pub [T; N]);
@@ -68,10 +54,40 @@ pub(super) struct Description {
     pub format: Spanned<u32>,
     pub urdf: Spanned<String>,
     pub floor_z_m: Spanned<f64>,
+    /// Folders that contain packages.
+    #[serde(default)]
+    pub packages: Vec<String>,
+    /// Links whose collision meshes are decomposed into convex parts.
+    #[serde(default)]
+    pub decompose: Vec<Spanned<String>>,
+    /// Pose of the root link in W.
+    pub base: Option<BaseEntry>,
+    /// Positions of joints that are not part of an arm or a gripper, rad or m.
+    #[serde(default)]
+    pub posture: BTreeMap<Spanned<String>, Spanned<f64>>,
+    pub search_box: Option<SearchBoxEntry>,
     pub arms: Spanned<Vec<ArmEntry>>,
     #[serde(default)]
     pub allowed_collisions: Vec<Spanned<Exactly<String, 2>>>,
     pub body_points: Spanned<Vec<PointEntry>>,
+}
+
+/// Where the robot stands or hangs.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BaseEntry {
+    pub xyz_m: Option<Spanned<Exactly<f64, 3>>>,
+    /// Turns about x, then y, then z of W, as in a URDF.
+    pub rpy_deg: Option<Spanned<Exactly<f64, 3>>>,
+}
+
+/// Where the planner looks for positions of the board.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SearchBoxEntry {
+    pub x_m: Spanned<Exactly<f64, 2>>,
+    pub y_m: Spanned<Exactly<f64, 2>>,
+    pub z_m: Spanned<Exactly<f64, 2>>,
 }
 
 /// An arm entry.
@@ -91,14 +107,32 @@ pub(super) struct ArmEntry {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GripperEntry {
+    #[serde(default)]
+    pub kind: GripperKind,
     pub frame_link: Spanned<String>,
-    pub palm_link: Spanned<String>,
+    /// Pose of G in the frame link, whose frame is G without it.
+    pub frame_xyz_m: Option<Spanned<Exactly<f64, 3>>>,
+    pub frame_rpy_deg: Option<Spanned<Exactly<f64, 3>>>,
+    pub palm_link: Option<Spanned<String>>,
     pub opening_m: Spanned<Exactly<f64, 2>>,
     pub max_force_n: Spanned<f64>,
+    pub grip_force_n: Option<Spanned<f64>>,
+    pub friction: Option<Spanned<f64>>,
     pub pad_size_m: Spanned<Exactly<f64, 2>>,
     pub pad_centre_m: Spanned<Exactly<f64, 2>>,
     pub pad_stiffness_n_m: Option<Spanned<f64>>,
-    pub fingers: Spanned<Exactly<FingerEntry, 2>>,
+    pub fingers: Option<Spanned<Exactly<FingerEntry, 2>>>,
+}
+
+/// What holds the board.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum GripperKind {
+    /// Two fingers of the URDF.
+    #[default]
+    Fingers,
+    /// Two jaws that the URDF does not have.
+    Clamp,
 }
 
 /// A finger entry.
@@ -106,7 +140,8 @@ pub(super) struct GripperEntry {
 #[serde(deny_unknown_fields)]
 pub(super) struct FingerEntry {
     pub name: String,
-    pub joint: Spanned<String>,
+    /// The prismatic joint that moves it; absent for a linkage.
+    pub joint: Option<Spanned<String>>,
     pub pad_link: Spanned<String>,
 }
 
@@ -119,13 +154,16 @@ pub(super) struct PointEntry {
 }
 
 impl Description {
-    pub fn read(source: &Source) -> Result<Self, RobotError> {
+    /// Parses a description.
+    ///
+    /// # Errors
+    /// The first fault of the format.
+    pub fn read(source: &Source<'_>) -> Result<Self, Fault> {
         let description: Self = toml::from_str(source.text)
-            .map_err(|error| source.error(error.span().unwrap_or_default(), error.message()))?;
+            .map_err(|error| source.fault(error.span().unwrap_or_default(), error.message()))?;
         let format = *description.format.get_ref();
         if format != FORMAT {
-            let problem = format!("format: found {format}, expected {FORMAT}");
-            return Err(source.error(description.format.span(), &problem));
+            return Err(source.fault(description.format.span(), format!("format: found {format}, expected {FORMAT}")));
         }
         Ok(description)
     }

@@ -5,32 +5,45 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    assemble::assemble,
-    description::{Description, Source},
-    tree::{Robot, RobotError},
-    urdf,
+    assemble::{assemble, bare_robot},
+    description::Description,
+    faults::{Collector, RobotError, Source},
+    packages::Packages,
+    tree::{Robot, RobotOptions},
+    urdf::{self, UrdfSource},
 };
 
 /// Names of the built-in robots.
-pub const BUILTIN: &[&str] = &["baxter"];
+pub const BUILTIN: &[&str] = &["baxter", "dual-panda", "dual-ur5"];
 
 /// Files of the built-in robots, in the order of [`BUILTIN`]: description, then URDF.
-const BUILTIN_FILES: [[&str; 2]; BUILTIN.len()] =
-    [[include_str!("../../assets/baxter.toml"), include_str!("../../assets/baxter.urdf")]];
+const BUILTIN_FILES: [[&str; 2]; BUILTIN.len()] = [
+    [include_str!("../../assets/baxter.toml"), include_str!("../../assets/baxter.urdf")],
+    [include_str!("../../assets/dual-panda.toml"), include_str!("../../assets/dual-panda.urdf")],
+    [include_str!("../../assets/dual-ur5.toml"), include_str!("../../assets/dual-ur5.urdf")],
+];
 
 impl Robot {
     /// Loads a built-in robot by its name, or a robot by the path of its description file. A relative path starts at
     /// `relative_to`; the URDF's path is relative to the description file.
     ///
     /// # Errors
-    /// If a file cannot be read, the name is unknown, or the description or the URDF is malformed. The message names the file,
-    /// the line if there is one, the key, the value found and the value expected.
+    /// If a file cannot be read, the name is unknown, or the description or the URDF is malformed. The message has all faults,
+    /// each with the file, the line if there is one, the key, the value found and the value expected.
     pub fn load(description: &str, relative_to: &Path) -> Result<Self, RobotError> {
+        Self::load_with(description, relative_to, &RobotOptions::default())
+    }
+
+    /// As [`Robot::load`], with what a scenario adds.
+    ///
+    /// # Errors
+    /// As for [`Robot::load`].
+    pub fn load_with(description: &str, relative_to: &Path, options: &RobotOptions) -> Result<Self, RobotError> {
         if let Some(number) = BUILTIN.iter().position(|name| *name == description) {
             let [toml_text, urdf_text] = BUILTIN_FILES[number];
             let file = format!("built-in {description}.toml");
-            return build(description, &Source { file: &file, text: toml_text }, |urdf| {
-                Ok((format!("built-in {}", urdf.display()), urdf_text.into()))
+            return build(description, &Source { file: &file, text: toml_text }, options, |urdf| {
+                Ok((format!("built-in {}", urdf.display()), urdf_text.into(), Path::new("")))
             });
         }
         if !description.ends_with(".toml") {
@@ -39,38 +52,74 @@ impl Robot {
         let path = relative_to.join(description);
         let text = read_file(&path)?;
         let folder = path.parent().unwrap_or(relative_to);
-        build(description, &Source { file: &path.display().to_string(), text: &text }, |urdf| {
-            let path = folder.join(urdf);
-            Ok((path.display().to_string(), read_file(&path)?))
-        })
+        let source = Source { file: &path.display().to_string(), text: &text };
+        let mut urdf_path = None;
+        let mut robot = build(description, &source, options, |urdf| {
+            let path = urdf_path.insert(folder.join(urdf));
+            Ok((path.display().to_string(), read_file(path)?, folder))
+        })?;
+        robot.files.splice(0..0, std::iter::once(path.clone()).chain(urdf_path));
+        Ok(robot)
     }
 }
 
-/// The files that [`Robot::load`] reads: the description and the URDF that it names; none for a built-in robot. Files that
-/// cannot be read are left out.
-pub fn source_files(description: &str, relative_to: &Path) -> Vec<PathBuf> {
-    if BUILTIN.contains(&description) {
-        return Vec::new();
+impl Robot {
+    /// The robot of a description that is not in a file, as if it were in `folder`.
+    ///
+    /// # Errors
+    /// As for [`Robot::load`].
+    pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, RobotError> {
+        build(name, &Source { file: name, text }, &RobotOptions::default(), |urdf| {
+            let path = folder.join(urdf);
+            Ok((path.display().to_string(), read_file(&path)?, folder))
+        })
     }
-    let path = relative_to.join(description);
-    let Ok(text) = read_file(&path) else { return Vec::new() };
-    let urdf = Description::read(&Source { file: "", text: &text })
-        .map(|description| path.parent().unwrap_or(relative_to).join(description.urdf.get_ref()));
-    std::iter::once(path.clone()).chain(urdf.ok()).collect()
+
+    /// The robot of a URDF alone, without arms, and the effort limit of each joint, N m or N, 0 where there is none.
+    ///
+    /// # Errors
+    /// As for [`Robot::load`].
+    pub fn bare(urdf: &Path, packages: &[PathBuf]) -> Result<(Self, Vec<f64>), RobotError> {
+        let (file, text) = (urdf.display().to_string(), read_file(urdf)?);
+        let packages = Packages::new(packages.to_vec(), urdf.parent().unwrap_or(Path::new("")));
+        let mut faults = Collector::default();
+        let source = UrdfSource { file: &file, text: &text, packages: &packages, decomposed: &[] };
+        let tree = urdf::read(&source, &mut faults).ok_or_else(|| faults.into_error())?;
+        let effort = tree.effort.clone();
+        Ok((bare_robot(&file, tree, 0.0, &RobotOptions::default()), effort))
+    }
 }
 
 fn read_file(path: &Path) -> Result<String, RobotError> {
     std::fs::read_to_string(path).map_err(|source| RobotError::Read { path: path.display().to_string(), source })
 }
 
-/// Combines the two files; `urdf` returns the name and the text of the URDF at a path.
-fn build(
+/// Name and text of a URDF, and the folder of the description.
+type UrdfText<'a> = (String, String, &'a Path);
+
+/// Combines the two files; `urdf` reads the URDF at a path.
+fn build<'a>(
     name: &str,
-    source: &Source,
-    urdf: impl FnOnce(&Path) -> Result<(String, String), RobotError>,
+    source: &Source<'_>,
+    options: &RobotOptions,
+    urdf: impl FnOnce(&Path) -> Result<UrdfText<'a>, RobotError>,
 ) -> Result<Robot, RobotError> {
-    let description = Description::read(source)?;
-    let (urdf_file, urdf_text) = urdf(Path::new(description.urdf.get_ref()))?;
-    let tree = urdf::read(&urdf_text).map_err(|problem| RobotError::Invalid { file: urdf_file, problem })?;
-    assemble(name, source, &description, tree)
+    let mut faults = Collector::default();
+    let description = match Description::read(source) {
+        Ok(description) => description,
+        Err(fault) => {
+            faults.add(fault);
+            return Err(faults.into_error());
+        }
+    };
+    let urdf_path = Path::new(description.urdf.get_ref());
+    let (file, text, folder) = urdf(urdf_path)?;
+    let given = options.packages.iter().cloned().chain(description.packages.iter().map(|given| folder.join(given)));
+    let urdf_folder = folder.join(urdf_path);
+    let packages = Packages::new(given.collect(), urdf_folder.parent().unwrap_or(folder));
+    let decomposed: Vec<String> = description.decompose.iter().map(|name| name.get_ref().clone()).collect();
+    let source_of_urdf = UrdfSource { file: &file, text: &text, packages: &packages, decomposed: &decomposed };
+    let tree = urdf::read(&source_of_urdf, &mut faults);
+    let robot = tree.and_then(|tree| assemble(name, source, &description, options, tree, &mut faults));
+    robot.ok_or_else(|| faults.into_error())
 }

@@ -1,20 +1,30 @@
 //! Robots: a URDF and a description file, read into a tree of links with arms and grippers.
 //!
-//! Robots are data: a URDF (kinematics, inertia, primitive geometry) and a TOML description (arms, grippers, pads, stiffness,
+//! Robots are data: a URDF (kinematics, inertia, geometry) and a TOML description (arms, grippers, pads, stiffness,
 //! allowed collisions, body points). No code depends on the name of a robot.
 
 mod assemble;
 pub mod bimanual;
 pub mod chain;
 mod description;
+mod faults;
+mod geometry;
 pub mod inverse;
+mod linkage;
 mod load;
+mod mesh;
+mod packages;
 pub mod tree;
 mod urdf;
 
 pub use chain::Chain;
+pub use faults::{Fault, Faults, RobotError};
+pub use geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry};
 pub use inverse::{InverseKinematics, Solution};
-pub use load::{BUILTIN, source_files};
+pub use linkage::Linkage;
+pub use load::BUILTIN;
+pub use mesh::{DrawnForm, DrawnPart, MeshPart};
+pub use packages::Packages;
 pub use tree::{
-    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Pad, PlacedShape, Robot, RobotError, Shape,
+    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Mimic, Pad, Robot, RobotOptions, SearchBox,
 };

@@ -1,7 +1,13 @@
 //! The data types of a robot, and forward kinematics of its links.
 
+use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
+
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
+use super::{
+    geometry::{PlacedShape, Visual},
+    linkage::Linkage,
+};
 use crate::model::{frames::Pose, plan::ArmHold};
 
 /// A robot: a tree of links, its arms, and the data of the description.
@@ -9,8 +15,10 @@ use crate::model::{frames::Pose, plan::ArmHold};
 pub struct Robot {
     /// The name or path by which it was loaded.
     pub description: String,
-    /// Parents before children; the first is the root, whose frame is the world W.
+    /// Parents before children; the first is the root.
     pub links: Vec<Link>,
+    /// Pose of the root in W.
+    pub x_wr: Pose,
     /// Parents before children.
     pub joints: Vec<Joint>,
     /// The arms that can hold a board, in the description's order.
@@ -21,6 +29,36 @@ pub struct Robot {
     pub body_points: Vec<BodyPoint>,
     /// Height of the floor in W, m.
     pub floor_z_m: f64,
+    /// Where the planner looks for poses of the board, if the description says so.
+    pub search_box: Option<SearchBox>,
+    /// The robot with its linkage grippers as the URDF has them, if it has any, see [`Robot::at_gap`].
+    pub with_linkages: Option<Arc<Robot>>,
+    /// With what it was loaded beside its description.
+    pub options: RobotOptions,
+    /// What was changed or left out to read the files.
+    pub notes: Vec<String>,
+    /// The files that were read: description, URDF, collision meshes; none for a built-in robot.
+    pub files: Vec<PathBuf>,
+}
+
+/// What a scenario adds to a robot's description.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RobotOptions {
+    /// Folders in which packages are looked for before those of the description.
+    pub packages: Vec<PathBuf>,
+    /// Positions of joints that are not part of an arm or a gripper, rad or m, in place of those of the description.
+    pub posture: BTreeMap<String, f64>,
+}
+
+/// A box of positions in W, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchBox {
+    /// Range along x_W.
+    pub x_m: [f64; 2],
+    /// Range along y_W.
+    pub y_m: [f64; 2],
+    /// Range along z_W.
+    pub z_m: [f64; 2],
 }
 
 /// A rigid part.
@@ -36,41 +74,10 @@ pub struct Link {
     pub com_l: Vector3<f64>,
     /// Inertia about the centre of mass in axes of the link's frame, kg m^2.
     pub inertia_l: Matrix3<f64>,
-    /// Primitive geometry for collisions and pictures.
+    /// Convex geometry for collisions, and for pictures of links without visuals.
     pub shapes: Vec<PlacedShape>,
-}
-
-/// A primitive in its link.
-#[derive(Clone, Debug)]
-pub struct PlacedShape {
-    /// Pose of the shape's centre in the link's frame.
-    pub x_ls: Pose,
-    /// The primitive.
-    pub shape: Shape,
-    /// Colour, red green blue alpha, 0 to 1.
-    pub rgba: [f64; 4],
-}
-
-/// A primitive centred at its own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// A box.
-    Box {
-        /// Half sides along x, y, z, m.
-        half_m: [f64; 3],
-    },
-    /// A cylinder about z.
-    Cylinder {
-        /// Radius, m.
-        radius_m: f64,
-        /// Half its length, m.
-        half_length_m: f64,
-    },
-    /// A sphere.
-    Sphere {
-        /// Radius, m.
-        radius_m: f64,
-    },
+    /// Geometry for pictures.
+    pub visuals: Vec<Visual>,
 }
 
 /// The type of a joint.
@@ -103,19 +110,21 @@ pub struct Joint {
     pub lower: f64,
     /// Largest position, rad or m.
     pub upper: f64,
+    /// Position of a joint that is not part of an arm or a gripper, rad or m.
+    pub rest: f64,
+    /// The joint that it follows.
+    pub mimic: Option<Mimic>,
 }
 
-impl Shape {
-    /// Support of the shape along a unit direction in its frame: maximum extent from its centre, m.
-    pub fn half_extent_m(&self, direction_s: &Vector3<f64>) -> f64 {
-        match *self {
-            Self::Box { half_m } => Vector3::from(half_m).dot(&direction_s.abs()),
-            Self::Cylinder { radius_m, half_length_m } => {
-                radius_m * direction_s.xy().norm() + half_length_m * direction_s.z.abs()
-            }
-            Self::Sphere { radius_m } => radius_m,
-        }
-    }
+/// A joint whose position follows another's: `multiplier * position + offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mimic {
+    /// The joint that leads, an index into [`Robot::joints`]; it follows no other.
+    pub leader: usize,
+    /// Factor of its position.
+    pub multiplier: f64,
+    /// Position at zero of the leader, rad or m.
+    pub offset: f64,
 }
 
 /// A serial chain from the root to a gripper.
@@ -148,8 +157,14 @@ pub struct Gripper {
     pub opening_m: [f64; 2],
     /// Maximum force of each finger, N.
     pub max_force_n: f64,
+    /// Force of each finger where a scenario has none, N.
+    pub grip_force_n: Option<f64>,
+    /// Coulomb friction coefficient of its pads and a board where a scenario has none.
+    pub friction: Option<f64>,
     /// Stiffness of one pad along its normal, N/m; `None` for rigid pads (docs/method.md#612-pad-compliance).
     pub pad_stiffness_n_m: Option<f64>,
+    /// The mechanism that moves the fingers, if it is not one prismatic joint each.
+    pub linkage: Option<Linkage>,
 }
 
 /// One finger and its pad.
@@ -252,10 +267,10 @@ impl Robot {
         self.link_poses(&self.positions(&states.collect::<Vec<_>>()))
     }
 
-    /// The positions of all joints, in the order of [`Robot::joints`], rad or m. Joints of no given arm are at 0 or at the limit
-    /// nearest to 0. Angles of the arms are not clamped to the limits.
+    /// The positions of all joints, in the order of [`Robot::joints`], rad or m. Joints of no given arm are at [`Joint::rest`],
+    /// joints that follow another where that takes them. Angles of the arms are not clamped to the limits.
     pub fn positions(&self, arms: &[ArmState]) -> Vec<f64> {
-        let mut positions: Vec<f64> = self.joints.iter().map(|joint| 0.0_f64.clamp(joint.lower, joint.upper)).collect();
+        let mut positions: Vec<f64> = self.joints.iter().map(|joint| joint.rest).collect();
         for state in arms {
             let arm = &self.arms[state.arm];
             for (&joint, &q_rad) in arm.joints.iter().zip(state.q_rad) {
@@ -265,7 +280,17 @@ impl Robot {
                 positions[finger.joint] = finger.joint_position_m(travel_m);
             }
         }
+        self.follow(&mut positions);
         positions
+    }
+
+    /// Moves the joints that follow others.
+    pub(super) fn follow(&self, positions: &mut [f64]) {
+        for (index, joint) in self.joints.iter().enumerate() {
+            if let Some(Mimic { leader, multiplier, offset }) = joint.mimic {
+                positions[index] = multiplier * positions[leader] + offset;
+            }
+        }
     }
 
     /// The poses in W of all links, in the order of [`Robot::links`]. `positions` has one entry per joint, rad or m;
@@ -274,7 +299,7 @@ impl Robot {
         let mut x_wl: Vec<Pose> = Vec::with_capacity(self.links.len());
         for link in &self.links {
             x_wl.push(match link.parent_joint {
-                None => Pose::identity(),
+                None => self.x_wr,
                 Some(joint) => {
                     let joint_of_link = &self.joints[joint];
                     x_wl[joint_of_link.parent_link] * joint_of_link.x_pc(positions[joint])
@@ -282,6 +307,34 @@ impl Robot {
             });
         }
         x_wl
+    }
+
+    /// For each joint whether an arm or a gripper moves it; all others stay at rest.
+    pub fn active_joints(&self) -> Vec<bool> {
+        let mut active = vec![false; self.joints.len()];
+        for arm in &self.arms {
+            let fingers = arm.gripper.fingers.iter().map(|finger| finger.joint);
+            arm.joints.iter().copied().chain(fingers).for_each(|joint| active[joint] = true);
+        }
+        active
+    }
+
+    /// For each link whether an arm or a gripper moves it.
+    pub fn moved_links(&self) -> Vec<bool> {
+        let active = self.active_joints();
+        let mut moves: Vec<bool> = Vec::with_capacity(self.links.len());
+        for link in &self.links {
+            moves.push(link.parent_joint.is_some_and(|joint| active[joint] || moves[self.joints[joint].parent_link]));
+        }
+        moves
+    }
+
+    /// Adds a link without mass and shapes that is fixed to another, and returns its index.
+    pub fn add_frame(&mut self, name: &str, parent_link: usize, x_pl: Pose) -> usize {
+        let child_link = self.links.len();
+        self.links.push(Link::empty(name, Some(self.joints.len())));
+        self.joints.push(Joint::fixed(&format!("{name}_joint"), [parent_link, child_link], x_pl));
+        child_link
     }
 
     /// For each link the moving joint that carries it, directly or through fixed joints; `None` for fixed links.
@@ -297,7 +350,40 @@ impl Robot {
     }
 }
 
+impl Link {
+    /// A link without mass and geometry.
+    #[must_use]
+    pub fn empty(name: &str, parent_joint: Option<usize>) -> Self {
+        Self {
+            name: name.into(),
+            parent_joint,
+            mass_kg: 0.0,
+            com_l: Vector3::zeros(),
+            inertia_l: Matrix3::zeros(),
+            shapes: Vec::new(),
+            visuals: Vec::new(),
+        }
+    }
+}
+
 impl Joint {
+    /// A joint that does not move, between a parent and a child link.
+    #[must_use]
+    pub fn fixed(name: &str, [parent_link, child_link]: [usize; 2], x_pj: Pose) -> Self {
+        Self {
+            name: name.into(),
+            kind: JointKind::Fixed,
+            parent_link,
+            child_link,
+            x_pj,
+            axis_j: Vector3::x_axis(),
+            lower: 0.0,
+            upper: 0.0,
+            rest: 0.0,
+            mimic: None,
+        }
+    }
+
     /// The child link's pose in the parent link at this position, rad or m.
     pub fn x_pc(&self, position: f64) -> Pose {
         match self.kind {
@@ -306,33 +392,4 @@ impl Joint {
             JointKind::Prismatic => self.x_pj * Translation3::from(self.axis_j.into_inner() * position),
         }
     }
-}
-
-/// An error of loading a robot.
-#[derive(Debug, thiserror::Error)]
-pub enum RobotError {
-    /// A file could not be read.
-    #[error("failed to read {path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// The cause.
-        source: std::io::Error,
-    },
-    /// Neither a built-in robot nor a file.
-    #[error("found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file")]
-    Unknown {
-        /// The name or path.
-        found: String,
-        /// The built-in names.
-        builtin: String,
-    },
-    /// A description or URDF that cannot be used.
-    #[error("{file}: {problem}")]
-    Invalid {
-        /// The file.
-        file: String,
-        /// Line, key, value found and value expected.
-        problem: String,
-    },
 }

@@ -1,6 +1,6 @@
 //! The scenario file: TOML, in which most keys are optional.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ use crate::model::{
     load::Uncertainty,
     operation::OperationKind,
     scenario::{
-        ComfortSettings, Expectation, Grip, Hand, Limits, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
+        ComfortSettings, Expectation, Hand, Limits, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
         ShoulderKind, SimulationSettings,
     },
 };
@@ -52,7 +52,7 @@ pub struct ScenarioFile {
     pub planner: PlannerSettings,
     /// Grip force and friction.
     #[serde(default)]
-    pub grip: Grip,
+    pub grip: GripSection,
     /// Phases and time step of the simulation.
     #[serde(default)]
     pub simulation: SimulationSettings,
@@ -70,17 +70,33 @@ pub struct ScenarioFile {
     pub expect: Expectation,
 }
 
+/// `[grip]`.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GripSection {
+    /// The force that closes each finger, N; by default the smallest `grip_force_n` of the robot's grippers, or 30.
+    pub force_n: Option<f64>,
+    /// Coulomb friction coefficient of pads and board; by default the smallest `friction` of the robot's grippers, or 0.6.
+    pub friction: Option<f64>,
+}
+
 /// `[robot]`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSection {
     /// The name of a built-in robot, or the path of a description file relative to the scenario file's folder.
     pub description: String,
+    /// Folders that contain the packages of the urdf's meshes, relative to the scenario file's folder; looked at before those
+    /// of the description.
+    pub packages: Vec<String>,
+    /// Positions of joints that are not part of an arm or a gripper, such as a lifting torso, rad or m; in place of those of
+    /// the description.
+    pub posture: BTreeMap<String, f64>,
 }
 
 impl Default for RobotSection {
     fn default() -> Self {
-        Self { description: crate::robot::BUILTIN[0].into() }
+        Self { description: crate::robot::BUILTIN[0].into(), packages: Vec::new(), posture: BTreeMap::new() }
     }
 }
 
@@ -254,7 +270,7 @@ pub struct OperationSection {
     /// For `wrench`: the wrench on the board about the tool tip, O axes, N and N m.
     pub wrench_o: Option<[f64; 6]>,
     /// For `wrench`: the tool's pose in O.
-    pub x_ot: Option<crate::model::frames::PoseRecord>,
+    pub x_ot: Option<crate::model::frames::PoseForm>,
 }
 
 /// `[limits]`.

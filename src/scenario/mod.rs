@@ -7,23 +7,28 @@ mod arrays;
 mod check;
 pub mod error;
 pub mod file;
+mod fill_in;
+mod foreign;
+pub mod import;
 pub mod load_section;
 mod locate;
 pub mod material;
 mod object_section;
 pub mod plan_file;
+pub mod plan_input;
 mod resolve;
 mod robot_file;
 
 use std::path::{Path, PathBuf};
 
 pub use error::{InputError, InputErrorKind};
+use plan_file::ReadPlan;
 pub use plan_file::read_plan;
 pub use robot_file::robot_parameters;
 
 use crate::{
     model::{plan::Plan, scenario::Scenario},
-    robot::{Robot, source_files},
+    robot::Robot,
 };
 
 /// A resolved scenario with its robot and, if the file names one, its plan.
@@ -38,6 +43,8 @@ pub struct LoadedScenario {
     pub robot: Robot,
     /// The plan that `planner.plan` names.
     pub plan: Option<Plan>,
+    /// For each value that the plan's file leaves out, what it follows from.
+    pub filled_in: Vec<String>,
     /// All files that were read.
     pub inputs: Vec<PathBuf>,
 }
@@ -57,6 +64,8 @@ pub struct LoadedPlan {
     pub path: PathBuf,
     /// The plan.
     pub plan: Plan,
+    /// For each value that the file leaves out, what it follows from.
+    pub filled_in: Vec<String>,
     /// The robot.
     pub robot: Robot,
     /// The scenario.
@@ -85,19 +94,19 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     let (scenario, robot) = resolve::resolve(path, text, &file)?;
     let folder = folder_of(path);
     let mut inputs = vec![path.to_owned()];
-    inputs.extend(source_files(&file.robot.description, folder));
+    inputs.extend(robot.files.iter().cloned());
     inputs.extend(file.load.file.as_ref().map(|forces| folder.join(forces)));
-    let plan = match &scenario.planner.plan {
+    let (plan, filled_in) = match &scenario.planner.plan {
         Some(plan) => {
             let plan_path = folder.join(plan);
-            let plan = read_plan(&plan_path, Some(&robot))?.0;
+            let ReadPlan { plan, filled_in, .. } = plan_file::read(&plan_path, Some(&robot), Some(&scenario))?;
             resolve::check_plan_matches(path, text, &scenario, &plan)?;
             inputs.push(plan_path);
-            Some(plan)
+            (Some(plan), filled_in)
         }
-        None => None,
+        None => (None, Vec::new()),
     };
-    Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan, inputs })
+    Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan, filled_in, inputs })
 }
 
 /// The folder that the paths in a file are relative to.
@@ -112,21 +121,21 @@ fn folder_of(file: &Path) -> &Path {
 /// # Errors
 /// As [`read_plan`] and [`load`], and if the scenario is for another robot, board, operation or grip force.
 pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
-    let (plan, robot) = read_plan(path, None)?;
+    let loaded = scenario.map(load).transpose()?;
+    let ReadPlan { plan, robot, filled_in } = plan_file::read(path, None, loaded.as_ref().map(|l| &l.scenario))?;
     let mut inputs = vec![path.to_owned()];
-    inputs.extend(source_files(&plan.robot, folder_of(path)));
-    let mut scenario = match (scenario, &plan.scenario) {
-        (Some(path), _) => {
-            let loaded = load(path)?;
-            resolve::check_plan_matches(path, &error::read_text(path)?, &loaded.scenario, &plan)?;
-            inputs.extend(loaded.inputs);
-            loaded.scenario
+    inputs.extend(robot.files.iter().cloned());
+    let mut scenario = match (loaded, &plan.scenario) {
+        (Some(LoadedScenario { path, scenario, inputs: others, .. }), _) => {
+            resolve::check_plan_matches(&path, &error::read_text(&path)?, &scenario, &plan)?;
+            inputs.extend(others);
+            scenario
         }
         (None, Some(scenario)) => scenario.clone(),
         (None, None) => default_for_plan(&plan, &robot),
     };
     scenario.name.clone_from(&plan.name);
-    Ok(LoadedPlan { path: path.to_owned(), plan, robot, scenario, inputs })
+    Ok(LoadedPlan { path: path.to_owned(), plan, filled_in, robot, scenario, inputs })
 }
 
 /// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.

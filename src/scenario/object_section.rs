@@ -64,6 +64,15 @@ impl Default for ObjectSection {
     }
 }
 
+impl ObjectSection {
+    /// The thickness of the board before it is checked, m; the usual one of a plate without a thickness, which has an error of
+    /// its own.
+    pub fn thickness_m(&self) -> f64 {
+        let of_box_m = self.size_m.unwrap_or(DEFAULT_SIZE_M)[2];
+        self.outline_m.as_ref().and(self.thickness_m).unwrap_or(of_box_m)
+    }
+}
+
 /// The board of the reproduction (`docs/method.md#24-board`), m.
 const DEFAULT_SIZE_M: [f64; 3] = [0.50, 0.40, 0.030];
 

@@ -7,46 +7,72 @@ use super::{
     arrays::too_long,
     check::{Checker, FormatProbe},
     error::read_text,
+    fill_in::{FilledPlan, fill_in, refused},
+    foreign::other_format,
+    plan_input::PlanFile,
     resolve,
-    robot_file::load_robot,
+    robot_file::{load_robot, options_of},
 };
 use crate::{
     check::{CheckedPlan, Flaw, check_plate},
     human::default_tool,
     model::{
         plan::Plan,
-        scenario::{Person, ShoulderKind},
+        scenario::{Person, Scenario, ShoulderKind},
     },
     robot::Robot,
 };
 
-/// Reads and checks a plan file. The robot that it names is loaded, unless it is `robot`.
+/// A plan with its robot and what was filled in.
+pub struct ReadPlan {
+    /// The plan.
+    pub plan: Plan,
+    /// The robot that it names.
+    pub robot: Robot,
+    /// For each value that the file leaves out, what it follows from.
+    pub filled_in: Vec<String>,
+}
+
+/// Reads and checks a plan file. The robot that it names is loaded, unless it is `robot`. Values that the file leaves out are
+/// filled in.
 ///
 /// # Errors
-/// If the file cannot be read, is not a plan of the supported format, or does not fit the robot.
+/// If the file cannot be read, is not a plan of the supported format, does not determine a plan, or does not fit the robot.
 pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), InputError> {
+    let ReadPlan { plan, robot, .. } = read(path, robot, None)?;
+    Ok((plan, robot))
+}
+
+/// As [`read_plan`], for a plan that is judged by `scenario`; by default by its own.
+pub fn read(path: &Path, robot: Option<&Robot>, scenario: Option<&Scenario>) -> Result<ReadPlan, InputError> {
     let text = read_text(path)?;
     let check = Checker::json(path, &text);
     if let Ok(probe) = serde_json::from_str::<FormatProbe>(&text) {
         check.format(probe.format)?;
     }
-    let mut plan = match parse(path, &text) {
-        Ok(plan) => plan,
+    let file = match parse(path, &text) {
+        Ok(file) => file,
         Err(error) => {
-            let too_long = serde_json::from_str(&text).ok().and_then(|values| too_long::<Plan>(&values));
+            if let Some(hint) = other_format(path, &text) {
+                return Err(InputError::file(path, InputErrorKind::Syntax(hint.into())));
+            }
+            let too_long = serde_json::from_str(&text).ok().and_then(|values| too_long::<PlanFile>(&values));
             return Err(too_long.map_or(error, |array| check.value(&array.key, array.found, array.expected)));
         }
     };
     let robot = match robot {
-        Some(robot) if robot.description == plan.robot => robot.clone(),
+        Some(robot) if robot.description == file.robot => robot.at_gap(file.object.size_m[2]),
         _ => {
             let folder = path.parent().unwrap_or(Path::new(""));
-            load_robot(&plan.robot, folder).map_err(|e| check.robot("robot", e))?
+            let options =
+                scenario.or(file.scenario.as_ref()).map(|scenario| options_of(&scenario.robot)).unwrap_or_default();
+            load_robot(&file.robot, folder, &options, file.object.size_m[2]).map_err(|e| check.robot("robot", e))?
         }
     };
+    check.name(&file.name)?;
+    let FilledPlan { mut plan, notes, angle_keys } = fill_in(&check, file, &robot, scenario)?;
     plan.robot.clone_from(&robot.description);
-    check.name(&plan.name)?;
-    check_plan(&check, &plan, &robot)?;
+    check_plan(&check, &plan, &robot, &angle_keys)?;
     if let Some(scenario) = &plan.scenario {
         let check = check.under("scenario.");
         check.format(scenario.format)?;
@@ -55,10 +81,10 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
         }
         resolve::check_values(&check, scenario, &robot)?;
     }
-    Ok((plan, robot))
+    Ok(ReadPlan { plan, robot, filled_in: notes })
 }
 
-fn parse(path: &Path, text: &str) -> Result<Plan, InputError> {
+fn parse(path: &Path, text: &str) -> Result<PlanFile, InputError> {
     let mut json = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut json).map_err(|error| {
         let key = error.path().to_string();
@@ -78,7 +104,7 @@ fn without_position(message: &str) -> String {
 }
 
 /// Checks the plan against the robot and the person; the first flaw is the error.
-fn check_plan(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), InputError> {
+fn check_plan(check: &Checker<'_>, plan: &Plan, robot: &Robot, angle_keys: &[Vec<String>]) -> Result<(), InputError> {
     let default = Person::default();
     let (rules, tool) = match &plan.scenario {
         Some(scenario) => (&scenario.human, scenario.tool),
@@ -97,6 +123,7 @@ fn check_plan(check: &Checker<'_>, plan: &Plan, robot: &Robot) -> Result<(), Inp
     let flaw = flaws.first();
     Err(match flaw {
         Flaw::Person(error) => check.syntax(&flaw.key(), error.to_string()),
-        _ => check.value(&flaw.key(), flaw.found(), flaw.expected()),
+        Flaw::Angle { arm, joint, .. } => check.value(&angle_keys[*arm][*joint], flaw.found(), flaw.expected()),
+        _ => refused(check, flaw),
     })
 }

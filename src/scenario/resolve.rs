@@ -1,13 +1,13 @@
 //! Resolves a scenario file: fills in defaults and checks every value.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 
 use super::{
     InputError,
     check::Checker,
-    file::{HumanSection, LimitsSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
+    file::{GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
     load_section::{self, check_load, check_uncertainty},
     object_section,
     robot_file::{load_robot, robot_parameters},
@@ -32,7 +32,7 @@ use crate::{
         },
         wrench::Wrench,
     },
-    robot::Robot,
+    robot::{Gripper, Robot, RobotOptions},
 };
 
 /// The resolved scenario of a file, and its robot.
@@ -43,7 +43,12 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     let check = Checker::toml(path, text);
     check.name(&file.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let robot = load_robot(&file.robot.description, folder).map_err(|e| check.robot("robot.description", e))?;
+    let options = RobotOptions {
+        packages: file.robot.packages.iter().map(PathBuf::from).collect(),
+        posture: file.robot.posture.clone(),
+    };
+    let robot = load_robot(&file.robot.description, folder, &options, file.object.thickness_m())
+        .map_err(|e| check.robot("robot.description", e))?;
     let object = object_section::board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
     let scenario = Scenario {
@@ -57,7 +62,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         operation,
         comfort: file.comfort,
         planner: file.planner.clone(),
-        grip: file.grip,
+        grip: grip_with_defaults(&file.grip, &robot),
         simulation: file.simulation,
         load: load_section::load(&check, &file.load, folder)?,
         uncertainty: file.uncertainty,
@@ -258,6 +263,19 @@ fn free_operation(check: &Checker<'_>, section: &OperationSection) -> Result<Ope
     Ok(Operation { kind: OperationKind::Wrench, wrench_o: Wrench::from(wrench), x_ot })
 }
 
+/// Grip force and friction of a file, else of the robot's grippers.
+fn grip_with_defaults(section: &GripSection, robot: &Robot) -> Grip {
+    let usual = Grip::default();
+    let least = |of: fn(&Gripper) -> Option<f64>, usual: f64| {
+        let given = robot.arms.iter().filter_map(|arm| of(&arm.gripper));
+        given.min_by(f64::total_cmp).unwrap_or(usual)
+    };
+    Grip {
+        force_n: section.force_n.unwrap_or_else(|| least(|gripper| gripper.grip_force_n, usual.force_n)),
+        friction: section.friction.unwrap_or_else(|| least(|gripper| gripper.friction, usual.friction)),
+    }
+}
+
 fn grip(check: &Checker<'_>, grip: &Grip, robot: &Robot) -> Result<(), InputError> {
     check.grip_force("grip.force_n", grip.force_n, robot.arms.iter())?;
     check.positive("grip.friction", grip.friction, 2.0, "a Coulomb coefficient")
@@ -427,7 +445,7 @@ pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         operation: plan.operation,
         comfort: ComfortSettings::default(),
         planner: PlannerSettings::default(),
-        grip: Grip::default(),
+        grip: grip_with_defaults(&GripSection::default(), robot),
         simulation: SimulationSettings::default(),
         load: Load::default(),
         uncertainty: Uncertainty::default(),

@@ -131,7 +131,7 @@ impl ArmBodies {
             Self { bodies: Vec::new(), body_of_joint: vec![0; moving.len()], hand: None, placements: Vec::new() };
         for (index, link) in robot.links.iter().enumerate() {
             let mut placement = match link.parent_joint {
-                None => LinkPlacement { body: None, x_bl: Isometry3::identity() },
+                None => LinkPlacement { body: None, x_bl: robot.x_wr },
                 Some(joint) => {
                     let hinge = &robot.joints[joint];
                     let parent = merged.placements[hinge.parent_link];
@@ -197,7 +197,15 @@ mod tests {
     fn box_link(mass_kg: f64, [x, y, z]: [f64; 3], com_l: Vector3<f64>) -> Link {
         let diagonal = Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y) * (mass_kg / 12.0);
         let inertia_l = Matrix3::from_diagonal(&diagonal);
-        Link { name: "box".into(), parent_joint: None, mass_kg, com_l, inertia_l, shapes: Vec::new() }
+        Link {
+            name: "box".into(),
+            parent_joint: None,
+            mass_kg,
+            com_l,
+            inertia_l,
+            shapes: Vec::new(),
+            visuals: Vec::new(),
+        }
     }
 
     #[test]

@@ -189,7 +189,8 @@ fn an_unknown_key_in_a_plan() {
     assert_plan_refused(
         "\"grip_force_n\"",
         "\"grip\"",
-        "bad.json:84: arms[0].grip: unknown field `grip`, expected one of `name`, `joints`, `q_rad`, `x_og`, `grip_force_n`",
+        "bad.json:84: arms[0].grip: unknown field `grip`, expected one of `name`, `joints`, `q_rad`, `seed_rad`, \
+         `x_og`, `grip_force_n`",
     );
 }
 

@@ -80,6 +80,7 @@ fn the_help_of_every_command() {
         "simulate",
         "margin",
         "export",
+        "import",
         "curve",
         "reproduce",
         "inspect",
@@ -198,4 +199,65 @@ fn completions_know_the_commands() {
         let script = String::from_utf8(output.stdout).unwrap();
         assert!(["inspect", "fail-fast"].iter().all(|word| script.contains(word)), "{shell}");
     }
+}
+
+/// A robot of two links with one arm, and its description; each fault replaces a text of one of them.
+fn robot(faults: &[(&str, &str)]) -> TempDir {
+    let place = tempfile::tempdir().unwrap();
+    for (name, text) in [
+        ("baxter.urdf", include_str!("../../assets/baxter.urdf")),
+        ("robot.toml", include_str!("../../assets/baxter.toml")),
+    ] {
+        let changed = faults.iter().fold(text.to_owned(), |text, (from, to)| text.replacen(from, to, 1));
+        fs::write(place.path().join(name), changed).unwrap();
+    }
+    place
+}
+
+#[test]
+fn all_faults_of_a_description() {
+    let several = robot(&[
+        ("floor_z_m = -0.9242", "floor_z_m = nan"),
+        ("[\"torso\", \"head\"]", "[\"torso\", \"hat\"]"),
+        ("effort_nm = [50.0, 100.0, ", "effort_nm = [50.0, "),
+        ("opening_m = [0.0, 0.038]", "opening_m = [0.0, 0.38]"),
+        ("pad_link = \"l_gripper_l_finger_tip\"", "pad_link = \"l_gripper_tip\""),
+    ]);
+    assert_seen("doctor-faults", several.path(), &["doctor", "robot.toml"]);
+    let meshes = robot(&[
+        ("<box size=\"0.1471 0.08 0.068\"/>", "<mesh filename=\"package://baxter_description/neck.stl\"/>"),
+        ("<cylinder radius=\"0.1\"", "<mesh filename=\"${meshes}/arm.stl\"/><cylinder radius=\"0.1\""),
+    ]);
+    assert_seen("doctor-meshes", meshes.path(), &["doctor", "robot.toml"]);
+}
+
+#[test]
+fn all_links_that_overlap() {
+    let fat = robot(&[
+        ("    [\"{arm}_upper_elbow\", \"{arm}_lower_elbow\"],\n", ""),
+        ("    [\"{arm}_lower_forearm\", \"{arm}_wrist\"],\n", ""),
+    ]);
+    assert_seen("doctor-overlaps", fat.path(), &["doctor", "robot.toml"]);
+}
+
+#[test]
+fn urdfs_that_are_something_else() {
+    let place = tempfile::tempdir().unwrap();
+    let xacro = "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name=\"arm\">\n<xacro:include filename=\"arm.xacro\"/>\n\
+                 <link name=\"base\"/>\n<link name=\"tip\"/>\n</robot>\n";
+    fs::write(place.path().join("arm.urdf.xacro"), xacro).unwrap();
+    assert_seen("robot-new-xacro", place.path(), &["robot", "new", "arm.urdf.xacro", "-o", "arm.toml"]);
+    fs::write(place.path().join("table.urdf"), "<robot name=\"table\"><link name=\"top\"/></robot>").unwrap();
+    assert_seen("robot-new-no-arm", place.path(), &["robot", "new", "table.urdf", "-o", "table.toml"]);
+    assert_seen("robot-new-missing", place.path(), &["robot", "new", "nowhere.urdf", "-o", "arm.toml"]);
+}
+
+#[test]
+fn a_robot_that_is_found() {
+    let place = robot(&[]);
+    assert_seen(
+        "robot-new",
+        place.path(),
+        &["robot", "new", "baxter.urdf", "-o", "new.toml", "--scenario", "drill.toml"],
+    );
 }

@@ -10,7 +10,7 @@ use benchdog::{
         trace::Sample,
         wrench::Wrench,
     },
-    robot::{Arm, Finger, Gripper, Joint, JointKind, Link, Pad, Robot},
+    robot::{Arm, Finger, Gripper, Joint, JointKind, Link, Pad, Robot, RobotOptions},
     sim::{Conditions, SimScene, blank_sample},
 };
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
@@ -33,6 +33,7 @@ fn link(name: &str, parent_joint: Option<usize>, mass_kg: f64, box_m: [f64; 3]) 
         com_l: Vector3::zeros(),
         inertia_l: Matrix3::from_diagonal(&Vector3::new(y + z, x + z, x + y)),
         shapes: Vec::new(),
+        visuals: Vec::new(),
     }
 }
 
@@ -46,6 +47,8 @@ fn joint(kind: JointKind, links: [usize; 2], x_pj: Pose, axis_j: Vector3<f64>, l
         axis_j: nalgebra::Unit::new_normalize(axis_j),
         lower: limits[0],
         upper: limits[1],
+        rest: 0.0_f64.clamp(limits[0], limits[1]),
+        mimic: None,
     }
 }
 
@@ -88,17 +91,26 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
             fingers: [finger("left", 2, 1.0), finger("right", 3, -1.0)],
             opening_m: [-0.0037, 0.038],
             max_force_n: 100.0,
+            grip_force_n: None,
+            friction: None,
             pad_stiffness_n_m: None,
+            linkage: None,
         },
     };
     Robot {
         description: "bench".into(),
         links,
+        x_wr: Pose::identity(),
         joints,
         arms: vec![arm],
         allowed_collisions: Vec::new(),
         body_points: Vec::new(),
         floor_z_m: -1.0,
+        search_box: None,
+        with_linkages: None,
+        options: RobotOptions::default(),
+        notes: Vec::new(),
+        files: Vec::new(),
     }
 }
 

@@ -3,12 +3,15 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod referee;
+#[path = "../common/serial.rs"]
+mod serial;
 mod shared;
 
 mod check;
 mod clearance;
 mod comfort;
 mod infeasible;
+mod many_arms;
 mod natural;
 mod planner;
 mod plans;

@@ -147,6 +147,7 @@ fn only_the_fingers_of_a_holding_gripper_may_touch_the_board() {
 fn placed_at(shape: &PlacedShape, x_wl: &Pose) -> (ParryPose, SharedShape) {
     let x_ws = x_wl * shape.x_ls;
     match shape.shape {
+        Shape::Hull(_) => unreachable!("Baxter has primitives only"),
         Shape::Box { half_m: [x, y, z] } => (parry(&x_ws), SharedShape::cuboid(x, y, z)),
         Shape::Sphere { radius_m } => (parry(&x_ws), SharedShape::ball(radius_m)),
         Shape::Cylinder { radius_m, half_length_m } => {

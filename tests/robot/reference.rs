@@ -178,6 +178,7 @@ fn body_points_lie_on_the_surface() {
 fn surface_distance(shape: &benchdog::robot::Shape, p_s: &Vector3<f64>) -> f64 {
     use benchdog::robot::Shape;
     match *shape {
+        Shape::Hull(_) => unreachable!("Baxter has primitives only"),
         Shape::Box { half_m } => (p_s.abs() - Vector3::from(half_m)).max(),
         Shape::Cylinder { radius_m, half_length_m } => (p_s.xy().norm() - radius_m).max(p_s.z.abs() - half_length_m),
         Shape::Sphere { radius_m } => p_s.norm() - radius_m,

@@ -154,7 +154,10 @@ fn both_arms_grasp_one_board() {
     });
     let middle: Vec<f64> = chains()[0].lower().iter().zip(chains()[0].upper()).map(|(a, b)| 0.5 * (a + b)).collect();
     let cost = |q_rad: &[f64]| q_rad.iter().zip(&middle).map(|(q, m)| (q - m).powi(2)).sum();
-    let ranked = [0, 1].map(|arm| RankedSolutions::of_grasp(&arms()[arm], &x_wo, &grasps[arm], cost));
+    let ranked = [0, 1].map(|arm| {
+        let inverse = InverseKinematics::for_chain(&chains()[arm]);
+        RankedSolutions::of_arm(&inverse, &(x_wo * grasps[arm]), 0, cost)
+    });
     assert!(ranked.iter().all(|arm| !arm.is_empty()));
     let mut last = 0.0;
     for combination in Combinations::new(&ranked).filter(|pair| pair.q_rad[0][1] < pair.q_rad[1][1]).take(50) {

@@ -179,7 +179,7 @@ impl<'a> JobRunner<'a> {
 
     fn simulate(&self, job: &Job, plan: &Plan, row: &mut HoldRow) -> Result<(), CliError> {
         let start = Instant::now();
-        let run = pipeline::run_plan(&job.scenario, self.robot, plan.clone())?;
+        let run = pipeline::run_plan(&job.scenario, self.robot, plan.clone(), &[])?;
         row.simulate_ms = Some(start.elapsed().as_secs_f64() * 1e3);
         self.write_recording(job, &run)?;
         if job.stage == Stage::FailingLoad && run.simulated.is_some() {

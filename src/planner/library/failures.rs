@@ -15,7 +15,7 @@ pub enum DrawFailure {
     NoArm,
     /// No edge of the board is as long as a pad is wide.
     NoEdge,
-    /// No drawn grasp of an arm has its pads on the board.
+    /// No drawn grasp of an arm has its pads on the board and its palm clear of it.
     Pads { arm: usize },
     /// The first arm brings the board nowhere into the search domain.
     Domain,
@@ -59,7 +59,9 @@ impl DrawFailures {
             let what = match failure {
                 DrawFailure::NoArm => "the robot has no arm".to_owned(),
                 DrawFailure::NoEdge => "every edge of the board is shorter than a pad is wide".to_owned(),
-                DrawFailure::Pads { arm } => format!("the pads of the {} gripper lie partly off the board", name(arm)),
+                DrawFailure::Pads { arm } => {
+                    format!("the pads of the {} gripper lie partly off the board, or its palm is too close", name(arm))
+                }
                 DrawFailure::Domain => format!("the {} arm does not bring the board in front of the robot", name(0)),
                 DrawFailure::Reach { arm } => format!("the {} arm does not reach the board", name(arm)),
                 DrawFailure::Collision { bodies: [one, other] } => {

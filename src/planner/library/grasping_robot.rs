@@ -2,6 +2,7 @@
 
 use super::{
     grasp::{ArmGrasp, BoardGrasp},
+    palm::Palm,
     reach::ReachMap,
 };
 use crate::{
@@ -11,7 +12,7 @@ use crate::{
         frames::Pose,
         grasp::EdgeGrasp,
     },
-    planner::domain::{self, SearchDomain},
+    planner::domain::{self, DEPTH_M, SearchDomain},
     robot::{ArmState, Chain, InverseKinematics, Robot},
 };
 
@@ -43,21 +44,32 @@ pub struct GraspingArm {
     pub chain: Chain,
     pub inverse: InverseKinematics,
     pub reach: ReachMap,
+    /// Range of the depth of a grasp, m.
+    pub depth_m: [f64; 2],
+    /// Its palm, if it is near the board at some depth.
+    pub palm: Option<Palm>,
     finger_travel_m: [f64; 2],
 }
 
 impl GraspingRobot {
     /// Prepares a robot for boards of this shape and this clearance, m.
     pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
+        let collision = CollisionModel::new(robot);
+        let board_body = BoardBody::new(board);
+        let edges = domain::graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper));
         let arms = robot.arms.iter().enumerate().map(|(index, arm)| {
             let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, board.thickness_m()));
             let chain = Chain::new(robot, index, finger_travel_m[0]);
+            let palm = palm(robot, index, &chain);
+            let depth_m = palm.depths_m(&collision, &arm.gripper, (board, &board_body, &edges), clearance_m);
             GraspingArm {
                 index,
                 name: arm.name.clone(),
                 joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
                 inverse: InverseKinematics::for_chain(&chain),
                 reach: ReachMap::new(&chain),
+                depth_m,
+                palm: (depth_m[1] < DEPTH_M[1]).then_some(palm),
                 chain,
                 finger_travel_m,
             }
@@ -65,13 +77,13 @@ impl GraspingRobot {
         let arms: Vec<_> = arms.collect();
         let chains = arms.iter().map(|arm: &GraspingArm| &arm.chain);
         Self {
-            domain: SearchDomain::of(chains, robot.floor_z_m),
+            domain: SearchDomain::of(chains, robot.floor_z_m, robot.search_box),
             robot: robot.clone(),
-            edges: domain::graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper)),
-            board_body: BoardBody::new(board),
+            edges,
+            board_body,
             board: board.clone(),
             arms,
-            collision: CollisionModel::new(robot),
+            collision,
             clearance_m,
             moved_by: moved_by(robot),
             grasping: (0..robot.arms.len()).collect(),
@@ -113,9 +125,12 @@ impl GraspingRobot {
         })
     }
 
-    /// True if the pads of an arm's gripper lie on the board.
-    pub fn pads_on_board(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
+    /// True if the pads of an arm's gripper lie on the board and its palm is clear of it.
+    pub fn fits(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
+        let x_go = || grasp.x_og(&self.board).inverse();
+        let is_clear = |palm: &Palm| palm.is_clear(&self.collision, &self.board_body, &x_go(), self.clearance_m);
         domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, &self.board)
+            && arm.palm.as_ref().is_none_or(is_clear)
     }
 
     /// Of the edges that the search grasps the one most opposite to another.
@@ -127,6 +142,17 @@ impl GraspingRobot {
     pub fn pad_margins_m(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> Vec<f64> {
         domain::pad_margins_m(&self.robot.arms[arm.index].gripper, grasp, &self.board)
     }
+}
+
+/// The links that are fixed to an arm's gripper, its palm among them, but not the fingers.
+fn palm(robot: &Robot, arm: usize, chain: &Chain) -> Palm {
+    let q_rad = vec![0.0; chain.dof()];
+    let link_poses = robot.link_poses(&robot.positions(&[ArmState { arm, q_rad: &q_rad, finger_travel_m: [0.0; 2] }]));
+    let x_gw = chain.gripper_pose(&q_rad).inverse();
+    let carriers = robot.carriers();
+    let of_gripper = carriers[robot.arms[arm].gripper.frame_link];
+    let links = (0..robot.links.len()).filter(|&link| carriers[link] == of_gripper);
+    Palm { links: links.map(|link| (link, x_gw * link_poses[link])).collect() }
 }
 
 /// See [`GraspingRobot::moved_by`].

@@ -4,28 +4,25 @@
 //! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that shape: the first
 //! arm's configuration and grasp are drawn, which gives the board's pose; inverse kinematics brings the other arms there.
 
-use nalgebra::Point3;
 use rand_pcg::Pcg64;
+use rayon::prelude::*;
 
 use super::{
+    board_grasps::grasps_of_board,
+    draws::{draw_arm_grasp, draw_grasp},
+    entry::LibraryEntry,
     failures::{DrawFailure, DrawFailures},
     grasp::{ArmGrasp, BoardGrasp},
-    grasping_robot::{GraspingArm, GraspingRobot},
-    postures::Posture,
+    grasping_robot::GraspingRobot,
 };
 use crate::{
     collision::Violation,
-    comfort,
-    model::{
-        board::{BoardShape, Edge},
-        frames::Pose,
-        grasp::EdgeGrasp,
-    },
+    model::{board::BoardShape, frames::Pose},
     planner::{
-        domain::{self, draw_edge, draw_other_edge},
+        domain::{draw_edge, draw_other_edge},
         params::library::{
-            COARSE_STRIDE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASP_ATTEMPTS, GRASPS, HOPELESS_SHARE,
-            SEED,
+            BOARDS_AT_ONCE, BOARDS_PER_GRASP, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASPS,
+            GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
         },
     },
     robot::Robot,
@@ -39,27 +36,6 @@ pub struct GraspLibrary {
     pub entries: Vec<LibraryEntry>,
     /// What the draws failed at that gave no grasp.
     pub failures: DrawFailures,
-}
-
-/// A grasp of a library, with what screening asks about it.
-#[derive(Clone, Debug)]
-pub struct LibraryEntry {
-    pub grasp: BoardGrasp,
-    /// The robot's points of the peripersonal metric, W.
-    pub robot_points_w: Vec<Point3<f64>>,
-    /// Some of them, for a first ranking.
-    pub coarse_points_w: Vec<Point3<f64>>,
-    /// The posture that the board was put for; it responds to the grasp exactly.
-    pub posture: Option<Posture>,
-}
-
-impl LibraryEntry {
-    /// An entry from a grasp and the poses of the robot's links in it.
-    pub fn new(robot: &GraspingRobot, grasp: BoardGrasp, link_poses: &[Pose]) -> Self {
-        let robot_points_w = comfort::robot_points_w(&robot.robot, link_poses);
-        let coarse_points_w = robot_points_w.iter().step_by(COARSE_STRIDE).copied().collect();
-        Self { grasp, robot_points_w, coarse_points_w, posture: None }
-    }
 }
 
 impl GraspLibrary {
@@ -80,6 +56,9 @@ impl GraspLibrary {
 
 /// At most `wanted` grasps from a stream of random numbers, and what the other draws failed at.
 fn draw_entries(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+    if robot.arms.len() > 2 {
+        return draw_entries_by_board(robot, wanted, stream);
+    }
     let mut random = Pcg64::new(SEED, stream);
     let mut entries = Vec::with_capacity(wanted);
     let mut failures = DrawFailures::default();
@@ -99,8 +78,36 @@ fn max_draws(wanted: usize, found: usize) -> u64 {
     (DRAWS_PER_GRASP * if found == 0 { wanted / HOPELESS_SHARE } else { wanted }) as u64
 }
 
-fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry, DrawFailure> {
-    let (first, others) = robot.arms.split_first().ok_or(DrawFailure::NoArm)?;
+/// As [`draw_entries`] for more than two arms, whose single draws hardly ever fit together: grasps of all arms are drawn for
+/// each board. Every board has a random stream of its own.
+fn draw_entries_by_board(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+    let of_board = |number: usize| {
+        let mut random = Pcg64::new(SEED, (stream << 64) + number as u128 + 1);
+        let (_, x_wo) = draw_first(robot, &mut random)?;
+        grasps_of_board(robot, &x_wo, &mut random)
+    };
+    let mut entries = Vec::with_capacity(wanted);
+    let mut failures = DrawFailures::default();
+    let most = BOARDS_PER_GRASP * wanted;
+    for first in (0..most).step_by(BOARDS_AT_ONCE) {
+        if entries.len() >= wanted || (entries.is_empty() && first >= most / HOPELESS_SHARE) {
+            break;
+        }
+        let boards = first..most.min(first + BOARDS_AT_ONCE);
+        for found in boards.into_par_iter().map(of_board).collect::<Vec<_>>() {
+            match found {
+                Ok(found) => entries.extend(found.into_iter().take(GRASPS_PER_BOARD)),
+                Err(failure) => failures.count(failure),
+            }
+        }
+    }
+    entries.truncate(wanted);
+    (entries, failures)
+}
+
+/// A grasp of the first arm and the pose of the board that it holds.
+fn draw_first(robot: &GraspingRobot, random: &mut Pcg64) -> Result<(ArmGrasp, Pose), DrawFailure> {
+    let first = robot.arms.first().ok_or(DrawFailure::NoArm)?;
     let edge = draw_edge(&robot.edges, random).ok_or(DrawFailure::NoEdge)?;
     let grasp = draw_grasp(robot, first, edge, |_| true, random).ok_or(DrawFailure::Pads { arm: 0 })?;
     let x_go = grasp.x_og(&robot.board).inverse();
@@ -108,8 +115,14 @@ fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry,
     let (q_rad, x_wo) = (0..FIRST_ARM_ATTEMPTS)
         .find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))
         .ok_or(DrawFailure::Domain)?;
-    let mut arms = vec![ArmGrasp { grasp, q_rad }];
-    for (number, arm) in others.iter().enumerate() {
+    Ok((ArmGrasp { grasp, q_rad }, x_wo))
+}
+
+fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry, DrawFailure> {
+    let (first, x_wo) = draw_first(robot, random)?;
+    let edge = first.grasp.edge;
+    let mut arms = vec![first];
+    for (number, arm) in robot.arms.iter().skip(1).enumerate() {
         let edge = draw_other_edge(edge, robot.opposite(edge), random);
         let reached = draw_arm_grasp(robot, arm, edge, &x_wo, random);
         arms.push(reached.ok_or(DrawFailure::Reach { arm: number + 1 })?);
@@ -119,32 +132,4 @@ fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry,
         None => Ok(LibraryEntry::new(robot, BoardGrasp { x_wo, arms }, &link_poses)),
         Some(Violation { bodies, .. }) => Err(DrawFailure::Collision { bodies }),
     }
-}
-
-/// A grasp of one arm on an edge of a board at a known pose, with a configuration; `None` if no drawn grasp is reached.
-pub fn draw_arm_grasp(
-    robot: &GraspingRobot,
-    arm: &GraspingArm,
-    edge: Edge,
-    x_wo: &Pose,
-    random: &mut Pcg64,
-) -> Option<ArmGrasp> {
-    let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
-    let grasp = draw_grasp(robot, arm, edge, near, random)?;
-    let x_wg = x_wo * grasp.x_og(&robot.board);
-    let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
-    Some(ArmGrasp { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
-}
-
-/// A grasp on an edge with the pads on the board whose pose X_OG is accepted.
-pub fn draw_grasp(
-    robot: &GraspingRobot,
-    arm: &GraspingArm,
-    edge: Edge,
-    accepts: impl Fn(&Pose) -> bool,
-    random: &mut Pcg64,
-) -> Option<EdgeGrasp> {
-    (0..GRASP_ATTEMPTS)
-        .map(|_| domain::draw_grasp(edge, &robot.board, random))
-        .find(|grasp| robot.pads_on_board(arm, grasp) && accepts(&grasp.x_og(&robot.board)))
 }

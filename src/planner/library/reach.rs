@@ -3,8 +3,8 @@
 //! Turning the first joint turns the gripper about that joint's axis, and turning the last joint leaves the last axis where it
 //! is. So what an arm reaches depends, but for the limits of these two joints, on four numbers: the distance of the last
 //! joint from the first axis, its height along that axis, and the direction of the last axis seen from there. The map
-//! divides them into cells and keeps a few configurations of each. It works for every arm whose first and last joints are
-//! revolute.
+//! divides them into cells and keeps a few configurations of each. If the first or the last joint
+//! is prismatic, the seeds keep its position.
 
 use std::f64::consts::PI;
 
@@ -83,14 +83,18 @@ impl ReachMap {
         samples.iter().filter_map(move |&number| {
             let sample = &self.samples[number];
             let mut q_rad = sample.q_rad.clone();
-            let first = q_rad[0] + azimuth_rad - sample.azimuth_rad;
+            // A prismatic joint does not turn the gripper about its axis.
+            let turn_rad = if chain.begins_revolute() { azimuth_rad - sample.azimuth_rad } else { 0.0 };
+            let first = q_rad[0] + turn_rad;
             let within = |joint: usize, q: f64| {
                 let turns = [q, q - 2.0 * PI, q + 2.0 * PI];
                 turns.into_iter().find(|q| (chain.lower()[joint]..=chain.upper()[joint]).contains(q))
             };
             q_rad[0] = within(0, first)?;
             let last = q_rad.len() - 1;
-            q_rad[last] = within(last, chain.last_angle_towards(&q_rad, x_wg))?;
+            if let Some(angle_rad) = chain.last_angle_towards(&q_rad, x_wg) {
+                q_rad[last] = within(last, angle_rad)?;
+            }
             Some(q_rad)
         })
     }
@@ -108,7 +112,8 @@ impl ReachMap {
             return None;
         }
         let Sample { q_rad, x_wg, .. } = &self.samples[random.random_range(0..self.samples.len())];
-        let turn_rad = uniform(random, chain.lower()[0], chain.upper()[0]) - q_rad[0];
+        let drawn = uniform(random, chain.lower()[0], chain.upper()[0]);
+        let turn_rad = if chain.begins_revolute() { drawn - q_rad[0] } else { 0.0 };
         let (origin_w, axis_w) = chain.first_axis_w();
         let turn = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(axis_w), turn_rad);
         let x_wb = x_wg * x_gb;

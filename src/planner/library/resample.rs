@@ -11,19 +11,10 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use super::{
-    grasp::{ArmGrasp, BoardGrasp, pattern},
-    grasping_robot::{GraspingArm, GraspingRobot},
-    grasps::{LibraryEntry, draw_arm_grasp},
-    postures::Posture,
-};
+use super::{board_grasps::grasps_of_board, entry::LibraryEntry, grasping_robot::GraspingRobot, postures::Posture};
 use crate::{
-    collision::{Body, Violation},
-    model::{board::Edge, frames::Pose},
-    planner::{
-        domain::{SearchDomain, draw_edge, uniform},
-        params::library::{RESAMPLED_GRASPS, RESAMPLED_PER_PATTERN},
-    },
+    model::frames::Pose,
+    planner::domain::{SearchDomain, uniform},
 };
 
 /// Grasps of `count` boards with the height and tilt of the given ones; boards outside the search domain have none. The same
@@ -62,9 +53,8 @@ fn numbered_grasps_of<'r>(
         let stream = (u128::from(pass) << 64) + number as u128;
         let mut random = Pcg64::new(u128::from(seed), stream);
         let x_wo = board(number, &mut random);
-        let entries =
-            if robot.domain.contains(&x_wo) { grasps_of_board(robot, &x_wo, &mut random) } else { Vec::new() };
-        entries.into_iter().map(move |entry| (number, entry))
+        let entries = if robot.domain.contains(&x_wo) { grasps_of_board(robot, &x_wo, &mut random).ok() } else { None };
+        entries.into_iter().flatten().map(move |entry| (number, entry))
     };
     (0..count).into_par_iter().flat_map_iter(of_board)
 }
@@ -76,84 +66,12 @@ fn moved(x_wo: &Pose, domain: &SearchDomain, random: &mut Pcg64) -> Pose {
     Isometry3::from_parts(Vector3::new(x_m, y_m, x_wo.translation.z).into(), turn * x_wo.rotation)
 }
 
-/// Collision-free grasps of a board at a pose.
-fn grasps_of_board(robot: &GraspingRobot, x_wo: &Pose, random: &mut Pcg64) -> Vec<LibraryEntry> {
-    let reached: Vec<_> = robot.arms.iter().map(|arm| reached_grasps(robot, arm, x_wo, random)).collect();
-    // Grasps that collide with the board or the robot's own body, whatever the other arms do.
-    let mut colliding: Vec<Vec<bool>> = reached.iter().map(|grasps| vec![false; grasps.len()]).collect();
-    let mut entries: Vec<LibraryEntry> = Vec::new();
-    let mut patterns = Vec::new();
-    for numbers in combinations(robot, &reached) {
-        if numbers.iter().zip(&colliding).any(|(&number, colliding)| colliding[number]) {
-            continue;
-        }
-        let arms: Vec<ArmGrasp> =
-            numbers.iter().zip(&reached).map(|(&number, grasps)| grasps[number].clone()).collect();
-        let pattern = pattern(&arms);
-        if patterns.iter().filter(|other| **other == pattern).count() >= RESAMPLED_PER_PATTERN {
-            continue;
-        }
-        let link_poses = robot.link_poses(&arms);
-        match robot.collision.first_violation(&robot.scene(&link_poses, *x_wo)) {
-            None => {
-                patterns.push(pattern);
-                entries.push(LibraryEntry::new(robot, BoardGrasp { x_wo: *x_wo, arms }, &link_poses));
-            }
-            Some(violation) => {
-                if let [arm] = arms_of(robot, &violation)[..] {
-                    colliding[arm][numbers[arm]] = true;
-                }
-            }
-        }
-    }
-    entries
-}
-
-/// The drawn grasps of one arm that it reaches, with configurations.
-fn reached_grasps(robot: &GraspingRobot, arm: &GraspingArm, x_wo: &Pose, random: &mut Pcg64) -> Vec<ArmGrasp> {
-    let draw = |_| {
-        let edge = draw_edge(&robot.edges, random)?;
-        draw_arm_grasp(robot, arm, edge, x_wo, random)
-    };
-    (0..RESAMPLED_GRASPS).filter_map(draw).collect()
-}
-
-/// Every choice of one grasp per arm in which all edges are the first one's or opposite to it
-/// (docs/method.md#25-edge-grasps), as indices.
-fn combinations(robot: &GraspingRobot, reached: &[Vec<ArmGrasp>]) -> Vec<Vec<usize>> {
-    let mut chosen = vec![Vec::new()];
-    for grasps in reached {
-        let longer = |numbers: &Vec<usize>| {
-            let first = numbers.first().map(|&first| reached[0][first].grasp.edge);
-            let fits = |edge: Edge| first.is_none_or(|first| edge == first || edge == robot.opposite(first));
-            let fitting = grasps.iter().enumerate().filter(|(_, arm)| fits(arm.grasp.edge));
-            fitting.map(|(number, _)| [&numbers[..], &[number]].concat()).collect::<Vec<_>>()
-        };
-        chosen = chosen.iter().flat_map(longer).collect();
-    }
-    chosen
-}
-
-/// The arms that take part in a violation.
-fn arms_of(robot: &GraspingRobot, violation: &Violation) -> Vec<usize> {
-    let mut arms: Vec<_> = violation
-        .bodies
-        .iter()
-        .filter_map(|body| match *body {
-            Body::Link(link) => robot.moved_by[link].map(|(arm, _)| arm),
-            Body::Board | Body::Person(_) => None,
-        })
-        .collect();
-    arms.dedup();
-    arms
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
         model::{board::BoardShape, plate::PlateRecord},
-        planner::library::GraspLibrary,
+        planner::library::{BoardGrasp, GraspLibrary},
         reproduce::paper,
     };
 
@@ -179,7 +97,7 @@ mod tests {
                 let missed = arm.chain.gripper_pose(&own.q_rad).inverse() * (x_wo * own.grasp.x_og(&robot.board));
                 // The tolerance of docs/method.md#34-constraints: 1e-6 m and rad.
                 assert!(missed.translation.vector.norm() < 1e-6 && missed.rotation.angle() < 1e-6);
-                assert!(robot.pads_on_board(arm, &own.grasp));
+                assert!(robot.fits(arm, &own.grasp));
             }
             let [left, right] = [0, 1].map(|arm: usize| arms[arm].grasp.edge);
             assert!(left == right || left == robot.opposite(right));

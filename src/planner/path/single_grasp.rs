@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::{
     super::{
-        domain::{ANGLE_RAD, DEPTH_M, uniform},
+        domain::{ANGLE_RAD, uniform},
         library::{ArmGrasp, BoardGrasp, LibraryEntry, resample},
         params::path::{
             EVALUATED_PER_START, GRASP, JOINTS_RAD, NARROWER, RESAMPLED_BOARDS, SHIFT_M, TRIES_PER_STEP, TURN_RAD,
@@ -104,10 +104,10 @@ fn displaced_grasp(problem: &mut PathProblem<'_>, from: &BoardGrasp, scale: f64)
     for (arm, own) in robot.arms.iter().zip(&from.arms) {
         let mut grasp = own.grasp;
         grasp.along_m += within(GRASP[0]);
-        grasp.depth_m = (grasp.depth_m + within(GRASP[1])).clamp(DEPTH_M[0], DEPTH_M[1]);
+        grasp.depth_m = (grasp.depth_m + within(GRASP[1])).clamp(arm.depth_m[0], arm.depth_m[1]);
         grasp.angle_rad = (grasp.angle_rad + within(GRASP[2])).clamp(ANGLE_RAD[0], ANGLE_RAD[1]);
         let seed: Vec<_> = own.q_rad.iter().map(|q| q + within(JOINTS_RAD)).collect();
-        if !robot.pads_on_board(arm, &grasp) {
+        if !robot.fits(arm, &grasp) {
             return None;
         }
         arms.push(ArmGrasp { grasp, q_rad: arm.inverse.local(&(x_wo * grasp.x_og(&robot.board)), &seed).found()? });

@@ -6,7 +6,7 @@ use super::{
     super::{
         candidate::Candidate,
         contact::contact_model,
-        domain::{ANGLE_RAD, DEPTH_M},
+        domain::ANGLE_RAD,
         evaluate::{Configuration, Evaluator, Feasible},
         load_shift::LoadShift,
         params::refine::{
@@ -270,7 +270,7 @@ pub fn simple_margins(
         for (q, (&low, &high)) in own.q_rad.iter().zip(arm.chain.lower().iter().zip(arm.chain.upper())) {
             between(*q, [low, high]);
         }
-        between(own.grasp.depth_m, DEPTH_M);
+        between(own.grasp.depth_m, arm.depth_m);
         between(own.grasp.angle_rad, ANGLE_RAD);
     }
     margins.push(domain.facing_margin(x_wo));

@@ -31,7 +31,7 @@ pub struct BranchSample {
 }
 
 impl Branch {
-    /// The samples: both ends, the turning points of the free joint W1, and enough between that the branch deviates from the
+    /// The samples: both ends, the turning points of the free joint, and enough between that the branch deviates from the
     /// chords by a few per cent of their length.
     pub fn samples(&self) -> &[BranchSample] {
         &self.samples

@@ -1,6 +1,6 @@
 //! The choice of a solver by the geometry of a chain.
 
-use super::{closed_form::ClosedForm, general::General, solution::Solution};
+use super::{closed_form::ClosedForm, decomposed::Decomposed, general::General, solution::Solution};
 use crate::{model::frames::Pose, robot::chain::Chain};
 
 /// Maximum number of steps from a near seed.
@@ -15,16 +15,32 @@ const FALLBACK_STARTS: usize = 60;
 pub enum InverseKinematics {
     /// For seven joints whose axes intersect in pairs.
     ClosedForm(Box<ClosedForm>),
+    /// For six joints that decompose into position and rotation, and for seven with these beyond a free joint.
+    Decomposed(Box<Decomposed>),
     /// For all other chains.
     General(General),
 }
 
 impl InverseKinematics {
-    /// The closed form if the chain has its structure, else the general solver.
+    /// A closed form if the chain has its structure, else the general solver.
     pub fn for_chain(chain: &Chain) -> Self {
-        match ClosedForm::new(chain) {
-            Some(closed_form) => Self::ClosedForm(Box::new(closed_form)),
+        if !chain.is_revolute() {
+            return Self::General(General::new(chain));
+        }
+        if let Some(closed_form) = ClosedForm::new(chain) {
+            return Self::ClosedForm(Box::new(closed_form));
+        }
+        match Decomposed::new(chain) {
+            Some(decomposed) => Self::Decomposed(Box::new(decomposed)),
             None => Self::General(General::new(chain)),
+        }
+    }
+
+    /// The solver's name for messages.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::ClosedForm(_) | Self::Decomposed(_) => "closed-form",
+            Self::General(_) => "numerical",
         }
     }
 
@@ -55,19 +71,35 @@ impl InverseKinematics {
         nearest.map_or(local, Solution::Found)
     }
 
-    /// Solutions spread over the set of solutions, within the limits, in a fixed order. `effort` is the number of slices of the
+    /// Solutions spread over the set of solutions, within the limits, in a fixed order. `effort` is the number of slices of a
     /// closed form, evenly spread over the range of its free joint, each with up to a dozen solutions; or the number of starts
-    /// of the general solver, each with at most one. Empty if none was found.
+    /// of the general solver, each with at most one. Six joints with a closed form have all their solutions. Empty if none was
+    /// found.
     pub fn samples(&self, target: &Pose, effort: usize) -> Vec<Vec<f64>> {
         match self {
             Self::ClosedForm(closed_form) => closed_form.manifold(target, effort),
+            Self::Decomposed(decomposed) => decomposed.samples(target, effort),
             Self::General(general) => general.solutions(target, effort),
         }
+    }
+
+    /// The samples of all branches of solutions of seven joints with a closed form, all solutions of six, and for other chains the
+    /// solutions from `starts` starts. Empty if none was found.
+    pub fn all(&self, target: &Pose, starts: usize) -> Vec<Vec<f64>> {
+        let motion = match self {
+            Self::ClosedForm(closed_form) => Some(closed_form.branches(target)),
+            Self::Decomposed(decomposed) => decomposed.branches(target),
+            Self::General(_) => None,
+        };
+        let Some(motion) = motion else { return self.samples(target, starts) };
+        let samples = motion.branches().iter().flat_map(|branch| branch.samples());
+        samples.map(|sample| sample.q_rad.to_vec()).collect()
     }
 
     fn general(&self) -> &General {
         match self {
             Self::ClosedForm(closed_form) => closed_form.general(),
+            Self::Decomposed(decomposed) => decomposed.general(),
             Self::General(general) => general,
         }
     }

@@ -1,5 +1,7 @@
 //! The result of inverse kinematics, and when two solutions are the same.
 
+use std::f64::consts::TAU;
+
 use crate::model::frames::Pose;
 
 /// Tolerance of a solution: m in position and rad in orientation.
@@ -48,4 +50,10 @@ pub(super) fn is_finite(pose: &Pose) -> bool {
 pub(super) fn contains(solutions: &[Vec<f64>], q_rad: &[f64]) -> bool {
     let same = |other: &Vec<f64>| other.iter().zip(q_rad).all(|(a, b)| (a - b).abs() < SAME_SOLUTION_RAD);
     solutions.iter().any(same)
+}
+
+/// The angle plus full turns that is within the limits, the nearest to their middle if there are several, rad.
+pub(super) fn turned_into(angle_rad: f64, [lower, upper]: [f64; 2], tolerance_rad: f64) -> Option<f64> {
+    let turned = angle_rad + ((0.5 * (lower + upper) - angle_rad) / TAU).round() * TAU;
+    (lower - tolerance_rad..=upper + tolerance_rad).contains(&turned).then_some(turned)
 }

@@ -126,8 +126,8 @@ fn pads(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, k: usize, body: &Mo
     Ok(())
 }
 
-/// The name of the mesh of a plate.
-const PLATE_MESH: &str = "plate";
+/// The name of the board: its body, its geom and the mesh of a plate.
+const BOARD: &str = "board";
 /// The group of geoms that viewers hide at first.
 const HIDDEN_GROUP: u8 = 3;
 
@@ -142,7 +142,7 @@ pub(super) fn plate_mesh(xml: &mut Xml, object: &PlacedObject) -> io::Result<()>
         .flat_map(|corner| corner.coords.into_iter().copied().collect::<Vec<_>>())
         .collect();
     let faces: Vec<String> = (0..3 * mesh.triangles_o.len()).map(|corner| corner.to_string()).collect();
-    let attributes = [("name", PLATE_MESH.to_owned()), ("vertex", numbers(&corners)), ("face", faces.join(" "))];
+    let attributes = [("name", BOARD.to_owned()), ("vertex", numbers(&corners)), ("face", faces.join(" "))];
     xml.create_element("asset").write_inner_content(|xml| empty(xml, "mesh", &attributes))?;
     Ok(())
 }
@@ -168,20 +168,20 @@ pub(super) fn board(
     arms: &[ExportedArm<'_>],
     p_ot_m: &Vector3<f64>,
 ) -> io::Result<()> {
-    let element = with(xml.create_element("body").with_attribute(("name", "board")), &pose_attributes(&object.x_wo));
+    let element = with(xml.create_element("body").with_attribute(("name", BOARD)), &pose_attributes(&object.x_wo));
     element.write_inner_content(|xml| {
-        empty(xml, "freejoint", &[("name", "board".into())])?;
+        empty(xml, "freejoint", &[("name", BOARD.into())])?;
         board_inertial(xml, object)?;
         if object.plate.is_some() {
             // The picture of the plate, and what each hand touches of it.
-            mesh_geom(xml, "board", PLATE_MESH, (TOUCHING_GROUP, BOARD_RGBA))?;
+            mesh_geom(xml, BOARD, &Isometry3::identity(), (TOUCHING_GROUP, BOARD_RGBA))?;
             for arm in arms {
                 let TouchedBox { x_ob, half_m } = &arm.touched;
                 geom(xml, &arm.touched_name(), ("box", half_m), x_ob, (HIDDEN_GROUP, BOARD_RGBA))?;
             }
         } else {
             let half_m = object.size_m.map(|side| side / 2.0);
-            geom(xml, "board", ("box", &half_m), &Isometry3::identity(), (TOUCHING_GROUP, BOARD_RGBA))?;
+            geom(xml, BOARD, ("box", &half_m), &Isometry3::identity(), (TOUCHING_GROUP, BOARD_RGBA))?;
         }
         site(xml, "tool", &Isometry3::from(*p_ot_m))
     })?;

@@ -73,6 +73,7 @@ fn document(xml: &mut Xml, exported: &Exported<'_>) -> io::Result<()> {
         // The part of the scene that a viewer shows at first.
         empty(xml, "statistic", &[("center", numbers(board_w_m.as_slice())), ("extent", "1".into())])?;
         plate_mesh(xml, object)?;
+        scenery::assets(xml, robot)?;
         let mut positions = Vec::new();
         let inertia = [drive_inertia_kg(object), timestep_s(&conditions.settings)];
         xml.create_element("worldbody").write_inner_content(|xml| {

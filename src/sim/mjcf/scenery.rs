@@ -1,4 +1,4 @@
-//! What is only seen: the robot's shapes, the floor, a light and a camera.
+//! What is only seen: the robot's meshes and shapes, the floor, a light and a camera.
 
 use std::io;
 
@@ -6,15 +6,18 @@ use nalgebra::{Isometry3, Vector3};
 
 use super::{
     exported_arm::ExportedArm,
-    xml::{Xml, empty, geom, numbers},
+    xml::{Xml, empty, geom, mesh_geom, numbers},
 };
 use crate::{
     model::frames::Pose,
-    robot::{Link, Robot, Shape},
+    robot::{DrawnForm, DrawnPart, Link, Robot, Shape, TriangleMesh},
 };
 
 /// The group of geoms that are only seen; a viewer can hide it.
 const SEEN_GROUP: u8 = 2;
+
+/// Colour of what has none.
+const PLAIN_RGBA: [f64; 4] = [0.6, 0.6, 0.6, 1.0];
 
 /// Half sides of the floor, m, and the spacing of its grid.
 const FLOOR_M: [f64; 3] = [3.0, 3.0, 0.1];
@@ -38,33 +41,73 @@ pub(super) fn fixed(
     let Some(first) = arms.first() else { return Ok(()) };
     for (index, link) in robot.links.iter().enumerate() {
         if arms.iter().all(|arm| arm.bodies.placements[index].body.is_none()) {
-            shapes(xml, link, &first.bodies.placements[index].x_bl)?;
+            drawn(xml, link, &robot.drawn(index), &first.bodies.placements[index].x_bl)?;
         }
     }
     Ok(())
 }
 
-/// The shapes of all links that are fixed to a moving body.
+/// What is drawn of all links that are fixed to a moving body.
 pub(super) fn moving(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, body: usize) -> io::Result<()> {
-    let links = robot.links.iter().zip(&arm.bodies.placements);
-    for (link, placement) in links.filter(|(_, placement)| placement.body == Some(body)) {
-        shapes(xml, link, &placement.x_bl)?;
+    let links = robot.links.iter().zip(&arm.bodies.placements).enumerate();
+    for (index, (link, placement)) in links.filter(|(_, (_, placement))| placement.body == Some(body)) {
+        drawn(xml, link, &robot.drawn(index), &placement.x_bl)?;
     }
     Ok(())
 }
 
-/// The shapes of a link whose pose in its body is `x_bl`.
-fn shapes(xml: &mut Xml, link: &Link, x_bl: &Pose) -> io::Result<()> {
-    for (number, placed) in link.shapes.iter().enumerate() {
-        let name = format!("{} shape {}", link.name, number + 1);
-        let look = (SEEN_GROUP, placed.rgba);
-        let x_bs = x_bl * placed.x_ls;
-        match placed.shape {
-            Shape::Box { half_m } => geom(xml, &name, ("box", &half_m), &x_bs, look)?,
-            Shape::Cylinder { radius_m, half_length_m } => {
-                geom(xml, &name, ("cylinder", &[radius_m, half_length_m]), &x_bs, look)?;
+/// The meshes that the geoms of the robot name. MuJoCo needs no volume of what has no mass.
+pub(super) fn assets(xml: &mut Xml, robot: &Robot) -> io::Result<()> {
+    let meshes = robot.links.iter().enumerate().flat_map(|(index, link)| {
+        let parts = robot.drawn(index).into_iter().enumerate();
+        parts.filter_map(|(number, part)| surface(&part.form).map(|surface| (part_name(link, number), surface.clone())))
+    });
+    let meshes: Vec<(String, TriangleMesh)> = meshes.collect();
+    if meshes.is_empty() {
+        return Ok(());
+    }
+    xml.create_element("asset").write_inner_content(|xml| {
+        meshes.iter().try_for_each(|(name, surface)| {
+            let points: Vec<f64> = surface.points_m.iter().flat_map(|point| [point.x, point.y, point.z]).collect();
+            let corners: Vec<String> = surface.triangles.iter().flatten().map(u32::to_string).collect();
+            let attributes = [
+                ("name", name.clone()),
+                ("inertia", "shell".into()),
+                ("vertex", numbers(&points)),
+                ("face", corners.join(" ")),
+            ];
+            empty(xml, "mesh", &attributes)
+        })
+    })?;
+    Ok(())
+}
+
+fn part_name(link: &Link, number: usize) -> String {
+    format!("{} shape {}", link.name, number + 1)
+}
+
+/// The surface of a part that is no primitive.
+fn surface(form: &DrawnForm) -> Option<&TriangleMesh> {
+    match form {
+        DrawnForm::Surface(surface) => Some(surface),
+        DrawnForm::Shape(Shape::Hull(hull)) => Some(hull),
+        DrawnForm::Shape(_) => None,
+    }
+}
+
+/// What is drawn of a link whose pose in its body is `x_bl`.
+fn drawn(xml: &mut Xml, link: &Link, parts: &[DrawnPart], x_bl: &Pose) -> io::Result<()> {
+    for (number, part) in parts.iter().enumerate() {
+        let name = part_name(link, number);
+        let look = (SEEN_GROUP, part.rgba.unwrap_or(PLAIN_RGBA));
+        let x_bp = x_bl * part.x_lp;
+        match &part.form {
+            DrawnForm::Shape(Shape::Box { half_m }) => geom(xml, &name, ("box", half_m), &x_bp, look)?,
+            DrawnForm::Shape(Shape::Cylinder { radius_m, half_length_m }) => {
+                geom(xml, &name, ("cylinder", &[*radius_m, *half_length_m]), &x_bp, look)?;
             }
-            Shape::Sphere { radius_m } => geom(xml, &name, ("sphere", &[radius_m]), &x_bs, look)?,
+            DrawnForm::Shape(Shape::Sphere { radius_m }) => geom(xml, &name, ("sphere", &[*radius_m]), &x_bp, look)?,
+            DrawnForm::Surface(_) | DrawnForm::Shape(Shape::Hull(_)) => mesh_geom(xml, &name, &x_bp, look)?,
         }
     }
     Ok(())

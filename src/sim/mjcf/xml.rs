@@ -47,18 +47,25 @@ pub(super) fn geom(
     name: &str,
     (kind, size): (&str, &[f64]),
     x_bg: &Pose,
-    (group, rgba): (u8, [f64; 4]),
+    look: (u8, [f64; 4]),
 ) -> io::Result<()> {
-    let mut attributes = vec![("name", name.to_owned()), ("type", kind.into()), ("size", numbers(size))];
-    attributes.extend(pose_attributes(x_bg));
-    attributes.extend([("contype", "0".into()), ("conaffinity", "0".into()), ("mass", "0".into())]);
-    attributes.extend([("group", group.to_string()), ("rgba", numbers(&rgba))]);
-    empty(xml, "geom", &attributes)
+    let attributes = vec![("name", name.to_owned()), ("type", kind.into()), ("size", numbers(size))];
+    any_geom(xml, attributes, x_bg, look)
 }
 
-/// A geom of a mesh, with the same.
-pub(super) fn mesh_geom(xml: &mut Xml, name: &str, mesh: &str, (group, rgba): (u8, [f64; 4])) -> io::Result<()> {
-    let mut attributes = vec![("name", name.to_owned()), ("type", "mesh".into()), ("mesh", mesh.into())];
+/// As [`geom`], with the mesh of the same name.
+pub(super) fn mesh_geom(xml: &mut Xml, name: &str, x_bg: &Pose, look: (u8, [f64; 4])) -> io::Result<()> {
+    let attributes = vec![("name", name.to_owned()), ("type", "mesh".into()), ("mesh", name.to_owned())];
+    any_geom(xml, attributes, x_bg, look)
+}
+
+fn any_geom(
+    xml: &mut Xml,
+    mut attributes: Vec<(&str, String)>,
+    x_bg: &Pose,
+    (group, rgba): (u8, [f64; 4]),
+) -> io::Result<()> {
+    attributes.extend(pose_attributes(x_bg));
     attributes.extend([("contype", "0".into()), ("conaffinity", "0".into()), ("mass", "0".into())]);
     attributes.extend([("group", group.to_string()), ("rgba", numbers(&rgba))]);
     empty(xml, "geom", &attributes)

@@ -1,0 +1,281 @@
+//! Grippers whose fingers are moved by a linkage: the equivalent parallel jaw.
+//!
+//! A linkage that keeps its pads parallel holds a board as two prismatic fingers do. For a gap between the pads, the
+//! positions of its joints follow from the opening map (docs/method.md#26-linkage-grippers). [`Robot::at_gap`] holds the
+//! linkage fixed there and lets each pad slide along y_G, so that everything else sees a gripper with prismatic fingers.
+
+use std::sync::Arc;
+
+use nalgebra::{Unit, Vector3};
+
+use super::tree::{ArmState, Finger, Gripper, JointKind, Pad, Robot};
+use crate::model::frames::Pose;
+
+/// Number of positions at which the opening map is checked to be monotonic.
+const SAMPLES: usize = 33;
+
+/// Steps of the bisection of the opening map: rounding of a range of 1 rad.
+const BISECTIONS: usize = 52;
+
+/// The largest angle by which a pad may turn over the opening, rad: two degrees, as the flatness of a rubber pad allows.
+const PARALLEL_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
+
+/// The mechanism of a gripper's fingers.
+#[derive(Clone, Debug)]
+pub struct Linkage {
+    /// One joint that moves both pads, or one for each.
+    drives: Vec<Drive>,
+    /// For each pad the joint that carries it, an index into [`Robot::joints`].
+    carriers: [usize; 2],
+    /// For each pad its link.
+    pad_links: [usize; 2],
+    /// For each pad the side of the plane y_G = 0 that it is on, 1 or -1.
+    sides: [f64; 2],
+}
+
+/// A joint that moves pads, with its positions when the gripper is closed and when it is open, rad or m.
+#[derive(Clone, Copy, Debug)]
+struct Drive {
+    joint: usize,
+    closed: f64,
+    open: f64,
+}
+
+impl Linkage {
+    /// The linkage between a palm and two pads.
+    ///
+    /// # Errors
+    /// Why the mechanism is not equivalent to a parallel jaw.
+    pub fn new(robot: &Robot, [frame, palm]: [usize; 2], pad_links: [usize; 2]) -> Result<Self, String> {
+        let name = |link: usize| robot.links[link].name.as_str();
+        let mut chains = Vec::new();
+        for pad in pad_links {
+            let chain = moving_joints(robot, pad, palm);
+            let chain = chain.filter(|chain| !chain.is_empty() && !robot.links[pad].shapes.is_empty());
+            chains.push(chain.ok_or_else(|| {
+                format!(
+                    "found {}, expected a link with collision geometry that joints after {} move",
+                    name(pad),
+                    name(palm)
+                )
+            })?);
+        }
+        let drives = drives(robot, &chains).map_err(|found| {
+            format!(
+                "found {found} that move {} and {}, expected one, or one for each pad",
+                name(pad_links[0]),
+                name(pad_links[1])
+            )
+        })?;
+        let mut linkage = Self { drives, carriers: [chains[0][0], chains[1][0]], pad_links, sides: [1.0, -1.0] };
+        linkage.orient(robot, frame)?;
+        Ok(linkage)
+    }
+
+    /// Finds the sides of the pads and which end of each drive's range is open.
+    fn orient(&mut self, robot: &Robot, frame: usize) -> Result<(), String> {
+        let y_m =
+            [0, 1].map(|pad| super::assemble::mean_y(robot, self.pad_links[pad], &self.x_gl(robot, frame, 0.5)[pad]));
+        self.sides = y_m.map(f64::signum);
+        if self.sides[0] == self.sides[1] {
+            return Err("found both pads on one side of y_G = 0, expected one on either side".into());
+        }
+        for drive in 0..self.drives.len() {
+            let gap_m = |linkage: &Self| linkage.gap_m(robot, frame, 1.0) - linkage.gap_m(robot, frame, 0.0);
+            let swapped = {
+                let mut swapped = self.clone();
+                let Drive { closed, open, .. } = swapped.drives[drive];
+                (swapped.drives[drive].closed, swapped.drives[drive].open) = (open, closed);
+                swapped
+            };
+            if gap_m(&swapped) > gap_m(self) {
+                *self = swapped;
+            }
+        }
+        Ok(())
+    }
+
+    /// The pads' gaps fully closed and fully open, m.
+    ///
+    /// # Errors
+    /// If the gap does not grow all the way or the pads turn.
+    pub fn range_m(&self, robot: &Robot, frame: usize) -> Result<[f64; 2], String> {
+        let shares = (0..SAMPLES).map(|sample| sample as f64 / (SAMPLES - 1) as f64);
+        let gaps_m: Vec<f64> = shares.clone().map(|share| self.gap_m(robot, frame, share)).collect();
+        if gaps_m.windows(2).any(|pair| pair[1] <= pair[0]) {
+            return Err(
+                "found pads whose gap does not grow over the whole range of the joint, expected an opening map".into(),
+            );
+        }
+        let middle = self.x_gl(robot, frame, 0.5);
+        let turned = |share: f64| {
+            let here = self.x_gl(robot, frame, share);
+            [0, 1].map(|pad| here[pad].rotation.angle_to(&middle[pad].rotation)).into_iter().fold(0.0, f64::max)
+        };
+        let turn_rad = shares.map(turned).fold(0.0, f64::max);
+        if turn_rad > PARALLEL_RAD {
+            return Err(format!(
+                "found pads that turn by {:.0} degrees as the gripper opens, expected at most {:.0}: only parallel pads lie flat \
+                 on a board",
+                turn_rad.to_degrees(),
+                PARALLEL_RAD.to_degrees()
+            ));
+        }
+        Ok([gaps_m[0], gaps_m[SAMPLES - 1]])
+    }
+
+    /// Positions of all joints with the arms at rest and the drives at a share of their way from closed to open.
+    fn positions(&self, robot: &Robot, share: f64) -> Vec<f64> {
+        let mut positions = robot.positions(&[] as &[ArmState]);
+        for Drive { joint, closed, open } in &self.drives {
+            positions[*joint] = closed + share * (open - closed);
+        }
+        robot.follow(&mut positions);
+        positions
+    }
+
+    /// Poses of the pads' links in G.
+    fn x_gl(&self, robot: &Robot, frame: usize, share: f64) -> [Pose; 2] {
+        let x_wl = robot.link_poses(&self.positions(robot, share));
+        self.pad_links.map(|link| x_wl[frame].inverse() * x_wl[link])
+    }
+
+    /// Poses of the pads' links in G at this gap between the pads, m; in the order of the links given to [`Linkage::new`].
+    #[must_use]
+    pub fn pad_poses_g(&self, robot: &Robot, frame: usize, gap_m: f64) -> [Pose; 2] {
+        self.x_gl(robot, frame, self.share_at(robot, frame, gap_m))
+    }
+
+    /// Distance of each pad's face from the plane y_G = 0, m.
+    fn faces_m(&self, robot: &Robot, frame: usize, share: f64) -> [f64; 2] {
+        let x_gl = self.x_gl(robot, frame, share);
+        [0, 1].map(|pad| super::assemble::nearest_face(robot, self.pad_links[pad], &x_gl[pad], self.sides[pad]))
+    }
+
+    fn gap_m(&self, robot: &Robot, frame: usize, share: f64) -> f64 {
+        self.faces_m(robot, frame, share).iter().sum()
+    }
+
+    /// The share of the way from closed to open at which the pads have this gap; 0 or 1 for gaps out of range.
+    fn share_at(&self, robot: &Robot, frame: usize, gap_m: f64) -> f64 {
+        let [mut low, mut high] = [0.0, 1.0];
+        for _ in 0..BISECTIONS {
+            let middle = (low + high) / 2.0;
+            if self.gap_m(robot, frame, middle) < gap_m { low = middle } else { high = middle }
+        }
+        (low + high) / 2.0
+    }
+
+    /// Replaces the linkage by two sliding pads at this gap.
+    fn hold_at(&self, robot: &mut Robot, gripper: &Gripper, gap_m: f64) -> [Finger; 2] {
+        let frame = gripper.frame_link;
+        let share = self.share_at(robot, frame, gap_m);
+        let positions = self.positions(robot, share);
+        let x_wl = robot.link_poses(&positions);
+        let half_m = self.faces_m(robot, frame, share);
+        let moved_m = self.shift_m(robot, gripper, share);
+        let driven = |index: usize| {
+            let leads = |joint: usize| self.drives.iter().any(|drive| drive.joint == joint);
+            leads(index) || robot.joints[index].mimic.is_some_and(|mimic| leads(mimic.leader))
+        };
+        let driven: Vec<usize> = (0..robot.joints.len()).filter(|&index| driven(index)).collect();
+        for index in driven {
+            let joint = &mut robot.joints[index];
+            joint.x_pj = joint.x_pc(positions[index]);
+            (joint.kind, joint.mimic) = (JointKind::Fixed, None);
+            (joint.lower, joint.upper, joint.rest) = (0.0, 0.0, 0.0);
+        }
+        let [narrow_m, wide_m] = gripper.opening_m;
+        [0, 1].map(|pad| {
+            let child = robot.joints[self.carriers[pad]].child_link;
+            let outward_w = x_wl[frame].rotation * (Vector3::y() * self.sides[pad]);
+            let joint = &mut robot.joints[self.carriers[pad]];
+            joint.parent_link = gripper.palm_link;
+            joint.x_pj = x_wl[gripper.palm_link].inverse() * x_wl[child];
+            joint.axis_j = Unit::new_normalize(x_wl[child].rotation.inverse() * outward_w);
+            joint.kind = JointKind::Prismatic;
+            [joint.lower, joint.upper] = [narrow_m, wide_m].map(|wanted_m| (wanted_m - gap_m) / 2.0);
+            joint.rest = 0.0_f64.clamp(joint.lower, joint.upper);
+            let given = &gripper.fingers[pad].pad;
+            let [x_m, z_m] = given.centre_m;
+            let pad_at = Pad {
+                link: self.pad_links[pad],
+                centre_m: [x_m + moved_m[0], z_m + moved_m[1]],
+                offset_m: half_m[pad] + joint.lower,
+                ..given.clone()
+            };
+            Finger {
+                joint: self.carriers[pad],
+                closed_m: joint.lower,
+                opening_sign: 1.0,
+                max_travel_m: joint.upper - joint.lower,
+                pad: pad_at,
+            }
+        })
+    }
+
+    /// How far the pads have moved along x_G and z_G since the narrowest opening, for which the description has their centre, m.
+    fn shift_m(&self, robot: &Robot, gripper: &Gripper, share: f64) -> [f64; 2] {
+        let frame = gripper.frame_link;
+        let start = self.x_gl(robot, frame, self.share_at(robot, frame, gripper.opening_m[0]));
+        let here = self.x_gl(robot, frame, share);
+        let moved = |pad: usize| here[pad].translation.vector - start[pad].translation.vector;
+        let mean = (moved(0) + moved(1)) / 2.0;
+        [mean.x, mean.z]
+    }
+}
+
+/// The moving joints between a link and one above it, the nearest to the link first; `None` if it is not above.
+fn moving_joints(robot: &Robot, mut link: usize, above: usize) -> Option<Vec<usize>> {
+    let mut joints = Vec::new();
+    while link != above {
+        let joint = robot.links[link].parent_joint?;
+        if robot.joints[joint].kind != JointKind::Fixed {
+            joints.push(joint);
+        }
+        link = robot.joints[joint].parent_link;
+    }
+    Some(joints)
+}
+
+/// The joints that move two chains, taken to open towards their upper limits; or what was found in place of them.
+fn drives(robot: &Robot, chains: &[Vec<usize>]) -> Result<Vec<Drive>, String> {
+    let leader = |joint: &usize| robot.joints[*joint].mimic.map_or(*joint, |mimic| mimic.leader);
+    let leaders = |chain: &Vec<usize>| {
+        let mut leaders: Vec<usize> = chain.iter().map(leader).collect();
+        leaders.sort_unstable();
+        leaders.dedup();
+        leaders
+    };
+    let [first, second] = [leaders(&chains[0]), leaders(&chains[1])];
+    let (all, allowed) =
+        if first == second { (first.clone(), 1) } else { ([first.clone(), second.clone()].concat(), 2) };
+    let one_each = first.len() == 1 && second.len() == 1;
+    if !one_each || all.len() != allowed {
+        let names: Vec<&str> = all.iter().map(|&joint| robot.joints[joint].name.as_str()).collect();
+        return Err(format!("the joints {}", names.join(", ")));
+    }
+    let drive = |joint: usize| Drive { joint, closed: robot.joints[joint].lower, open: robot.joints[joint].upper };
+    Ok(all.into_iter().map(drive).collect())
+}
+
+impl Robot {
+    /// The robot with every linkage gripper as a parallel jaw around this gap between its pads, m. Robots without such
+    /// grippers stay as they are.
+    #[must_use]
+    pub fn at_gap(&self, gap_m: f64) -> Self {
+        let Some(original) = &self.with_linkages else { return self.clone() };
+        let mut robot = Self::clone(original);
+        for arm in 0..robot.arms.len() {
+            let gripper = robot.arms[arm].gripper.clone();
+            if let Some(linkage) = &gripper.linkage {
+                let [narrow_m, wide_m] = gripper.opening_m;
+                let fingers = linkage.hold_at(&mut robot, &gripper, gap_m.clamp(narrow_m, wide_m));
+                robot.arms[arm].gripper.fingers = fingers;
+            }
+        }
+        robot.description.clone_from(&self.description);
+        robot.with_linkages = Some(Arc::clone(original));
+        robot
+    }
+}

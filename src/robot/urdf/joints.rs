@@ -1,0 +1,92 @@
+//! Joints: kinds, axes, limits, and joints that follow others.
+
+use nalgebra::{Unit, Vector3};
+use urdf_rs::JointType;
+
+use super::read_pose;
+use crate::robot::tree::{Joint, JointKind, Mimic};
+
+/// A joint and its effort limit.
+pub(super) fn read(
+    joint: &urdf_rs::Joint,
+    parent_link: usize,
+    child_link: usize,
+    notes: &mut Vec<String>,
+) -> Result<(Joint, f64), String> {
+    let at = |problem: String| format!("joint {}: {problem}", joint.name);
+    let x_pj = read_pose(&joint.origin).map_err(at)?;
+    let kind = match joint.joint_type {
+        JointType::Fixed => JointKind::Fixed,
+        JointType::Revolute | JointType::Continuous => JointKind::Revolute,
+        JointType::Prismatic => JointKind::Prismatic,
+        ref other => {
+            return Err(at(format!("found type {other:?}, expected fixed, revolute, continuous or prismatic")));
+        }
+    };
+    let limits = if kind == JointKind::Fixed { None } else { read_limits(joint).map_err(at)? };
+    let Some([lower, upper]) = limits else {
+        if kind != JointKind::Fixed {
+            notes.push(format!("joint {} has no range; it is held fixed at {}", joint.name, joint.limit.lower));
+        }
+        return Ok((Joint::fixed(&joint.name, [parent_link, child_link], x_pj), 0.0));
+    };
+    let axis = Vector3::from(joint.axis.xyz.0);
+    let axis_j = Unit::try_new(axis, 1e-9)
+        .filter(|axis| axis.iter().all(|v| v.is_finite()))
+        .ok_or_else(|| at(format!("found axis {:?}, expected a direction", joint.axis.xyz.0)))?;
+    let rest = 0.0_f64.clamp(lower, upper);
+    let name = joint.name.clone();
+    let read = Joint { name, kind, parent_link, child_link, x_pj, axis_j, lower, upper, rest, mimic: None };
+    Ok((read, joint.limit.effort))
+}
+
+/// Limits of a joint that moves: half a turn either way for a continuous joint; `None` if it has no range at 0.
+fn read_limits(joint: &urdf_rs::Joint) -> Result<Option<[f64; 2]>, String> {
+    if joint.joint_type == JointType::Continuous {
+        return Ok(Some([-std::f64::consts::PI, std::f64::consts::PI]));
+    }
+    let (lower, upper) = (joint.limit.lower, joint.limit.upper);
+    if lower == 0.0 && upper == 0.0 {
+        return Ok(None);
+    }
+    if lower.is_finite() && upper.is_finite() && lower < upper {
+        Ok(Some([lower, upper]))
+    } else {
+        Err(format!("found limits {lower} to {upper}, expected two finite numbers, the lower first"))
+    }
+}
+
+/// Sets which joints follow which. Where the leader of one follows another itself, both steps become one.
+pub(super) fn resolve_mimics(robot: &urdf_rs::Robot, joints: &mut [Joint]) -> Result<(), String> {
+    for index in 0..joints.len() {
+        let (mut multiplier, mut offset, mut at) = (1.0, 0.0, index);
+        // As many steps as there are joints: more would be a circle.
+        for _ in 0..=joints.len() {
+            let name = &joints[at].name;
+            let mimic = robot.joints.iter().find(|joint| joint.name == *name).and_then(|joint| joint.mimic.as_ref());
+            let Some(mimic) = mimic.filter(|_| joints[at].kind != JointKind::Fixed) else { break };
+            let leader = joints.iter().position(|joint| joint.name == mimic.joint);
+            let [own_multiplier, own_offset] = [mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0)];
+            let Some(leader) = leader.filter(|_| own_multiplier.is_finite() && own_offset.is_finite()) else {
+                let found = &mimic.joint;
+                return Err(format!(
+                    "joint {name}: found a joint that mimics \"{found}\", expected a joint of this file and finite numbers"
+                ));
+            };
+            offset += multiplier * own_offset;
+            multiplier *= own_multiplier;
+            at = leader;
+        }
+        if joints[at].kind != JointKind::Fixed && is_follower(robot, &joints[at].name) {
+            return Err(format!("joint {}: found joints that mimic each other in a circle", joints[index].name));
+        }
+        if at != index {
+            joints[index].mimic = Some(Mimic { leader: at, multiplier, offset });
+        }
+    }
+    Ok(())
+}
+
+fn is_follower(robot: &urdf_rs::Robot, name: &str) -> bool {
+    robot.joints.iter().any(|joint| joint.name == name && joint.mimic.is_some())
+}

@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""Runs what a page tells a reader to type: every line of its `sh` blocks, in one folder, in order.
+
+    tools/run_walk.py PAGE FOLDER
+
+`benchdog` and `pip` must be on the path. Ends at the first command that fails.
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+
+def commands(page: str) -> list[str]:
+    blocks = re.findall(r"^```sh\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)
+    return [line for block in blocks for line in block.splitlines() if line.strip() and not line.startswith("#")]
+
+
+def main() -> None:
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    page, folder = Path(sys.argv[1]), Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = commands(page.read_text())
+    if not lines:
+        sys.exit(f"{page}: found no sh block, expected commands")
+    for line in lines:
+        print(f"$ {line}", flush=True)
+        if subprocess.run(line, shell=True, cwd=folder).returncode != 0:
+            sys.exit(f"{page}: failed: {line}")
+
+
+if __name__ == "__main__":
+    main()
