@@ -6,9 +6,10 @@
 use std::{hint::black_box, path::Path};
 
 use benchdog::{
-    collision::{CollisionModel, PersonPart, Scene},
+    collision::{BoardBody, CollisionModel, PersonPart, Scene},
     human::{Human, ShoulderBranch, default_tool, peripersonal_m, standing_pose_w},
     model::{
+        board::BoardShape,
         frames::Pose,
         operation::OperationKind,
         scenario::{ComfortSettings, MuscularMetric, PeripersonalForm, Person, PostureLimits},
@@ -68,7 +69,7 @@ fn line_of_sight(criterion: &mut Criterion) {
     let scene = Scene {
         link_poses: &link_poses,
         holding: &[],
-        board_size_m: [0.03, 0.5, 0.4],
+        board: &BoardBody::new(&BoardShape::cuboid([0.03, 0.5, 0.4])),
         x_wo,
         person: &person,
         clearance_m: 0.0,

@@ -6,7 +6,7 @@
 use std::{hint::black_box, path::Path, time::Instant};
 
 use benchdog::{
-    collision::{CollisionModel, PersonPart, Scene},
+    collision::{BoardBody, CollisionModel, PersonPart, Scene},
     human::Human,
     model::frames::Pose,
     planner::{Outcome, Planner},
@@ -214,9 +214,8 @@ fn time_collisions(criterion: &mut Criterion) {
         })
         .collect();
     let link_poses = robot.link_poses(&robot.positions(&states));
-    let (board_size_m, x_wo) = (plan.object.size_m, plan.object.x_wo);
-    let scene =
-        Scene { link_poses: &link_poses, holding: &holding, board_size_m, x_wo, person: &person, clearance_m: 0.0 };
+    let (board, x_wo) = (&BoardBody::new(&plan.object.shape()), plan.object.x_wo);
+    let scene = Scene { link_poses: &link_poses, holding: &holding, board, x_wo, person: &person, clearance_m: 0.0 };
     let model = CollisionModel::new(&robot);
     assert_eq!(model.first_violation(&scene), None);
     let mut group = criterion.benchmark_group("collision");

@@ -5,16 +5,16 @@ use std::sync::OnceLock;
 use nalgebra::Vector3;
 
 use super::{
+    board::{check_pads, check_task, is_board_side},
     bounds,
     flaw::{Flaw, Flaws},
-    tolerances::{BOARD_SIDE_M, EXACT, GIVEN, LIMIT_RAD, ON_BOARD_M},
+    tolerances::{EXACT, GIVEN, LIMIT_RAD},
 };
 use crate::{
-    collision::{CollisionModel, PersonPart, Scene},
+    collision::{BoardBody, CollisionModel, PersonPart, Scene},
     human::{ArmRanges, Human, ranges},
     model::{
         frames::Pose,
-        operation::{Operation, OperationKind},
         plan::{ArmHold, HumanPosture, Plan},
         scenario::{Person, Tool},
         verdict::VerdictKind,
@@ -30,6 +30,7 @@ pub struct CheckedPlan<'a> {
     person: Option<CheckedPerson<'a>>,
     link_poses: Vec<Pose>,
     holding: Vec<usize>,
+    board: BoardBody,
     /// Made when it is needed.
     collision: OnceLock<CollisionModel>,
 }
@@ -81,6 +82,7 @@ impl<'a> CheckedPlan<'a> {
             Some(flaws) => Err(flaws),
             None => Ok(Self {
                 link_poses: robot.planned_link_poses(&plan.arms, plan.object.size_m[2]),
+                board: BoardBody::new(&plan.object.shape()),
                 holding: arms.iter().map(|arm| arm.index).collect(),
                 robot,
                 plan,
@@ -124,15 +126,20 @@ impl<'a> CheckedPlan<'a> {
     /// The collision scene of robot and board without the person.
     #[must_use]
     pub fn scene(&self) -> Scene<'_> {
-        let object = &self.plan.object;
         Scene {
             link_poses: &self.link_poses,
             holding: &self.holding,
-            board_size_m: object.size_m,
-            x_wo: object.x_wo,
+            board: &self.board,
+            x_wo: self.plan.object.x_wo,
             person: &[],
             clearance_m: 0.0,
         }
+    }
+
+    /// The board as a body.
+    #[must_use]
+    pub fn board(&self) -> &BoardBody {
+        &self.board
     }
 
     /// The capsules of the person, W; empty without a person.
@@ -192,48 +199,6 @@ fn deviation(a: &Pose, b: &Pose) -> [f64; 2] {
     [(a.translation.vector - b.translation.vector).norm(), a.rotation.angle_to(&b.rotation)]
 }
 
-/// The board and the operation.
-fn check_task(plan: &Plan, flaws: &mut Vec<Flaw>) {
-    let object = &plan.object;
-    for (axis, &found_m) in object.size_m.iter().enumerate() {
-        if !is_board_side(found_m) {
-            flaws.push(Flaw::BoardSide { axis, found_m, range_m: BOARD_SIDE_M });
-        }
-    }
-    let found_kg = object.mass_kg;
-    if !(found_kg > 0.0 && found_kg <= bounds::MOST_MASS_KG) {
-        flaws.push(Flaw::BoardMass { found_kg });
-    }
-    let Operation { kind, wrench_o, x_ot } = plan.operation;
-    let found: [f64; 6] = wrench_o.into();
-    let pushes_n = (x_ot.rotation.inverse() * wrench_o.force_n).z;
-    if !bounds::wrench_is_within(&found) {
-        flaws.push(Flaw::Wrench { found });
-    } else if kind == OperationKind::Drill && pushes_n < 0.0 {
-        flaws.push(Flaw::Pull { found_n: pushes_n });
-    }
-    let found_m: [f64; 3] = x_ot.translation.vector.into();
-    let half_sides_m = object.size_m.map(|side_m| side_m / 2.0);
-    let is_on_board = found_m.iter().zip(half_sides_m).all(|(p_m, half_m)| p_m.abs() - half_m <= ON_BOARD_M);
-    // Of a board without size only the size is at fault.
-    if !object.size_m.iter().all(|&side_m| is_board_side(side_m)) {
-        return;
-    }
-    if !is_on_board {
-        return flaws.push(Flaw::ToolPoint { found_m, half_sides_m });
-    }
-    let depths_m = found_m.iter().zip(half_sides_m).map(|(p_m, half_m)| half_m - p_m.abs());
-    let depth_m = depths_m.fold(f64::INFINITY, f64::min);
-    if kind != OperationKind::Wrench && depth_m > GIVEN.position_m {
-        flaws.push(Flaw::TipInside { depth_m });
-    }
-}
-
-/// True if a length is in the range of a board's sides; false if it is not a number.
-fn is_board_side(side_m: f64) -> bool {
-    (BOARD_SIDE_M[0]..=BOARD_SIDE_M[1]).contains(&side_m)
-}
-
 /// One arm; `None` if it cannot be checked any further.
 fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw>) -> Option<CheckedArm<'a>> {
     let hold = &plan.arms[arm];
@@ -259,7 +224,9 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
     if is_board_side(thickness_m) && !(opening_m[0]..=opening_m[1]).contains(&thickness_m) {
         flaws.push(Flaw::Thickness { name: name.clone(), found_m: thickness_m, opening_m });
     }
-    if !is_comparable {
+    if is_comparable {
+        check_pads(robot, index, plan, arm, flaws);
+    } else {
         return None;
     }
     let chain = Chain::new(robot, index, gripper.travel_for_gap_m(0, thickness_m));

@@ -8,7 +8,10 @@ use super::{
 };
 use crate::{
     human::{HumanError, Standing},
-    model::plan::{ExceededScore, PostureConstraint, PostureFigure},
+    model::{
+        plan::{ExceededScore, PostureConstraint, PostureFigure},
+        plate::{PlateFault, PlatePart},
+    },
 };
 
 /// One fault of a plan: its key, what was found and what was expected.
@@ -23,6 +26,34 @@ pub enum Flaw {
         found_m: f64,
         /// Its range, m.
         range_m: [f64; 2],
+    },
+    /// An outline or a hole of the plate.
+    Plate(PlateFault),
+    /// A stated size of the plate that is not that of its outline.
+    PlateSize {
+        /// Width and height, m.
+        found_m: [f64; 2],
+        /// Those of the outline, m.
+        expected_m: [f64; 2],
+    },
+    /// A centre of mass outside the board.
+    CentreOfMass {
+        /// In O, m.
+        found_m: [f64; 3],
+    },
+    /// The tool point is outside the outline of a plate, or in a hole.
+    ToolOffPlate {
+        /// The point in O, m.
+        found_m: [f64; 2],
+        /// Its distance from the material, negative, m.
+        depth_m: f64,
+    },
+    /// A pad that is not wholly on the plate's material.
+    PadOffPlate {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// How far it is off, m.
+        off_m: f64,
     },
     /// The board's mass is not a positive number.
     BoardMass {
@@ -257,16 +288,26 @@ impl Flaw {
         match self {
             Self::BoardSide { axis, .. } => format!("object.size_m[{axis}]"),
             Self::Thickness { .. } => "object.size_m[2]".into(),
+            Self::Plate(PlateFault { part, .. }) => match part {
+                PlatePart::Outline => "object.plate.outline_m".into(),
+                PlatePart::Corner(corner) => format!("object.plate.outline_m[{corner}]"),
+                PlatePart::Holes => "object.plate.holes_m".into(),
+                PlatePart::Hole(hole) => format!("object.plate.holes_m[{hole}]"),
+            },
+            Self::PlateSize { .. } => "object.size_m".into(),
+            Self::CentreOfMass { .. } => "object.com_m".into(),
             Self::BoardMass { .. } => "object.mass_kg".into(),
             Self::Wrench { .. } | Self::Pull { .. } => "operation.wrench_o".into(),
-            Self::ToolPoint { .. } | Self::TipInside { .. } => "operation.x_ot".into(),
+            Self::ToolPoint { .. } | Self::ToolOffPlate { .. } | Self::TipInside { .. } => "operation.x_ot".into(),
             Self::NoArm => "arms".into(),
             Self::UnknownArm { arm, .. } | Self::ArmTwice { arm, .. } => format!("arms[{arm}].name"),
             Self::Joints { arm, .. } => format!("arms[{arm}].joints"),
             Self::AngleCount { arm, .. } => format!("arms[{arm}].q_rad"),
             Self::Angle { arm, joint, .. } => format!("arms[{arm}].q_rad[{joint}]"),
             Self::GripForce { arm, .. } => format!("arms[{arm}].grip_force_n"),
-            Self::FingersAcross { arm, .. } | Self::Hand { arm, .. } => format!("arms[{arm}].x_og"),
+            Self::FingersAcross { arm, .. } | Self::Hand { arm, .. } | Self::PadOffPlate { arm, .. } => {
+                format!("arms[{arm}].x_og")
+            }
             Self::Person(_) => "human".into(),
             Self::PersonPose { .. } | Self::Standing { .. } => "human.x_wb".into(),
             Self::PersonAngle { joint, .. } => format!("human.q_rad[{joint}]"),
@@ -302,6 +343,11 @@ impl Flaw {
         match self {
             Self::BoardSide { found_m, .. } | Self::Thickness { found_m, .. } => found_m.to_string(),
             Self::BoardMass { found_kg } => found_kg.to_string(),
+            Self::Plate(fault) => fault.found.clone(),
+            Self::PlateSize { found_m, .. } => format!("{found_m:?}"),
+            Self::CentreOfMass { found_m } => format!("{found_m:?}"),
+            Self::ToolOffPlate { found_m: [x_m, y_m], depth_m } => off_material(*x_m, *y_m, *depth_m),
+            Self::PadOffPlate { off_m, .. } => format!("a pad {:.1} mm off the plate's material", off_m * 1e3),
             Self::Wrench { found } => format!("{found:?}"),
             Self::Pull { found_n } => format!("{found_n} N along the drill's axis z_T"),
             Self::TipInside { depth_m } => format!("a tool tip {:.2} mm inside the board", depth_m * 1e3),
@@ -359,6 +405,11 @@ impl Flaw {
                 format!("a thickness that the {name} gripper closes on: {closed} to {open} m")
             }
             Self::BoardMass { .. } => format!("a positive number up to {} (kg)", bounds::MOST_MASS_KG),
+            Self::Plate(fault) => fault.expected.clone(),
+            Self::PlateSize { expected_m, .. } => format!("{expected_m:?}, the size of the outline (m)"),
+            Self::CentreOfMass { .. } => "a point within the outline and the thickness of the board".into(),
+            Self::ToolOffPlate { .. } => ON_MATERIAL.into(),
+            Self::PadOffPlate { .. } => "pads inside the outline and off the convex hulls of the holes".into(),
             Self::Wrench { .. } => bounds::wrench_in_words(),
             Self::Pull { .. } => "a force that pushes into the board: more than 0".into(),
             Self::TipInside { .. } => format!("a tip on a face of the board, within {:.0} mm", GIVEN.position_m * 1e3),
@@ -412,6 +463,15 @@ impl Flaw {
             }
         }
     }
+}
+
+/// What is expected of a tool point on a plate.
+pub const ON_MATERIAL: &str = "a point of the plate, inside its outline and outside its holes";
+
+/// A tool point that is off the material of a plate, in words; `depth_m` as [`Plate::depth_m`] has it.
+#[must_use]
+pub fn off_material(x_m: f64, y_m: f64, depth_m: f64) -> String {
+    format!("[{x_m}, {y_m}], {:.2} mm off the material", -depth_m * 1e3)
 }
 
 /// A standing pose in words.

@@ -4,12 +4,14 @@
 //! the planner's own verification do not validate a plan again. Each fault is a typed [`Flaw`] that names its key. The
 //! module does not know comfort, stability or files.
 
+mod board;
 pub mod bounds;
 mod checked_plan;
 mod flaw;
 mod posture;
 mod tolerances;
 
+pub use board::check_plate;
 pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan, Contact, fingers_across};
-pub use flaw::{Flaw, Flaws};
+pub use flaw::{Flaw, Flaws, ON_MATERIAL, off_material};
 pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, POSTURE_DEG, POSTURE_M, PoseTolerance};

@@ -44,7 +44,7 @@ pub fn curve_of(loaded: &LoadedScenario) -> Result<Curve, CliError> {
         human: &Human::new(&scenario.human, &scenario.tool)?,
         collision: &CollisionModel::new(&loaded.robot),
         settings: scenario.comfort,
-        board_size_m: scenario.object.size_m,
+        board: &scenario.object.shape(),
         radius_m,
         force_n: scenario.operation.wrench_o.force_n.norm(),
         floor_z_m: loaded.robot.floor_z_m,

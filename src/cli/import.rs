@@ -12,7 +12,7 @@ use crate::{
     model::{
         FORMAT,
         frames::Pose,
-        plan::{ArmHold, PlacedObject, Plan},
+        plan::{ArmHold, Plan},
     },
     planner::{BOARD_DRAWS, place_board},
     report,
@@ -128,11 +128,11 @@ fn placement(
     file: &ForeignGrasps,
     holds: &[Hold<'_>],
 ) -> Result<Option<Placement>, CliError> {
-    let (size_m, clearance_m) = (scenario.object.size_m, scenario.limits.clearance_mm * 1e-3);
+    let (board, clearance_m) = (scenario.object.shape(), scenario.limits.clearance_mm * 1e-3);
     let Some(x_wo) = args.board_pose else {
         let grasps: Vec<_> = holds.iter().map(|hold| (hold.arm, hold.x_og)).collect();
         let seed = scenario.planner.seed;
-        let placed = place_board(robot, size_m, &grasps, clearance_m, seed);
+        let placed = place_board(robot, &board, &grasps, clearance_m, seed);
         return Ok(placed.map(|placed| Placement {
             x_wo: placed.x_wo,
             q_rad: placed.q_rad,
@@ -146,7 +146,7 @@ fn placement(
     let task =
         |hold: &Hold<'_>| ArmTask { arm: hold.arm, target: Target::Gripper { x_wg: x_wo * hold.x_og, seed_rad: None } };
     let tasks: Vec<_> = holds.iter().map(task).collect();
-    let completer = Completer::new(robot, size_m);
+    let completer = Completer::new(robot, &board);
     let completion = completer.complete_with_clearance(&tasks, &x_wo, &[], clearance_m, Effort::THOROUGH);
     let Reached { q_rad, .. } = completion.reached().map_err(|(task, found)| {
         let Hold { arm, grasp, .. } = &holds[task];
@@ -178,7 +178,7 @@ fn plan_of(
         name: scenario.name.clone(),
         robot: robot.description.clone(),
         operation: scenario.operation,
-        object: PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo },
+        object: scenario.object.placed(x_wo),
         arms: holds.iter().zip(q_rad).map(arm).collect(),
         human: None,
         comfort: None,

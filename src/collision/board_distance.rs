@@ -1,17 +1,13 @@
 //! The distance of one link from the board.
 
-use super::{
-    CollisionModel,
-    shapes::{Measure, Piece},
-};
+use super::{BoardBody, CollisionModel, shapes::Measure};
 use crate::model::frames::Pose;
 
 impl CollisionModel {
-    /// The distance of a link (by its index) at `x_wl` from a board with these sides at `x_wo`, m: zero if they overlap, infinite
+    /// The distance of a link (by its index) at `x_wl` from a board at `x_wo`, m: zero if they overlap, infinite
     /// for a link without primitives. Any frame may serve as W.
     #[must_use]
-    pub fn link_to_board_m(&self, link: usize, x_wl: &Pose, board_size_m: [f64; 3], x_wo: &Pose) -> f64 {
-        let board = Piece::cuboid(board_size_m);
-        self.links[link].distance_to_within(x_wl, &board.placed(x_wo), f64::INFINITY, Measure::Distance)
+    pub fn link_to_board_m(&self, link: usize, x_wl: &Pose, board: &BoardBody, x_wo: &Pose) -> f64 {
+        self.links[link].distance_to_within(x_wl, &board.piece.placed(x_wo), f64::INFINITY, Measure::Distance)
     }
 }

@@ -17,7 +17,11 @@ mod sight;
 use nalgebra::Point3;
 use parry3d_f64::glamx::DVec3;
 
-use crate::{human::BodyPart, model::frames::Pose, robot::Robot};
+use crate::{
+    human::BodyPart,
+    model::{board::BoardShape, frames::Pose},
+    robot::Robot,
+};
 use link_shapes::LinkShapes;
 pub use near_pairs::{BodyRef, NearPair};
 pub use nearest::Nearest;
@@ -32,14 +36,50 @@ pub struct Scene<'a> {
     pub link_poses: &'a [Pose],
     /// Indices of the arms that hold the board; their fingers may touch it.
     pub holding: &'a [usize],
-    /// Sides of the board, m.
-    pub board_size_m: [f64; 3],
+    /// The board.
+    pub board: &'a BoardBody,
     /// Pose of the board.
     pub x_wo: Pose,
     /// The person and the tool.
     pub person: &'a [PersonPart],
     /// Required distance of the robot from itself and from the board, m; at 0 they must only not touch.
     pub clearance_m: f64,
+}
+
+/// A board without its holes: a box, or the prism over a plate's convex outline.
+#[derive(Clone)]
+pub struct BoardBody {
+    piece: Piece,
+    thickness_m: f64,
+    /// False if a side or a corner is not a number.
+    is_finite: bool,
+}
+
+impl BoardBody {
+    /// The body of a board.
+    #[must_use]
+    pub fn new(board: &BoardShape) -> Self {
+        let corners_o = board.corners_o();
+        let is_finite = corners_o.iter().flat_map(|corner| corner.iter()).all(|m| m.is_finite());
+        let prism = board.plate.as_ref().filter(|_| is_finite).and_then(|_| Piece::prism(&corners_o));
+        Self {
+            piece: prism.unwrap_or_else(|| Piece::cuboid(board.size_m)),
+            thickness_m: board.thickness_m(),
+            is_finite,
+        }
+    }
+
+    /// Thickness, m.
+    #[must_use]
+    pub fn thickness_m(&self) -> f64 {
+        self.thickness_m
+    }
+}
+
+impl std::fmt::Debug for BoardBody {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BoardBody").field("is_finite", &self.is_finite).finish_non_exhaustive()
+    }
 }
 
 /// A capsule of the person's body or the tool, with its required clearances.
@@ -176,8 +216,7 @@ impl CollisionModel {
         // Every primitive is placed once, since a link is compared with several others.
         let placed = self.placed_primitives(scene.link_poses);
         let links = self.placed_links(scene.link_poses, &placed);
-        let board = Piece::cuboid(scene.board_size_m);
-        let board = board.placed(&scene.x_wo);
+        let board = scene.board.piece.placed(&scene.x_wo);
         self.robot_self(scene, &links)
             .or_else(|| self.robot_board(scene, &links, &board))
             .or_else(|| scene.person.iter().find_map(|part| person(&links, &board, part)))
@@ -189,8 +228,7 @@ impl CollisionModel {
     pub fn first_violation_of_person(&self, scene: &Scene<'_>) -> Option<Violation> {
         let placed = self.placed_primitives(scene.link_poses);
         let links = self.placed_links(scene.link_poses, &placed);
-        let board = Piece::cuboid(scene.board_size_m);
-        let board = board.placed(&scene.x_wo);
+        let board = scene.board.piece.placed(&scene.x_wo);
         scene.person.iter().find_map(|part| person(&links, &board, part))
     }
 
@@ -212,8 +250,7 @@ impl CollisionModel {
             return f64::NAN;
         }
         let poses = scene.link_poses;
-        let board = Piece::cuboid(scene.board_size_m);
-        let board = board.placed(&scene.x_wo);
+        let board = scene.board.piece.placed(&scene.x_wo);
         let mut margin_m = f64::INFINITY;
         for pair in &self.self_pairs {
             let ([a, b], clearance_m) = (pair.links, pair.required_m(scene.clearance_m));
@@ -250,7 +287,7 @@ impl CollisionModel {
         if let Some(link) = link {
             return Some(Body::Link(link));
         }
-        if !finite(&scene.x_wo) || !scene.board_size_m.iter().all(|m| m.is_finite()) {
+        if !finite(&scene.x_wo) || !scene.board.is_finite {
             return Some(Body::Board);
         }
         let part_is_finite = |part: &&PersonPart| {

@@ -50,8 +50,7 @@ impl CollisionModel {
                 pieces: shapes.pieces.iter().map(|piece| piece.placed(x_wl)).collect(),
             })
             .collect();
-        let board_piece = Piece::cuboid(scene.board_size_m);
-        let board = PlacedBody { body: BodyRef::Board, pieces: vec![board_piece.placed(&scene.x_wo)] };
+        let board = PlacedBody { body: BodyRef::Board, pieces: vec![scene.board.piece.placed(&scene.x_wo)] };
         let capsules: Vec<_> =
             scene.person.iter().map(|part| Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m)).collect();
         let mut found = Vec::new();

@@ -1,9 +1,6 @@
 //! The nearest pair of bodies of a scene.
 
-use super::{
-    Body, CollisionModel, Scene,
-    shapes::{Measure, Piece},
-};
+use super::{Body, CollisionModel, Scene, shapes::Measure};
 
 /// The nearest pair of two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,8 +56,7 @@ impl CollisionModel {
             let distance_m = self.links[a].distance_within(&poses[a], &self.links[b], &poses[b], bound_m, measure);
             found.offer([Body::Link(a), Body::Link(b)], distance_m);
         }
-        let board = Piece::cuboid(scene.board_size_m);
-        let board = board.placed(&scene.x_wo);
+        let board = scene.board.piece.placed(&scene.x_wo);
         for link in (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
             let shapes = &self.links[link];
             let centre_w = super::point_w(&poses[link], &shapes.centre_l);

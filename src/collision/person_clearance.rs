@@ -3,7 +3,7 @@
 //! Only pairs with a required distance above zero in a plan are measured. Tool, working hand and forearm touch the board by
 //! design and follow it with the few millimetres that the grasp deflects, so they are ignored; so is the tool near the robot.
 
-use super::{Body, CollisionModel, Nearest, PersonPart, nearest::Search, point_w, shapes::Piece};
+use super::{BoardBody, Body, CollisionModel, Nearest, PersonPart, nearest::Search, point_w, shapes::Piece};
 use crate::{human::BodyPart, model::frames::Pose};
 
 /// A person who stands still, with the tool, and the board.
@@ -25,16 +25,16 @@ struct StandingPart {
 }
 
 impl PersonClearance {
-    /// A person and a board with sides `board_size_m`. Of the clearances of `parts` only whether they are above zero matters.
+    /// A person and a board. Of the clearances of `parts` only whether they are above zero matters.
     #[must_use]
-    pub fn new(parts: &[PersonPart], board_size_m: [f64; 3]) -> Self {
+    pub fn new(parts: &[PersonPart], board: &BoardBody) -> Self {
         let parts = parts.iter().map(|part| StandingPart {
             name: part.name,
             capsule: Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m),
             keeps_off_board: part.board_clearance_m.is_some_and(|clearance_m| clearance_m > 0.0),
             keeps_off_robot: part.robot_clearance_m > 0.0,
         });
-        Self { parts: parts.collect(), board: Piece::cuboid(board_size_m) }
+        Self { parts: parts.collect(), board: board.piece.clone() }
     }
 }
 

@@ -54,6 +54,13 @@ impl Piece {
         Self::at(&Pose::identity(), SharedShape::cuboid(x, y, z), DVec3::new(x, y, z).length())
     }
 
+    /// The convex hull of points; `None` if they have no volume.
+    pub fn prism(corners: &[Point3<f64>]) -> Option<Self> {
+        let corners: Vec<DVec3> = corners.iter().map(|p| DVec3::new(p.x, p.y, p.z)).collect();
+        let reach_m = corners.iter().map(|corner| corner.length()).fold(0.0, f64::max);
+        Some(Self::at(&Pose::identity(), SharedShape::convex_hull(&corners)?, reach_m))
+    }
+
     /// A capsule between two points of W; its frame is W translated to its middle.
     pub fn capsule_w(p0_w: &Point3<f64>, p1_w: &Point3<f64>, radius_m: f64) -> Self {
         let middle = nalgebra::center(p0_w, p1_w);

@@ -42,7 +42,7 @@ impl CollisionModel {
             let within_m = within_m.min(free_m);
             free_m = piece.placed(x_wl).ray_m(eye_w, &direction_w, within_m).unwrap_or(free_m);
         };
-        meet(&Piece::cuboid(scene.board_size_m), &scene.x_wo, before_tip_m);
+        meet(&scene.board.piece, &scene.x_wo, before_tip_m);
         for part in scene.person {
             if let Some(exempt_m) = exempt_m(part.name).filter(|exempt_m| *exempt_m < length_m) {
                 let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
@@ -63,23 +63,23 @@ impl CollisionModel {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use std::{path::Path, sync::LazyLock};
 
     use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
     use super::{
-        super::{PersonPart, shapes::point_w},
+        super::{BoardBody, PersonPart, shapes::point_w},
         *,
     };
     use crate::{
         human::{Human, default_tool, standing_pose_w},
-        model::{operation::OperationKind, scenario::Person},
+        model::{board::BoardShape, operation::OperationKind, scenario::Person},
         robot::Robot,
     };
 
-    const BOARD_M: [f64; 3] = [0.5, 0.4, 0.03];
+    static BOARD: LazyLock<BoardBody> = LazyLock::new(|| BoardBody::new(&BoardShape::cuboid([0.5, 0.4, 0.03])));
 
     fn robot() -> Robot {
         Robot::load("baxter", Path::new("")).unwrap()
@@ -87,7 +87,7 @@ mod tests {
 
     /// Without a robot, a board far from the line unless `x_wo` says otherwise.
     fn scene<'a>(x_wo: Pose, person: &'a [PersonPart]) -> Scene<'a> {
-        Scene { link_poses: &[], holding: &[], board_size_m: BOARD_M, x_wo, person, clearance_m: 0.0 }
+        Scene { link_poses: &[], holding: &[], board: &BOARD, x_wo, person, clearance_m: 0.0 }
     }
 
     fn far_away() -> Pose {
@@ -162,7 +162,7 @@ mod tests {
     fn obstacles(model: &CollisionModel, scene: &Scene<'_>, length_m: f64) -> Vec<(Piece, Pose, f64)> {
         use Side::{Idle, Working};
         let before_tip_m = length_m - 1e-3;
-        let mut obstacles = vec![(Piece::cuboid(scene.board_size_m), scene.x_wo, before_tip_m)];
+        let mut obstacles = vec![(scene.board.piece.clone(), scene.x_wo, before_tip_m)];
         for part in scene.person {
             let until_m = match part.name {
                 BodyPart::Forearm(Working) => length_m - 0.12,

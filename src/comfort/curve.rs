@@ -21,9 +21,9 @@ use super::{
     responses::{self, GridPlace},
 };
 use crate::{
-    collision::{CollisionModel, Scene},
+    collision::{BoardBody, CollisionModel, Scene},
     human::{Human, Muscular},
-    model::{frames::Pose, operation::Operation, scenario::ComfortSettings},
+    model::{board::BoardShape, frames::Pose, operation::Operation, scenario::ComfortSettings},
 };
 
 /// Number of points of the circle (docs/method.md#23-cutting).
@@ -42,8 +42,8 @@ pub struct Cut<'a> {
     pub collision: &'a CollisionModel,
     /// Metrics and weights.
     pub settings: ComfortSettings,
-    /// Sides of the board, m.
-    pub board_size_m: [f64; 3],
+    /// The board.
+    pub board: &'a BoardShape,
     /// Radius of the circle about the board's centre, m.
     pub radius_m: f64,
     /// Force along the cut, N.
@@ -99,6 +99,7 @@ type Spans = [Option<Span>; POINTS];
 #[must_use]
 pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
     let x_wo = board_pose();
+    let board = BoardBody::new(cut.board);
     let mut free: Spans = [None; POINTS];
     let mut by_place = BTreeMap::<GridPlace, (Pose, Spans)>::new();
     for point in 0..POINTS {
@@ -106,17 +107,10 @@ pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
             human: cut.human,
             collision: cut.collision,
             settings: cut.settings,
-            operation: Operation::cut_on_circle(cut.radius_m, angle_rad(point), cut.force_n, cut.board_size_m[2]),
+            operation: Operation::cut_on_circle(cut.radius_m, angle_rad(point), cut.force_n, board.thickness_m()),
             floor_z_m: cut.floor_z_m,
             robot_points_w: &[],
-            scene: Scene {
-                link_poses: &[],
-                holding: &[],
-                board_size_m: cut.board_size_m,
-                x_wo,
-                person: &[],
-                clearance_m: 0.0,
-            },
+            scene: Scene { link_poses: &[], holding: &[], board: &board, x_wo, person: &[], clearance_m: 0.0 },
         };
         responses::visit(&query, |place, response| {
             let (_, spans) = by_place.entry(place).or_insert((response.x_wb, [None; POINTS]));

@@ -84,7 +84,7 @@ impl RolledTool {
         let operation = query.operation.rolled(roll_rad);
         let x_wt = query.scene.x_wo * operation.x_ot;
         let wrist = x_wt * query.human.x_ht().inverse();
-        let normal_t = operation.face_normal_t(query.scene.board_size_m[2]);
+        let normal_t = operation.face_normal_t(query.scene.board.thickness_m());
         Self { roll_rad, x_wt, p_ww: wrist.translation.vector.into(), normal_t }
     }
 

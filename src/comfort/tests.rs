@@ -1,6 +1,6 @@
 //! Responses against checks that do not use the grid.
 
-use std::path::Path;
+use std::{path::Path, sync::LazyLock};
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -13,9 +13,10 @@ use super::{
     *,
 };
 use crate::{
-    collision::{CollisionModel, PersonPart, Scene},
+    collision::{BoardBody, CollisionModel, PersonPart, Scene},
     human::{Human, Standing, default_tool, paper_tool},
     model::{
+        board::BoardShape,
         frames::Pose,
         operation::{Operation, OperationKind},
         scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StandingPlace},
@@ -25,6 +26,7 @@ use crate::{
 
 const FLOOR_Z_M: f64 = -0.92;
 const BOARD_M: [f64; 3] = [0.5, 0.4, 0.03];
+static BOARD: LazyLock<BoardBody> = LazyLock::new(|| BoardBody::new(&BoardShape::cuboid(BOARD_M)));
 
 fn worker(hand: Hand, kind: OperationKind) -> Human {
     let person = Person { hand, ..Person::PAPER };
@@ -91,7 +93,7 @@ impl Fixture {
             scene: Scene {
                 link_poses: &self.link_poses,
                 holding: &[],
-                board_size_m: BOARD_M,
+                board: &BOARD,
                 x_wo: self.x_wo,
                 person: &[],
                 clearance_m: 0.0,
@@ -218,7 +220,7 @@ fn the_curve_has_out_of_reach_points_and_one_place_never_beats_all_places() {
         human: &worker(Hand::Right, OperationKind::Cut),
         collision: &collision(),
         settings: paper_settings(),
-        board_size_m: BOARD_M,
+        board: &BoardShape::cuboid(BOARD_M),
         radius_m: 0.12,
         force_n: 30.0,
         floor_z_m: FLOOR_Z_M,

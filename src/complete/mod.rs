@@ -4,8 +4,8 @@
 //! taken in which no bodies meet. The module does not know files, comfort or stability.
 
 use crate::{
-    collision::{CollisionModel, PersonPart, Scene, Violation},
-    model::frames::Pose,
+    collision::{BoardBody, CollisionModel, PersonPart, Scene, Violation},
+    model::{board::BoardShape, frames::Pose},
     robot::{
         ArmState, Chain, InverseKinematics, Robot, Solution,
         bimanual::{Combinations, RankedSolutions},
@@ -102,7 +102,7 @@ impl Completion {
 /// Finds the angles of a robot's arms.
 pub struct Completer<'a> {
     robot: &'a Robot,
-    board_size_m: [f64; 3],
+    board: BoardBody,
     chains: Vec<Chain>,
     solvers: Vec<InverseKinematics>,
     collision: CollisionModel,
@@ -111,11 +111,11 @@ pub struct Completer<'a> {
 impl<'a> Completer<'a> {
     /// For a robot whose fingers close on this board.
     #[must_use]
-    pub fn new(robot: &'a Robot, board_size_m: [f64; 3]) -> Self {
-        let travel_m = |arm: usize| robot.arms[arm].gripper.travel_for_gap_m(0, board_size_m[2]);
+    pub fn new(robot: &'a Robot, board: &BoardShape) -> Self {
+        let travel_m = |arm: usize| robot.arms[arm].gripper.travel_for_gap_m(0, board.thickness_m());
         let chains: Vec<_> = (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, travel_m(arm))).collect();
         let solvers = chains.iter().map(InverseKinematics::for_chain).collect();
-        Self { robot, board_size_m, chains, solvers, collision: CollisionModel::new(robot) }
+        Self { robot, board: BoardBody::new(board), chains, solvers, collision: CollisionModel::new(robot) }
     }
 
     /// The arms' chains, in the order of [`Robot::arms`].
@@ -207,14 +207,14 @@ impl<'a> Completer<'a> {
     ) -> Option<Violation> {
         let arms = tasks.iter().zip(q_rad).map(|(task, &q_rad)| {
             let gripper = &self.robot.arms[task.arm].gripper;
-            let finger_travel_m = [0, 1].map(|finger| gripper.travel_for_gap_m(finger, self.board_size_m[2]));
+            let finger_travel_m = [0, 1].map(|finger| gripper.travel_for_gap_m(finger, self.board.thickness_m()));
             ArmState { arm: task.arm, q_rad, finger_travel_m }
         });
         let arms: Vec<_> = arms.collect();
         self.collision.first_violation(&Scene {
             link_poses: &self.robot.link_poses(&self.robot.positions(&arms)),
             holding: &tasks.iter().map(|task| task.arm).collect::<Vec<_>>(),
-            board_size_m: self.board_size_m,
+            board: &self.board,
             x_wo: *x_wo,
             person,
             clearance_m,

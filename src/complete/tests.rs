@@ -29,7 +29,7 @@ fn found(completion: Completion) -> (Vec<Vec<f64>>, Option<Violation>) {
 #[test]
 fn the_angles_of_a_plan_are_found_again_from_themselves() {
     let (plan, robot) = plan();
-    let completer = Completer::new(&robot, plan.object.size_m);
+    let completer = Completer::new(&robot, &plan.object.shape());
     let tasks = tasks(&plan, &robot, |q_rad| Some(q_rad.to_vec()));
     let (q_rad, contact) = found(completer.complete(&tasks, &plan.object.x_wo, &[], 0.0, Effort::THOROUGH));
     assert_eq!(contact, None);
@@ -43,7 +43,7 @@ fn the_angles_of_a_plan_are_found_again_from_themselves() {
 #[test]
 fn the_grippers_are_where_they_are_asked_to_be() {
     let (plan, robot) = plan();
-    let completer = Completer::new(&robot, plan.object.size_m);
+    let completer = Completer::new(&robot, &plan.object.shape());
     for offset_rad in [None, Some(0.4), Some(-0.9)] {
         let seeded = |q_rad: &[f64]| offset_rad.map(|offset_rad| q_rad.iter().map(|q| q + offset_rad).collect());
         let tasks = tasks(&plan, &robot, seeded);
@@ -62,7 +62,7 @@ fn the_grippers_are_where_they_are_asked_to_be() {
 #[test]
 fn an_answer_with_a_contact_is_passed_over() {
     let (plan, robot) = plan();
-    let completer = Completer::new(&robot, plan.object.size_m);
+    let completer = Completer::new(&robot, &plan.object.shape());
     let tasks = &tasks(&plan, &robot, |_| None)[..1];
     let Target::Gripper { x_wg, .. } = &tasks[0].target else { panic!("a pose") };
     let (chain, x_wo) = (&completer.chains[tasks[0].arm], plan.object.x_wo);
@@ -95,7 +95,7 @@ fn an_answer_with_a_contact_is_passed_over() {
 #[test]
 fn given_angles_stay_and_the_other_arm_avoids_them() {
     let (plan, robot) = plan();
-    let completer = Completer::new(&robot, plan.object.size_m);
+    let completer = Completer::new(&robot, &plan.object.shape());
     let mut tasks = tasks(&plan, &robot, |_| None);
     tasks[0].target = Target::Angles(plan.arms[0].q_rad.clone());
     let (q_rad, contact) = found(completer.complete(&tasks, &plan.object.x_wo, &[], 0.0, Effort::THOROUGH));
@@ -105,7 +105,7 @@ fn given_angles_stay_and_the_other_arm_avoids_them() {
 #[test]
 fn poses_that_no_arm_reaches() {
     let (plan, robot) = plan();
-    let completer = Completer::new(&robot, plan.object.size_m);
+    let completer = Completer::new(&robot, &plan.object.shape());
     let complete = |x_wg: Pose| {
         let task = ArmTask { arm: 0, target: Target::Gripper { x_wg, seed_rad: None } };
         completer.complete(&[task], &plan.object.x_wo, &[], 0.0, Effort::QUICK)

@@ -3,6 +3,8 @@
 //! This module depends on nalgebra, serde and schemars (for the JSON Schemas) and on no other module of this crate. It
 //! contains no planning, simulation or judging code.
 
+pub mod board;
+pub mod board_mesh;
 pub mod frames;
 pub mod grasp;
 pub mod load;
@@ -11,6 +13,8 @@ mod omitted;
 pub mod operation;
 mod person;
 pub mod plan;
+pub mod plate;
+pub mod polygon;
 mod pose_form;
 pub mod scenario;
 pub mod tool_part;

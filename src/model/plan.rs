@@ -14,6 +14,8 @@ use super::{
     scenario::{Hand, Limits, Person, PlannerKind, Scenario, Sex},
 };
 
+pub use super::board::PlacedObject;
+
 /// A grasp of a board by a robot's arms. `human`, `comfort`, `stability`, `clearance`,
 /// `planner`, `scenario` and `benchdog` are optional.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -52,20 +54,6 @@ pub struct Plan {
     /// The version of Benchdog that wrote the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub benchdog: Option<String>,
-}
-
-/// The board and its pose.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlacedObject {
-    /// Width, height and thickness along x_O, y_O, z_O, m.
-    pub size_m: [f64; 3],
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Pose of the board in W.
-    #[serde(with = "pose")]
-    #[schemars(with = "PoseForm")]
-    pub x_wo: Pose,
 }
 
 /// The grasp and the joint angles of one arm.

@@ -9,9 +9,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
+    board::{BoardShape, PlacedObject},
+    frames::Pose,
     load::{Load, Uncertainty},
     omitted::is_default,
     operation::{Operation, OperationKind},
+    plate::Plate,
     verdict::VerdictKind,
 };
 
@@ -122,14 +125,23 @@ pub struct BendingProperties {
     pub strength_pa: f64,
 }
 
-/// The board, a box.
+/// The board: a box, or a plate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Board {
-    /// Width, height and thickness along x_O, y_O, z_O, m.
+    /// Width, height and thickness along x_O, y_O, z_O, m; of a plate those of its bounding box.
     pub size_m: [f64; 3],
-    /// Density, kg/m^3.
+    /// Outline and holes of a plate; without them the board is a box about O.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plate: Option<Plate>,
+    /// Density, kg/m^3; the mean one if the mass is given.
     pub density_kg_m3: f64,
+    /// Mass, kg; by default that of the density.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_kg: Option<f64>,
+    /// Centre of mass in O, m; by default the centroid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub com_m: Option<[f64; 3]>,
     /// The material's name.
     pub material: String,
 }
@@ -138,7 +150,20 @@ impl Board {
     /// Mass of the board, kg.
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
-        self.size_m.iter().product::<f64>() * self.density_kg_m3
+        self.mass_kg.unwrap_or_else(|| self.shape().volume_m3() * self.density_kg_m3)
+    }
+
+    /// Its shape.
+    #[must_use]
+    pub fn shape(&self) -> BoardShape {
+        BoardShape { size_m: self.size_m, plate: self.plate.clone() }
+    }
+
+    /// The board at a pose.
+    #[must_use]
+    pub fn placed(&self, x_wo: Pose) -> PlacedObject {
+        let Self { size_m, com_m, .. } = *self;
+        PlacedObject { size_m, plate: self.plate.clone(), mass_kg: self.mass_kg(), com_m, x_wo }
     }
 }
 

@@ -9,7 +9,10 @@ use super::{
 };
 use crate::{
     human::ArmAngles,
-    model::{frames::Pose, grasp::Edge},
+    model::{
+        board::{BoardShape, QUARTERS},
+        frames::Pose,
+    },
 };
 
 /// A grasp of the board and a response of the person to it.
@@ -71,13 +74,15 @@ impl Candidate {
         pattern(&self.arms)
     }
 
-    /// The pattern with the board turned by quarters until the first arm is at +x_O.
-    pub fn normalised_pattern(&self) -> GraspPattern {
-        let mut pattern = self.pattern();
-        while pattern.first().is_some_and(|(edge, _)| *edge != Edge::PlusX) {
-            pattern.iter_mut().for_each(|(edge, _)| *edge = edge.turned(1));
-        }
-        pattern
+    /// The pattern with the board turned by those quarters that leave it as it is until the first arm's edge has the least
+    /// number: that of +x_O for a box.
+    pub fn normalised_pattern(&self, board: &BoardShape) -> GraspPattern {
+        let pattern = self.pattern();
+        let turned = |quarters: usize| -> Option<GraspPattern> {
+            pattern.iter().map(|(edge, flipped)| Some((board.turned(*edge, quarters)?, *flipped))).collect()
+        };
+        let first = |pattern: &GraspPattern| pattern.first().map(|(edge, _)| *edge);
+        (0..QUARTERS).filter_map(turned).min_by_key(first).unwrap_or_default()
     }
 
     /// The poses of board and person.
@@ -94,23 +99,24 @@ impl Candidate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::grasp::EdgeGrasp;
+    use crate::model::{board::Edge, grasp::EdgeGrasp};
 
     #[test]
     fn a_normalised_pattern_is_the_same_for_all_turns_of_the_board() {
+        let board = BoardShape::cuboid([0.5, 0.4, 0.03]);
         let arm = |edge, flipped| ArmGrasp {
             grasp: EdgeGrasp { edge, along_m: 0.0, depth_m: 0.03, angle_rad: 0.0, flipped },
             q_rad: Vec::new(),
         };
         let pattern = |edges: [Edge; 2]| {
             let arms = vec![arm(edges[0], true), arm(edges[1], false)];
-            Candidate::without_person(&BoardGrasp { x_wo: Pose::identity(), arms }).normalised_pattern()
+            Candidate::without_person(&BoardGrasp { x_wo: Pose::identity(), arms }).normalised_pattern(&board)
         };
         for quarters in 0..4 {
-            let turned = |edge: Edge| edge.turned(quarters);
-            assert_eq!(pattern([Edge::PlusY, Edge::PlusY].map(turned)), pattern([Edge::PlusX, Edge::PlusX]));
-            assert_eq!(pattern([Edge::PlusX, Edge::MinusX].map(turned)), pattern([Edge::MinusY, Edge::PlusY]));
+            let turned = |edge: Edge| board.turned(edge, quarters).unwrap();
+            assert_eq!(pattern([Edge::PLUS_Y, Edge::PLUS_Y].map(turned)), pattern([Edge::PLUS_X, Edge::PLUS_X]));
+            assert_eq!(pattern([Edge::PLUS_X, Edge::MINUS_X].map(turned)), pattern([Edge::MINUS_Y, Edge::PLUS_Y]));
         }
-        assert_ne!(pattern([Edge::PlusX, Edge::PlusX]), pattern([Edge::PlusX, Edge::MinusX]));
+        assert_ne!(pattern([Edge::PLUS_X, Edge::PLUS_X]), pattern([Edge::PLUS_X, Edge::MINUS_X]));
     }
 }

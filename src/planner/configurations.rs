@@ -27,7 +27,7 @@ pub fn other_configurations(evaluator: &mut Evaluator<'_>, found: &Feasible, apa
         .arms
         .iter()
         .zip(&candidate.arms)
-        .map(|(arm, own)| solutions(arm, &configuration.placement.x_wo, &own.grasp.x_og(robot.size_m)))
+        .map(|(arm, own)| solutions(arm, &configuration.placement.x_wo, &own.grasp.x_og(&robot.board)))
         .collect();
     let mut kept: Vec<Feasible> = Vec::new();
     for combination in Combinations::new(&solutions).take(COMBINATIONS) {

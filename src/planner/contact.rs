@@ -18,7 +18,7 @@ pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
         name: arm.name.clone(),
         joints: arm.joints.clone(),
         q_rad: own.q_rad.clone(),
-        x_og: own.grasp.x_og(scenario.object.size_m),
+        x_og: own.grasp.x_og(&problem.robot.board),
         grip_force_n: scenario.grip.force_n,
     })
     .collect()
@@ -26,7 +26,7 @@ pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
 
 /// The board of a scenario at a pose.
 pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
-    PlacedObject { size_m: scenario.object.size_m, mass_kg: scenario.object.mass_kg(), x_wo }
+    scenario.object.placed(x_wo)
 }
 
 /// The contact model of a candidate's grasp.

@@ -2,15 +2,16 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use nalgebra::{Isometry3, Point3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64;
 
-use super::params::library::OPPOSITE_EDGE;
+use super::params::library::{OPPOSITE_EDGE, PAD_TO_HOLE_M};
 use crate::{
     model::{
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::{EdgeGrasp, pad_corners_m},
     },
     robot::{Chain, Gripper, SearchBox},
 };
@@ -110,52 +111,72 @@ pub fn uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * random.random::<f64>()
 }
 
-/// A uniformly distributed edge.
-pub fn draw_edge(random: &mut Pcg64) -> Edge {
-    Edge::ALL[random.random_range(0..Edge::ALL.len())]
+/// The edges of a board that the search grasps: all four of a box, of a plate those at least as long as the narrowest pad of the
+/// grippers is wide.
+pub fn graspable_edges<'g>(board: &BoardShape, grippers: impl Iterator<Item = &'g Gripper>) -> Vec<Edge> {
+    let narrowest_m = grippers.map(|gripper| gripper.fingers[0].pad.size_m[0]).fold(f64::INFINITY, f64::min);
+    let is_long = |edge: &Edge| {
+        let [low_m, high_m] = board.edge(*edge).along_m;
+        board.plate.is_none() || high_m - low_m >= narrowest_m
+    };
+    board.edges().filter(is_long).collect()
+}
+
+/// A uniformly distributed one of these edges; `None` if there is no edge.
+pub fn draw_edge(edges: &[Edge], random: &mut Pcg64) -> Option<Edge> {
+    (!edges.is_empty()).then(|| edges[random.random_range(0..edges.len())])
 }
 
 /// The edge of a further gripper: opposite to the first one's, or the same (docs/method.md#25-edge-grasps).
-pub fn draw_other_edge(edge: Edge, random: &mut Pcg64) -> Edge {
-    if random.random_bool(OPPOSITE_EDGE) { edge.turned(2) } else { edge }
+pub fn draw_other_edge(edge: Edge, opposite: Edge, random: &mut Pcg64) -> Edge {
+    if random.random_bool(OPPOSITE_EDGE) { opposite } else { edge }
 }
 
 /// A uniformly distributed grasp on an edge with a depth in this range, m; its pads may lie partly off the board.
-pub fn draw_grasp(edge: Edge, size_m: [f64; 3], depth_m: [f64; 2], random: &mut Pcg64) -> EdgeGrasp {
-    let (_, half_length_m) = edge.reach_and_half_length_m(size_m);
+pub fn draw_grasp(edge: Edge, board: &BoardShape, depth_m: [f64; 2], random: &mut Pcg64) -> EdgeGrasp {
+    let [low_m, high_m] = board.edge(edge).along_m;
     EdgeGrasp {
         edge,
-        along_m: uniform(random, -half_length_m, half_length_m),
+        along_m: uniform(random, low_m, high_m),
         depth_m: uniform(random, depth_m[0], depth_m[1]),
         angle_rad: uniform(random, ANGLE_RAD[0], ANGLE_RAD[1]),
         flipped: random.random_bool(0.5),
     }
 }
 
-/// True if every corner of the gripper's pads lies on the board's face.
-pub fn pads_on_board(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> bool {
-    pad_margins_m(gripper, grasp, size_m).iter().all(|&margin_m| margin_m >= 0.0)
+/// True if the gripper's pads lie on the material of the board's face.
+pub fn pads_on_board(gripper: &Gripper, grasp: &EdgeGrasp, board: &BoardShape) -> bool {
+    pad_margins_m(gripper, grasp, board).iter().all(|&margin_m| margin_m >= 0.0)
 }
 
-/// Distance of the pads' outermost corner inside each edge of the board, m: +x_O, -x_O, +y_O, -y_O; negative outside.
-pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, size_m: [f64; 3]) -> [f64; 4] {
-    let x_og = grasp.x_og(size_m);
-    let pad = &gripper.fingers[0].pad;
-    let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
-    corners.iter().fold([f64::INFINITY; 4], |margins_m, [side_x, side_z]| {
-        let x_g = pad.centre_m[0] + side_x * pad.size_m[0] / 2.0;
-        let z_g = pad.centre_m[1] + side_z * pad.size_m[1] / 2.0;
-        let p_o = x_og * Point3::new(x_g, 0.0, z_g);
-        let [half_x_m, half_y_m, _] = size_m.map(|side_m| side_m / 2.0);
-        let corner_m = [half_x_m - p_o.x, half_x_m + p_o.x, half_y_m - p_o.y, half_y_m + p_o.y];
+/// Distance of the pads' outermost corner inside each edge of the board, m, negative outside: of a box +x_O, -x_O, +y_O, -y_O;
+/// of a plate its edges in order, then what the pads keep from the convex hull of each hole beyond [`PAD_TO_HOLE_M`].
+pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, board: &BoardShape) -> Vec<f64> {
+    let corners_m = pad_corners_m(&grasp.x_og(board), gripper.fingers[0].pad.size_m, gripper.fingers[0].pad.centre_m);
+    if let Some(plate) = &board.plate {
+        let mut margins_m = plate.patch_margins_m(&corners_m);
+        margins_m.iter_mut().skip(plate.sides().len()).for_each(|margin_m| *margin_m -= PAD_TO_HOLE_M);
+        return margins_m;
+    }
+    let [half_x_m, half_y_m, _] = board.size_m.map(|side_m| side_m / 2.0);
+    let margins_m = corners_m.iter().fold([f64::INFINITY; 4], |margins_m, [x_m, y_m]| {
+        let corner_m = [half_x_m - x_m, half_x_m + x_m, half_y_m - y_m, half_y_m + y_m];
         std::array::from_fn(|side| margins_m[side].min(corner_m[side]))
-    })
+    });
+    margins_m.to_vec()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{reproduce::paper, robot::Robot};
+    use crate::{
+        model::{
+            plate::{Plate, PlateRecord, ROUND_SIDES},
+            polygon::circle,
+        },
+        reproduce::paper,
+        robot::Robot,
+    };
 
     fn domain(robot: &Robot) -> SearchDomain {
         let chains: Vec<_> = (0..robot.arms.len()).map(|arm| Chain::new(robot, arm, 0.0)).collect();
@@ -178,6 +199,77 @@ mod tests {
         let [here, there] = [&robot, &moved].map(domain);
         assert_eq!((here.x_m, here.y_m), (there.x_m, there.y_m));
         assert_eq!(there.z_m, [-0.4, 0.5]);
+    }
+
+    /// A convex polygon about O: a regular one with displaced corners, stretched; up to ten corners.
+    fn drawn_outline(random: &mut Pcg64) -> Vec<[f64; 2]> {
+        let count = random.random_range(3..=10);
+        let [width_m, height_m] = [0.0; 2].map(|_| uniform(random, 0.15, 0.5));
+        let corner = |k: usize| {
+            let turn_rad = std::f64::consts::TAU * (k as f64 + uniform(random, -0.3, 0.3)) / count as f64;
+            let (sin, cos) = libm::sincos(turn_rad);
+            [width_m * cos, height_m * sin]
+        };
+        (0..count).map(corner).collect()
+    }
+
+    /// On hundreds of convex plates with a hole: a grasp whose margins are not negative has its whole pads on the material, at
+    /// points that are tested one by one, and one with a negative margin is near to something.
+    #[test]
+    fn drawn_grasps_have_their_pads_on_the_material() {
+        let robot = paper::operations()[0].load().unwrap().robot;
+        let gripper = &robot.arms[0].gripper;
+        let pad = &gripper.fingers[0].pad;
+        let mut random = Pcg64::new(18, 0);
+        let (mut plates, mut on, mut off) = (0, 0, 0);
+        while plates < 300 {
+            let outline_m = drawn_outline(&mut random);
+            let hole =
+                circle([uniform(&mut random, -0.05, 0.05), uniform(&mut random, -0.05, 0.05)], 0.03, ROUND_SIDES);
+            let plate = Plate::from(PlateRecord { outline_m, holes_m: vec![hole] });
+            if plate.check().is_err() {
+                continue;
+            }
+            plates += 1;
+            let board = BoardShape::plate(plate.clone(), 0.02);
+            let edges = graspable_edges(&board, std::iter::once(gripper));
+            for _ in 0..20 {
+                let Some(edge) = draw_edge(&edges, &mut random) else { continue };
+                let grasp = draw_grasp(edge, &board, DEPTH_M, &mut random);
+                let margins_m = pad_margins_m(gripper, &grasp, &board);
+                assert_eq!(margins_m.len(), plate.sides().len() + 1);
+                let x_og = grasp.x_og(&board);
+                let depths_m = (0..=8).flat_map(|i| (0..=8).map(move |j| [i, j])).map(|[i, j]| {
+                    let along =
+                        |side: usize, step: i32| pad.centre_m[side] + pad.size_m[side] * (f64::from(step) / 8.0 - 0.5);
+                    let p_o = x_og * nalgebra::Point3::new(along(0, i), 0.0, along(1, j));
+                    plate.depth_m([p_o.x, p_o.y])
+                });
+                let least_m = depths_m.fold(f64::INFINITY, f64::min);
+                if pads_on_board(gripper, &grasp, &board) {
+                    assert!(least_m > -1e-12, "{least_m}");
+                    on += 1;
+                } else {
+                    // A grid of 5 mm and the distance that pads keep from a hole.
+                    assert!(least_m < 0.005 + PAD_TO_HOLE_M, "{least_m}");
+                    off += 1;
+                }
+            }
+        }
+        assert!(on > 300 && off > 300, "{on} {off}");
+    }
+
+    #[test]
+    fn edges_that_are_shorter_than_a_pad_are_left_out() {
+        let robot = paper::operations()[0].load().unwrap().robot;
+        let edges_of = |board: &BoardShape| graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper));
+        let outline_m = vec![[0.2, -0.2], [0.2, 0.18], [0.18, 0.2], [-0.2, 0.2], [-0.2, -0.2]];
+        let plate = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
+        // The side between corners 1 and 2 is 28 mm long, a pad is 40.4 mm wide.
+        assert_eq!(edges_of(&plate), [0, 2, 3, 4].map(Edge));
+        // All edges of a box count, however short: their grasps are drawn in vain.
+        assert_eq!(edges_of(&BoardShape::cuboid([0.03, 0.02, 0.01])).len(), 4);
+        assert_eq!(draw_edge(&[], &mut Pcg64::new(1, 0)), None);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 use super::library::ArmGrasp;
 use crate::{
-    collision::{Body, CollisionModel, Nearest, Scene},
+    collision::{BoardBody, Body, CollisionModel, Nearest, Scene},
     model::{
         frames::Pose,
         plan::{ArmHold, Clearance, LeastDistance, PlacedObject},
@@ -89,10 +89,10 @@ impl Held<'_> {
             Some(shift) => (shift.holds(self.arms), shift.board(&self.object.x_wo)),
             None => (self.arms.to_vec(), self.object.x_wo),
         };
-        let board_size_m = self.object.size_m;
-        let link_poses = self.robot.planned_link_poses(&arms, board_size_m[2]);
+        let board = &BoardBody::new(&self.object.shape());
+        let link_poses = self.robot.planned_link_poses(&arms, self.object.size_m[2]);
         let holding: Vec<usize> = arms.iter().filter_map(|arm| self.robot.arm_index(&arm.name)).collect();
         let (link_poses, holding) = (&link_poses[..], &holding[..]);
-        of(&Scene { link_poses, holding, board_size_m, x_wo, person: &[], clearance_m: 0.0 })
+        of(&Scene { link_poses, holding, board, x_wo, person: &[], clearance_m: 0.0 })
     }
 }

@@ -35,6 +35,8 @@ pub mod library {
     pub const GRASPS_PER_BOARD: usize = 2;
     /// Probability that a further gripper holds the edge opposite to the first one's instead of the same edge.
     pub const OPPOSITE_EDGE: f64 = 0.5;
+    /// Distance of planned pads from a hole, m: twice the slip that is allowed by default, so that a pad that holds does not reach it.
+    pub const PAD_TO_HOLE_M: f64 = 0.002;
     /// Every n-th of the robot's points is in the coarse point set.
     pub const COARSE_STRIDE: usize = 3;
 

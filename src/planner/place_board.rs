@@ -5,7 +5,7 @@ use rand_pcg::Pcg64;
 use super::domain::SearchDomain;
 use crate::{
     complete::{ArmTask, Completer, Completion, Effort, Reached, Target},
-    model::frames::Pose,
+    model::{board::BoardShape, frames::Pose},
     robot::Robot,
 };
 
@@ -30,12 +30,12 @@ pub struct PlacedBoard {
 #[must_use]
 pub fn place_board(
     robot: &Robot,
-    size_m: [f64; 3],
+    board: &BoardShape,
     grasps: &[(usize, Pose)],
     clearance_m: f64,
     seed: u64,
 ) -> Option<PlacedBoard> {
-    let completer = Completer::new(robot, size_m);
+    let completer = Completer::new(robot, board);
     let holding = grasps.iter().map(|&(arm, _)| &completer.chains()[arm]);
     let domain = SearchDomain::of(holding, robot.floor_z_m, robot.search_box);
     let mut random = Pcg64::new(seed.into(), 0);

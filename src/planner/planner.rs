@@ -22,22 +22,23 @@ use super::{
 };
 use crate::{
     model::{
+        board::BoardShape,
         plan::Plan,
         scenario::{PlannerKind, PlannerSettings, Scenario},
     },
     robot::Robot,
 };
 
-/// Plans for one robot. It keeps what many plans share: a grasp library per size of board and clearance (about a second) and warm starts per
+/// Plans for one robot. It keeps what many plans share: a grasp library per shape of board and clearance (about a second) and warm starts per
 /// task family (seconds). A plan does not depend on what was kept.
 pub struct Planner {
     robot: Robot,
     maps: Mutex<Vec<Arc<Maps>>>,
 }
 
-/// The grasp library for one size of board and one clearance, and the warm starts on it.
+/// The grasp library for one shape of board and one clearance, and the warm starts on it.
 struct Maps {
-    size_m: [f64; 3],
+    board: BoardShape,
     clearance_mm: f64,
     library: GraspLibrary,
     /// Further grasps, made when a search finds nothing.
@@ -78,17 +79,23 @@ impl Planner {
         Search { planner: self, scenario, observer: None }
     }
 
-    /// The maps for a scenario's size of board and clearance. They are made outside the lock, so threads never wait for each other; two that
+    /// The maps for a scenario's shape of board and clearance. They are made outside the lock, so threads never wait for each other; two that
     /// make the same maps at once make equal ones.
     fn maps(&self, scenario: &Scenario) -> Arc<Maps> {
-        let (size_m, clearance_mm) = (scenario.object.size_m, scenario.limits.clearance_mm);
-        let is_same = |maps: &&Arc<Maps>| maps.size_m == size_m && maps.clearance_mm == clearance_mm;
+        let (board, clearance_mm) = (scenario.object.shape(), scenario.limits.clearance_mm);
+        let is_same = |maps: &&Arc<Maps>| maps.board == board && maps.clearance_mm == clearance_mm;
         let kept = |maps: &[Arc<Maps>]| maps.iter().find(is_same).cloned();
         if let Some(maps) = kept(&lock(&self.maps)) {
             return maps;
         }
-        let library = GraspLibrary::new(&self.robot, size_m, scenario.limits.clearance_m());
-        let made = Maps { size_m, clearance_mm, library, further: OnceLock::new(), warm_starts: Mutex::default() };
+        let library = GraspLibrary::new(&self.robot, &board, scenario.limits.clearance_m());
+        let made = Maps {
+            board: board.clone(),
+            clearance_mm,
+            library,
+            further: OnceLock::new(),
+            warm_starts: Mutex::default(),
+        };
         let mut maps = lock(&self.maps);
         kept(&maps).unwrap_or_else(|| {
             maps.push(Arc::new(made));

@@ -43,22 +43,22 @@ pub fn draw(evaluator: &mut Evaluator<'_>, random: &mut Pcg64) -> Option<Feasibl
 fn draw_once(evaluator: &mut Evaluator<'_>, random: &mut Pcg64) -> Result<Feasible, Rejection> {
     let robot = evaluator.problem.robot;
     let x_wo = robot.domain.draw_board(random);
-    let mut edge = draw_edge(random);
+    let mut edge = draw_edge(&robot.edges, random).ok_or(Rejection::RobotReach)?;
     let mut grasps = Vec::with_capacity(robot.arms.len());
     for (number, arm) in robot.arms.iter().enumerate() {
         if number > 0 {
-            edge = draw_other_edge(edge, random);
+            edge = draw_other_edge(edge, robot.opposite(edge), random);
         }
         // One grasp per arm: if it is out of reach everything is drawn again, so that the draw is not biased.
         let grasp = draw_grasp(robot, arm, edge, |_| true, random).ok_or(Rejection::RobotReach)?;
-        if !arm.reach.reaches(&arm.chain, &(x_wo * grasp.x_og(robot.size_m))) {
+        if !arm.reach.reaches(&arm.chain, &(x_wo * grasp.x_og(&robot.board))) {
             return Err(Rejection::RobotReach);
         }
         grasps.push(grasp);
     }
     let mut arms = Vec::with_capacity(grasps.len());
     for (arm, grasp) in robot.arms.iter().zip(grasps) {
-        let x_wg = x_wo * grasp.x_og(robot.size_m);
+        let x_wg = x_wo * grasp.x_og(&robot.board);
         let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
         let found = seeds.find_map(|seed| arm.inverse.local(&x_wg, &seed).found());
         arms.push(ArmGrasp { grasp, q_rad: found.ok_or(Rejection::RobotReach)? });

@@ -15,7 +15,7 @@ use super::{
     warm_starts::WarmStarts,
 };
 use crate::model::{
-    grasp::Edge,
+    grasp::grasped_edge,
     plan::{ArmHold, Plan},
     scenario::ResponseKind,
 };
@@ -33,9 +33,10 @@ pub fn differ(one: &Plan, other: &Plan) -> bool {
     let (a, b) = (&one.object.x_wo, &other.object.x_wo);
     let apart = (a.translation.vector - b.translation.vector).norm() > APART_M;
     let turned = a.rotation.angle_to(&b.rotation) > APART_RAD;
+    let boards = [one, other].map(|plan| plan.object.shape());
     let arms_differ = |(a, b): (&ArmHold, &ArmHold)| {
         let joint = a.q_rad.iter().zip(&b.q_rad).any(|(a, b)| (a - b).abs() > JOINT_APART_RAD);
-        joint || Edge::of(&a.x_og, one.object.size_m) != Edge::of(&b.x_og, other.object.size_m)
+        joint || grasped_edge(&a.x_og, &boards[0]) != grasped_edge(&b.x_og, &boards[1])
     };
     apart || turned || one.arms.len() != other.arms.len() || one.arms.iter().zip(&other.arms).any(arms_differ)
 }

@@ -69,7 +69,8 @@ fn placed(operation: &Operation, wrench_t: &Wrench, p_ot_m: Vector3<f64>, r_ot: 
     }
 }
 
-/// The tasks of a family for which warm starts are solved; half turns of the board transfer them to its other half.
+/// The tasks of a family for which warm starts are solved; half turns of the board transfer them to its other half, unless its
+/// outline is another one then: then they are solved for both halves.
 /// `shared` is the family's scenario, with the optima of its objective filled in.
 pub fn solved_tasks(shared: &Scenario) -> Vec<Scenario> {
     let operation = &shared.operation;
@@ -81,15 +82,20 @@ pub fn solved_tasks(shared: &Scenario) -> Vec<Scenario> {
     };
     if operation.kind.roll_is_free() {
         // The tool's roll takes care of directions.
-        let [width_m, height_m, _] = shared.object.size_m;
-        let place = |[x, y]: [f64; 2]| translation.vector + Vector3::new(x * width_m, y * height_m, 0.0);
+        let board = shared.object.shape();
+        let ([width_m, height_m, _], [x_m, y_m]) = (board.size_m, board.centre_m());
+        let place = |[x, y]: [f64; 2]| translation.vector + Vector3::new(x_m + x * width_m, y_m + y * height_m, 0.0);
         let further: &[_] = if shared.human.posture.is_natural() { &NATURAL_HOLES } else { &[] };
-        return HOLES.iter().chain(further).map(|&hole| at(place(hole), 0.0)).collect();
+        let half: Vec<_> = HOLES.iter().chain(further).copied().collect();
+        let other_half = half.iter().map(|place| place.map(std::ops::Neg::neg)).filter(|_| !board.turns(2));
+        let tasks = half.iter().copied().chain(other_half).map(|hole| at(place(hole), 0.0));
+        return tasks.collect();
     }
+    let whole = if shared.object.shape().turns(2) { DIRECTIONS } else { 2 * DIRECTIONS };
     // Between the board's axes and diagonals, so that the common directions all have neighbours at some distance.
     let direction = |number: usize| {
         let turn_rad = PI * (number as f64 + 0.5) / DIRECTIONS as f64;
         at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * translation.vector, turn_rad)
     };
-    (0..DIRECTIONS).map(direction).collect()
+    (0..whole).map(direction).collect()
 }

@@ -3,7 +3,7 @@
 //! A few tasks of a family are solved with a larger budget than a plan's: first from the grasp library, then from resampled
 //! boards oriented like the best solutions so far and from the solutions of the other tasks. The best that differ are kept.
 //! To transfer a solution, the board is turned by quarters about its normal (a rectangle is the same after half a turn, and
-//! nearly so after a quarter), then the person or the board moves so that the tool is where the new task needs it. A
+//! nearly so after a quarter; a plate only after the turns that leave its outline as it is), then the person or the board moves so that the tool is where the new task needs it. A
 //! transferred candidate that violates a constraint slightly is repaired.
 
 use std::f64::consts::FRAC_PI_2;
@@ -32,8 +32,9 @@ use crate::{
     comfort,
     human::Human,
     model::{
+        board::{BoardShape, Edge, QUARTERS},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::EdgeGrasp,
         plan::Comfort,
         scenario::{PlannerKind, Scenario},
     },
@@ -142,7 +143,7 @@ impl WarmStarts {
             let entries = entries.iter().copied().chain(of_place);
             starts.extend(screen::screen(&mut evaluator, entries, postures, budget));
         }
-        let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds));
+        let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds), &robot.board);
         let p_ot_m = task.operation.x_ot.translation.vector.into();
         let solution = |Feasible { candidate, configuration, comfort, .. }| Solution {
             candidate,
@@ -160,7 +161,9 @@ impl WarmStarts {
         let mut transferred = Vec::with_capacity(8 * self.solutions.len());
         for solution in &self.solutions {
             let at_origin = comfort::weighted(solution.comfort, &evaluator.problem.objective).objective;
-            for quarters in 0..Edge::ALL.len() {
+            let board = &evaluator.problem.robot.board;
+            let turns: Vec<_> = (0..QUARTERS).filter(|quarters| board.turns(*quarters)).collect();
+            for quarters in turns {
                 for candidate in solution.transferred(&evaluator.problem, quarters) {
                     let Some(candidate) = candidate else {
                         evaluator.stats.count();
@@ -227,30 +230,38 @@ impl Solution {
 }
 
 /// The grasp with the board turned by quarters about its normal: each gripper takes the edge that is now where its own was.
-/// `None` if an arm cannot make up for the board's unequal sides.
+/// `None` if the outline is another one then, or an arm cannot make up for the board's unequal sides.
 fn turned(robot: &GraspingRobot, grasp: &BoardGrasp, quarters: usize) -> Option<BoardGrasp> {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2 * quarters as f64);
     let x_wo = Isometry3::from_parts(grasp.x_wo.translation, grasp.x_wo.rotation * turn);
     let arms = grasp.arms.iter().map(|ArmGrasp { grasp, q_rad }| {
-        let edge = grasp.edge.turned(Edge::ALL.len() - quarters);
-        let half_m = |edge: Edge| edge.reach_and_half_length_m(robot.size_m).1;
-        let along_m = grasp.along_m * half_m(edge) / half_m(grasp.edge);
-        ArmGrasp { grasp: EdgeGrasp { edge, along_m, ..*grasp }, q_rad: q_rad.clone() }
+        let edge = robot.board.turned(grasp.edge, QUARTERS - quarters)?;
+        let along_m = match robot.board.plate {
+            // The outline is the same, and so is the place on it.
+            Some(_) => grasp.along_m,
+            None => grasp.along_m * half_length_m(robot, edge) / half_length_m(robot, grasp.edge),
+        };
+        Some(ArmGrasp { grasp: EdgeGrasp { edge, along_m, ..*grasp }, q_rad: q_rad.clone() })
     });
-    let mut arms: Vec<_> = arms.collect();
+    let mut arms = arms.collect::<Option<Vec<_>>>()?;
     // After half a turn the grippers are where they were.
     (quarters.is_multiple_of(2) || robot.follow(&mut arms, &x_wo)).then_some(BoardGrasp { x_wo, arms })
 }
 
+/// Half the length of an edge of a box, m.
+fn half_length_m(robot: &GraspingRobot, edge: Edge) -> f64 {
+    robot.board.edge(edge).along_m[1]
+}
+
 /// The best solutions that differ: at most [`KEPT_PER_PATTERN`] have the same pattern but for a turn of the board, and those
 /// have different objectives.
-fn distinct(found: Vec<Feasible>) -> Vec<Feasible> {
+fn distinct(found: Vec<Feasible>, board: &BoardShape) -> Vec<Feasible> {
     let mut kept: Vec<(Feasible, GraspPattern)> = Vec::with_capacity(KEPT);
     for solution in found {
         if kept.len() == KEPT {
             break;
         }
-        let pattern = solution.candidate.normalised_pattern();
+        let pattern = solution.candidate.normalised_pattern(board);
         let mut alike = kept.iter().filter(|(_, other)| *other == pattern);
         let same = |(other, _): &(Feasible, _)| {
             (other.objective - solution.objective).abs() < SAME_OPTIMUM * solution.objective.abs()

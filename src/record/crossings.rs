@@ -46,6 +46,14 @@ pub(super) fn board_crossed_s(input: &RecordingInput) -> Option<f64> {
     crossings(input).find(first).map(|(event, _)| event.time_s)
 }
 
+/// The times and colours of a body: `own` from the start, the colour of limits from the time `crossed_s`; `None` without frames.
+pub(super) fn colours_over_time(frames: &Frames, own: Color, crossed_s: Option<f64>) -> Option<(Vec<f64>, Vec<Color>)> {
+    let start_s = *frames.times_s.first()?;
+    // Static data hides data over time, so the first colour is logged over time too.
+    let changes = std::iter::once((start_s, own)).chain(crossed_s.map(|time_s| (time_s, palette::limit())));
+    Some(changes.unzip())
+}
+
 /// Logs the colour of boxes: `own` from the start, the colour of limits from the time `crossed_s`.
 pub(super) fn log_box_colour(
     messages: &mut Messages,
@@ -54,12 +62,9 @@ pub(super) fn log_box_colour(
     own: Color,
     crossed_s: Option<f64>,
 ) -> Result<(), RecordError> {
-    let Some(&start_s) = frames.times_s.first() else {
+    let Some((times_s, colours)) = colours_over_time(frames, own, crossed_s) else {
         return messages.log_static(path, &Boxes3D::update_fields().with_colors([own]));
     };
-    // Static data hides data over time, so the first colour is logged over time too.
-    let changes = std::iter::once((start_s, own)).chain(crossed_s.map(|time_s| (time_s, palette::limit())));
-    let (times_s, colours): (Vec<f64>, Vec<Color>) = changes.unzip();
     let colours = Boxes3D::update_fields().with_colors(colours);
     messages.log_columns(path, &times_s, colours.columns_of_unit_batches().map_err(RecordError::encode)?)
 }

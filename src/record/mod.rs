@@ -28,6 +28,7 @@ mod input;
 mod messages;
 mod palette;
 mod person;
+mod plate;
 mod plots;
 mod posture;
 mod read;

@@ -10,7 +10,7 @@ use super::{
     frames::{Frames, arm_indices, frames, quaternion, vec3},
     input::RecordingInput,
     messages::Messages,
-    palette, person, robot,
+    palette, person, plate, robot,
 };
 use crate::model::{
     frames::Pose,
@@ -51,9 +51,14 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
 
 fn log_board(messages: &mut Messages, input: &RecordingInput, frames: &Frames) -> Result<(), RecordError> {
     let path = entity(&["scene", "board"]);
-    let half = input.plan.object.size_m.map(|side| side as f32 / 2.0);
-    messages.log_static(&path, &Boxes3D::from_half_sizes([half]).with_fill_mode(FillMode::Solid))?;
-    crossings::log_box_colour(messages, &path, frames, palette::board(), crossings::board_crossed_s(input))?;
+    let (object, crossed_s) = (&input.plan.object, crossings::board_crossed_s(input));
+    if let Some(plate) = &object.plate {
+        plate::log(messages, &path, frames, (plate, object.size_m[2]), palette::board(), crossed_s)?;
+    } else {
+        let half = object.size_m.map(|side| side as f32 / 2.0);
+        messages.log_static(&path, &Boxes3D::from_half_sizes([half]).with_fill_mode(FillMode::Solid))?;
+        crossings::log_box_colour(messages, &path, frames, palette::board(), crossed_s)?;
+    }
     log_poses(messages, &path, &frames.times_s, frames.samples.iter().map(|sample| sample.x_wo))?;
     let operation = &input.plan.operation;
     let point =

@@ -13,11 +13,13 @@ use super::{
 };
 use crate::{
     model::{
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::EdgeGrasp,
         measures::{Event, EventKind, HandMeasures, JointMeasures, Measures},
         operation::Operation,
         plan::{ArmHold, PlacedObject, Plan},
+        plate::PlateRecord,
         scenario::Scenario,
         tool_part::{ToolMaterial, ToolPart},
         trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
@@ -117,7 +119,7 @@ fn plan(robot: &Robot) -> Plan {
     let x_wo = Pose::from_parts(Vector3::new(0.6, 0.0, 0.25).into(), UnitQuaternion::from_rotation_matrix(&upright));
     let hold = |arm: usize, edge| {
         let grasp = EdgeGrasp { edge, along_m: 0.0, depth_m: 0.035, angle_rad: 0.0, flipped: false };
-        let x_og = grasp.x_og(SIZE_M);
+        let x_og = grasp.x_og(&BoardShape::cuboid(SIZE_M));
         let chain = Chain::new(robot, arm, 0.0);
         let middle: Vec<f64> = chain.lower().iter().zip(chain.upper()).map(|(a, b)| (a + b) / 2.0).collect();
         let ik = InverseKinematics::for_chain(&chain);
@@ -134,8 +136,8 @@ fn plan(robot: &Robot) -> Plan {
         name: "cut-05".into(),
         robot: "baxter".into(),
         operation: Operation::cut([0.0, 0.12], -Vector3::x(), 30.0, SIZE_M[2]),
-        object: PlacedObject { size_m: SIZE_M, mass_kg: 0.21, x_wo },
-        arms: vec![hold(0, Edge::PlusX), hold(1, Edge::MinusX)],
+        object: PlacedObject::cuboid(SIZE_M, 0.21, x_wo),
+        arms: vec![hold(0, Edge::PLUS_X), hold(1, Edge::MINUS_X)],
         human: None,
         comfort: None,
         stability: None,
@@ -497,6 +499,21 @@ fn the_moment_of_failure_has_one_time_stamp_in_scene_plot_and_log() {
         assert_eq!(times_ns(&bytes, &["scene", "pads", "right", pad], "Boxes3D:colors"), [0]);
     }
     assert_eq!(times_ns(&bytes, &["scene", "board"], "Boxes3D:colors"), [0]);
+}
+
+#[test]
+fn a_plate_is_drawn_as_a_mesh_in_place_of_the_box() {
+    let mut example = example();
+    let outline_m = example.plan.object.shape().outline_m();
+    let holes_m = vec![vec![[0.0, 0.0], [0.05, 0.0], [0.0, 0.05]]];
+    example.plan.object.plate = Some(PlateRecord { outline_m, holes_m }.into());
+    let bytes = encode(&example.input()).unwrap();
+    assert_eq!(times_ns(&bytes, &["scene", "board"], "Mesh3D:albedo_factor"), [0]);
+    assert!(times_ns(&bytes, &["scene", "board"], "Boxes3D:colors").is_empty());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plate.rrd");
+    fs::write(&path, &bytes).unwrap();
+    assert_eq!(read_run(&path).unwrap().plan, example.plan);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::columns::aligned;
 use crate::model::{
-    grasp::Edge,
+    grasp::grasped_edge,
     plan::{Comfort, Plan, Stability},
 };
 
@@ -48,7 +48,8 @@ pub fn table(plans: &[Plan]) -> String {
 /// The edges that the arms hold: `left +x, right -x`.
 #[must_use]
 pub fn edges(plan: &Plan) -> String {
-    let edge = |x_og| Edge::of(x_og, plan.object.size_m).map_or("-".to_owned(), |edge| edge.to_string());
+    let board = plan.object.shape();
+    let edge = |x_og| grasped_edge(x_og, &board).map_or("-".to_owned(), |edge| board.edge_name(edge));
     let holds: Vec<_> = plan.arms.iter().map(|arm| format!("{} {}", arm.name, edge(&arm.x_og))).collect();
     holds.join(", ")
 }

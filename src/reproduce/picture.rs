@@ -16,7 +16,7 @@ use crate::{
         scenario::Person,
         tool_part::ToolMaterial,
     },
-    robot::{Robot, Shape},
+    robot::Robot,
 };
 
 /// Scale, px/m.
@@ -60,8 +60,10 @@ fn views() -> [View; 2] {
     [View { name: "from the robot's right", axes_w: [x, z, -y] }, View { name: "from above", axes_w: [x, y, z] }]
 }
 
-/// A convex primitive of the scene, in W.
+/// A body of the scene, in W.
 enum Item {
+    /// The board: the convex hull of points without holes, whose corners are in its middle plane.
+    Pierced(Vec<Point3<f64>>, Vec<Vec<Point3<f64>>>),
     /// The convex hull of points, with SVG attributes.
     Hull(Vec<Point3<f64>>, String),
     /// A capsule: ends, radius, colours of outline and fill.
@@ -81,7 +83,7 @@ struct Scene {
 impl Item {
     fn centre(&self) -> Vector3<f64> {
         let points: &[Point3<f64>] = match self {
-            Self::Hull(points, _) => points,
+            Self::Hull(points, _) | Self::Pierced(points, _) => points,
             Self::Capsule(ends, ..) => ends,
         };
         points.iter().map(|point| point.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64
@@ -130,9 +132,14 @@ fn scene(plan: &Plan, robot: &Robot) -> Result<Scene, HumanError> {
             scene.items.push(Item::Hull(points_w, robot_paint(placed.rgba)));
         }
     }
-    let half_m = plan.object.size_m.map(|side| side / 2.0);
-    let board_w = Shape::Box { half_m }.surface_points().into_iter().map(|p| plan.object.x_wo * p).collect();
-    scene.items.push(Item::Hull(board_w, BOARD.to_owned()));
+    let x_wo = &plan.object.x_wo;
+    let board_w = plan.object.shape().corners_o().into_iter().map(|p| x_wo * p).collect();
+    let in_plane = |[x, y]: &[f64; 2]| x_wo * Point3::new(*x, *y, 0.0);
+    let holes = plan.object.plate.iter().flat_map(|plate| plate.holes_m());
+    scene.items.push(match holes.map(|hole| hole.iter().map(in_plane).collect()).collect::<Vec<_>>() {
+        holes_w if holes_w.is_empty() => Item::Hull(board_w, BOARD.to_owned()),
+        holes_w => Item::Pierced(board_w, holes_w),
+    });
     if let Some(posture) = &plan.human {
         add_person(&mut scene, plan, posture)?;
     }
@@ -189,7 +196,7 @@ impl View {
 fn bounds(view: &View, scene: &Scene) -> [Point2; 2] {
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     let extents = scene.items.iter().map(|item| match item {
-        Item::Hull(points, _) => (points.as_slice(), 0.0),
+        Item::Hull(points, _) | Item::Pierced(points, _) => (points.as_slice(), 0.0),
         Item::Capsule(ends, radius_m, _) => (ends.as_slice(), *radius_m),
     });
     for (points, reach_m) in extents.chain(view.is_from_above().then_some((scene.sector_w.as_slice(), 0.0))) {
@@ -223,6 +230,12 @@ fn draw(body: &mut String, view: &View, origin: Point2, scene: &Scene, plan: &Pl
             Item::Hull(points, paint) => {
                 let outline = corners(&convex_hull(points.iter().map(px).collect()));
                 let _ = writeln!(body, "<polygon points=\"{outline}\" {paint} stroke-width=\"0.7\"/>");
+            }
+            Item::Pierced(points, holes) => {
+                let outline = corners(&convex_hull(points.iter().map(px).collect()));
+                let holes: Vec<_> = holes.iter().map(|hole| format!(" M{}Z", polyline(hole))).collect();
+                let path = format!("M{outline}Z{}", holes.concat());
+                let _ = writeln!(body, "<path d=\"{path}\" fill-rule=\"evenodd\" {BOARD} stroke-width=\"0.7\"/>");
             }
             Item::Capsule(ends, radius_m, strokes) => {
                 let ([x1, y1], [x2, y2]) = (px(&ends[0]), px(&ends[1]));
@@ -265,7 +278,10 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::{model::scenario::PostureLimits, scenario};
+    use crate::{
+        model::{plate::PlateRecord, scenario::PostureLimits},
+        scenario,
+    };
 
     /// The picture of a committed plan under limits of the posture.
     fn picture(posture: PostureLimits) -> String {
@@ -284,6 +300,24 @@ mod tests {
         assert_eq!((natural.matches(SIGHT).count(), natural.matches(SECTOR).count()), (2, 1));
         let unrestricted = picture(PostureLimits::UNRESTRICTED);
         assert_eq!((unrestricted.matches(SIGHT).count(), unrestricted.matches(SECTOR).count()), (2, 0));
+    }
+
+    #[test]
+    fn a_plate_shows_what_is_behind_its_holes() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/long-lever.json");
+        let loaded = scenario::load_plan(&path, None).unwrap();
+        let mut plan = loaded.plan;
+        let without = svg(&plan, &loaded.robot, "box").unwrap();
+        let outline_m = plan.object.shape().outline_m();
+        plan.object.plate = Some(PlateRecord { outline_m: outline_m.clone(), holes_m: Vec::new() }.into());
+        // The same outline is the same picture.
+        assert_eq!(svg(&plan, &loaded.robot, "box").unwrap(), without);
+        let holes_m = vec![vec![[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], vec![[-0.1, 0.0], [-0.05, 0.0], [-0.1, -0.1]]];
+        plan.object.plate = Some(PlateRecord { outline_m, holes_m }.into());
+        let pierced = svg(&plan, &loaded.robot, "box").unwrap();
+        let paths: Vec<_> = pierced.lines().filter(|line| line.contains("evenodd")).collect();
+        // Two views, each with the outline and two holes.
+        assert_eq!((paths.len(), paths[0].matches('M').count(), paths[1].matches('M').count()), (2, 3, 3));
     }
 
     #[test]

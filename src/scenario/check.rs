@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::{InputError, InputErrorKind, locate};
 use crate::{
-    check::{BOARD_SIDE_M, ON_BOARD_M, bounds},
-    model::{FORMAT, frames::Pose},
+    check::{BOARD_SIDE_M, ON_BOARD_M, ON_MATERIAL, bounds, off_material},
+    model::{FORMAT, board::BoardShape, frames::Pose},
     robot::{Arm, RobotError},
 };
 
@@ -143,14 +143,21 @@ impl<'a> Checker<'a> {
         for (index, &side) in size_m.iter().enumerate() {
             self.within(&format!("{key}[{index}]"), side, BOARD_SIDE_M[0], BOARD_SIDE_M[1], "m")?;
         }
-        let thickness_key = format!("{key}[2]");
-        for arm in arms {
+        self.thickness(&format!("{key}[2]"), size_m[2], arms)
+    }
+
+    /// Requires a thickness within the opening of all grippers.
+    pub fn thickness<'r>(
+        &self,
+        key: &str,
+        thickness_m: f64,
+        mut arms: impl Iterator<Item = &'r Arm>,
+    ) -> Result<(), InputError> {
+        arms.try_for_each(|arm| {
             let [closed, open] = arm.gripper.opening_m;
             let expected = format!("a thickness that the {} gripper closes on: {closed} to {open} m", arm.name);
-            let fits = (closed..=open).contains(&size_m[2]);
-            self.that(fits, &thickness_key, size_m[2].to_string(), &expected)?;
-        }
-        Ok(())
+            self.that((closed..=open).contains(&thickness_m), key, thickness_m.to_string(), &expected)
+        })
     }
 
     /// Requires a grip force that all grippers can exert.
@@ -169,14 +176,19 @@ impl<'a> Checker<'a> {
         Ok(())
     }
 
-    /// Requires a tool point inside or on the board.
-    pub fn on_board(&self, key: &str, x_ot: &Pose, size_m: [f64; 3]) -> Result<(), InputError> {
+    /// Requires a tool point inside or on the board, and not in one of its holes.
+    pub fn on_board(&self, key: &str, x_ot: &Pose, board: &BoardShape) -> Result<(), InputError> {
         let p_ot = x_ot.translation.vector;
-        let [x, y, z] = size_m.map(|side| side / 2.0);
+        let [x, y, z] = board.size_m.map(|side| side / 2.0);
         let half_m = nalgebra::Vector3::new(x, y, z);
         let inside = (p_ot.abs() - half_m).max() <= ON_BOARD_M;
         if p_ot.z.abs() > z + ON_BOARD_M {
             return Err(self.value(key, format!("z = {}", p_ot.z), format!("a point on the board: |z| <= {z} m")));
+        }
+        if let Some(plate) = &board.plate {
+            let depth_m = plate.depth_m([p_ot.x, p_ot.y]);
+            let found = off_material(p_ot.x, p_ot.y, depth_m);
+            return self.that(depth_m >= -ON_BOARD_M, key, found, ON_MATERIAL);
         }
         let expected = format!("a point on the board: |x| <= {x} m, |y| <= {y} m");
         self.that(inside, key, format!("[{}, {}]", p_ot.x, p_ot.y), &expected)

@@ -11,6 +11,7 @@ use super::{
     error::{InputError, InputErrorKind},
     load_section::LoadSection,
     locate,
+    object_section::ObjectSection,
 };
 use crate::model::{
     load::Uncertainty,
@@ -252,25 +253,6 @@ pub struct ToolSection {
     pub tip_h_m: Option<[f64; 3]>,
     /// Rotation `R_HT`, unit quaternion, scalar last.
     pub rotation_xyzw: Option<[f64; 4]>,
-}
-
-/// `[object]`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct ObjectSection {
-    /// Width, height and thickness, m.
-    pub size_m: [f64; 3],
-    /// Density, kg/m^3; by default the material's.
-    pub density_kg_m3: Option<f64>,
-    /// A material of `assets/materials.toml`.
-    pub material: String,
-}
-
-impl Default for ObjectSection {
-    /// The board of the reproduction (`docs/method.md#24-board`).
-    fn default() -> Self {
-        Self { size_m: [0.50, 0.40, 0.030], density_kg_m3: None, material: "foam".into() }
-    }
 }
 
 /// `[operation]`: `kind` determines which other keys are required.

@@ -4,14 +4,15 @@
 use super::{
     InputError,
     check::Checker,
-    plan_input::{Angles, ArmInput, PlanFile},
+    plan_input::{Angles, ArmInput, ObjectInput, PlanFile},
 };
 use crate::{
-    check::{BOARD_SIDE_M, Flaw},
+    check::{BOARD_SIDE_M, Flaw, check_plate},
     collision::PersonPart,
     complete::{ArmTask, Completer, Completion, Effort, Reached, Target},
     human::{Human, default_tool},
     model::{
+        board::BoardShape,
         frames::Pose,
         plan::{ArmHold, HumanPosture, PlacedObject, Plan},
         scenario::{Limits, Person, Scenario},
@@ -73,7 +74,8 @@ pub fn fill_in(
     };
     notes.extend(left_out(&file, "grip_force_n", |input| input.grip_force_n.is_none(), of_grip));
     let PlanFile { format, name, robot, operation, object, human, comfort, stability, clearance, planner, .. } = file;
-    let object = PlacedObject { size_m: object.size_m, mass_kg: object.mass_kg, x_wo };
+    let ObjectInput { size_m, plate, mass_kg, com_m, .. } = object;
+    let object = PlacedObject { size_m, plate, mass_kg, com_m, x_wo };
     let (scenario, benchdog) = (own, file.benchdog);
     let plan = Plan {
         format,
@@ -234,7 +236,11 @@ fn angles(
             return Err(refused(check, &Flaw::BoardSide { axis, found_m, range_m }));
         }
     }
-    let Reached { q_rad, contact } = completed(&Completer::new(robot, size_m), &tasks, file, x_wo, scenario)
+    if let Some(flaw) = check_plate(file.object.plate.as_ref()) {
+        return Err(refused(check, &flaw));
+    }
+    let board = BoardShape { size_m, plate: file.object.plate.clone() };
+    let Reached { q_rad, contact } = completed(&Completer::new(robot, &board), &tasks, file, x_wo, scenario)
         .reached()
         .map_err(|(task, found)| {
             let expected = format!("a pose that the {} arm reaches within its joint limits", file.arms[task].name);

@@ -219,12 +219,13 @@ fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError
     let turned = |time_s| ForceProfile::travel_angle_rad(speed_m_s, centre_m, &p_ot_m, &force_o_n, time_s);
     let whole_rad = turned(scenario.simulation.hold_s).clamp(-std::f64::consts::TAU, std::f64::consts::TAU);
     let centre = Vector3::new(centre_m[0], centre_m[1], 0.0);
+    let board = scenario.object.shape();
     // At every 360th of the path.
     (0..=360).try_for_each(|part| {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), whole_rad * f64::from(part) / 360.0);
         let mut x_ot = x_ot;
         x_ot.translation.vector = centre + turn * (p_ot_m - centre);
-        check.on_board("load.centre_m", &x_ot, scenario.object.size_m)
+        check.on_board("load.centre_m", &x_ot, &board)
     })
 }
 

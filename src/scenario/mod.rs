@@ -13,6 +13,7 @@ pub mod import;
 pub mod load_section;
 mod locate;
 pub mod material;
+mod object_section;
 pub mod plan_file;
 pub mod plan_input;
 mod resolve;

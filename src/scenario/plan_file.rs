@@ -14,7 +14,7 @@ use super::{
     robot_file::{load_robot, options_of},
 };
 use crate::{
-    check::{CheckedPlan, Flaw},
+    check::{CheckedPlan, Flaw, check_plate},
     human::default_tool,
     model::{
         plan::Plan,
@@ -76,6 +76,9 @@ pub fn read(path: &Path, robot: Option<&Robot>, scenario: Option<&Scenario>) -> 
     if let Some(scenario) = &plan.scenario {
         let check = check.under("scenario.");
         check.format(scenario.format)?;
+        if let Some(flaw) = check_plate(scenario.object.plate.as_ref()) {
+            return Err(check.value(&flaw.key(), flaw.found(), flaw.expected()));
+        }
         resolve::check_values(&check, scenario, &robot)?;
     }
     Ok(ReadPlan { plan, robot, filled_in: notes })

@@ -12,6 +12,7 @@ use crate::model::{
     frames::{Pose, PoseForm, optional_pose},
     operation::Operation,
     plan::{Clearance, Comfort, HumanPosture, PlannerRecord, Stability},
+    plate::Plate,
     scenario::Scenario,
 };
 
@@ -60,10 +61,16 @@ pub struct PlanFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectInput {
-    /// Width, height and thickness along x_O, y_O, z_O, m.
+    /// Width, height and thickness along x_O, y_O, z_O, m; of a plate those of its bounding box.
     pub size_m: [f64; 3],
+    /// Outline and holes of a plate; without them the board is a box about O.
+    #[serde(default)]
+    pub plate: Option<Plate>,
     /// Mass, kg.
     pub mass_kg: f64,
+    /// Centre of mass in O, m; by default the centroid.
+    #[serde(default)]
+    pub com_m: Option<[f64; 3]>,
     /// Pose of the board in W; by default it follows from the first arm with both `q_rad` and `x_og`.
     #[serde(default, deserialize_with = "optional_pose")]
     #[schemars(with = "Option<PoseForm>")]

@@ -7,11 +7,9 @@ use nalgebra::Vector3;
 use super::{
     InputError,
     check::Checker,
-    file::{
-        GripSection, HumanSection, LimitsSection, ObjectSection, OperationSection, PlaceKind, ScenarioFile, ToolSection,
-    },
+    file::{GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
     load_section::{self, check_load, check_uncertainty},
-    material,
+    object_section,
     robot_file::{load_robot, robot_parameters},
 };
 use crate::{
@@ -26,7 +24,8 @@ use crate::{
         frames::{Pose, rotation_from_xyzw},
         load::{Load, Uncertainty},
         operation::{Operation, OperationKind},
-        plan::Plan,
+        plan::{PlacedObject, Plan},
+        plate::Plate,
         scenario::{
             Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, PostureLimits, Scenario, Sex,
             SimulationSettings, StandingPlace, Tool,
@@ -48,9 +47,9 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         packages: file.robot.packages.iter().map(PathBuf::from).collect(),
         posture: file.robot.posture.clone(),
     };
-    let robot = load_robot(&file.robot.description, folder, &options, file.object.size_m[2])
+    let robot = load_robot(&file.robot.description, folder, &options, file.object.thickness_m())
         .map_err(|e| check.robot("robot.description", e))?;
-    let object = board(&check, &file.object, &robot)?;
+    let object = object_section::board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
     let scenario = Scenario {
         format: FORMAT,
@@ -221,22 +220,13 @@ fn check_tool(check: &Checker<'_>, tool: &Tool) -> Result<(), InputError> {
     Ok(())
 }
 
-fn board(check: &Checker<'_>, section: &ObjectSection, robot: &Robot) -> Result<Board, InputError> {
-    let material_density = material::density_kg_m3(&section.material)
-        .map_err(|expected| check.value("object.material", format!("\"{}\"", section.material), expected))?;
-    let density_kg_m3 = section.density_kg_m3.unwrap_or(material_density);
-    check.within("object.density_kg_m3", density_kg_m3, 1.0, 25_000.0, "kg/m^3")?;
-    check.board_size("object.size_m", section.size_m, robot.arms.iter())?;
-    Ok(Board { size_m: section.size_m, density_kg_m3, material: section.material.clone() })
-}
-
 fn operation(check: &Checker<'_>, section: &OperationSection, board: &Board) -> Result<Operation, InputError> {
     let operation = match section.kind {
         OperationKind::Drill | OperationKind::Cut => face_operation(check, section, board)?,
         OperationKind::Wrench => free_operation(check, section)?,
     };
     let key = if section.kind == OperationKind::Wrench { "operation.x_ot" } else { "operation.point_m" };
-    check.on_board(key, &operation.x_ot, board.size_m)?;
+    check.on_board(key, &operation.x_ot, &board.shape())?;
     Ok(operation)
 }
 
@@ -385,11 +375,18 @@ pub fn check_plan_matches(path: &Path, text: &str, scenario: &Scenario, plan: &P
     let same_robot = plan.robot == scenario.robot.description;
     let found = format!("a plan for the robot \"{}\"", plan.robot);
     check.that(same_robot, "planner.plan", found, &format!("one for \"{}\"", scenario.robot.description))?;
-    let (found, expected) = (plan.object, &scenario.object);
-    let same_board = close(&found.size_m, &expected.size_m) && close(&[found.mass_kg], &[expected.mass_kg()]);
-    let found = format!("a plan for a board of {:?} m and {} kg", found.size_m, found.mass_kg);
-    let expected = format!("{:?} m and {} kg", expected.size_m, expected.mass_kg());
-    check.that(same_board, "planner.plan", found, &expected)?;
+    let (found, expected) = (&plan.object, &scenario.object);
+    let same_mass = close(&[found.mass_kg], &[expected.mass_kg()]);
+    let described = format!("{:?} m and {} kg", expected.size_m, expected.mass_kg());
+    let same_board = close(&found.size_m, &expected.size_m) && same_mass;
+    let size = format!("a plan for a board of {:?} m and {} kg", found.size_m, found.mass_kg);
+    check.that(same_board, "planner.plan", size, &described)?;
+    let outlines = [found.shape().outline_m(), expected.shape().outline_m()].map(|corners| corners.concat());
+    let holes = [&found.plate, &expected.plate].map(holes_of);
+    let coms = [found.com_o(), expected.placed(found.x_wo).com_o()];
+    let same_shape = same_corners(&outlines) && same_corners(&holes) && close(coms[0].as_slice(), coms[1].as_slice());
+    let found = "a plan for a board of another outline, other holes or another centre of mass";
+    check.that(same_shape, "planner.plan", found, "the scenario's object")?;
     let (found, expected) = (&plan.operation, &scenario.operation);
     let (tip, meant) = (found.x_ot.translation.vector, expected.x_ot.translation.vector);
     let (turned, unrolled) = (found.x_ot.rotation, expected.x_ot.rotation);
@@ -413,10 +410,21 @@ pub fn check_plan_matches(path: &Path, text: &str, scenario: &Scenario, plan: &P
     check.that(other.is_none(), "planner.plan", format!("a plan that grips with {found} N"), &expected)
 }
 
+/// The coordinates of the corners of all holes, m.
+fn holes_of(plate: &Option<Plate>) -> Vec<f64> {
+    plate.iter().flat_map(|plate| plate.holes_m().iter().map(|hole| hole.concat())).flatten().collect()
+}
+
+/// True if two lists of coordinates are the same but for rounding.
+fn same_corners([found, expected]: &[Vec<f64>; 2]) -> bool {
+    let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_TOLERANCE;
+    found.len() == expected.len() && found.iter().zip(expected).all(same)
+}
+
 /// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
 pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
     let kind = plan.operation.kind;
-    let size_m = plan.object.size_m;
+    let PlacedObject { size_m, ref plate, mass_kg, com_m, .. } = plan.object;
     Scenario {
         format: FORMAT,
         name: plan.name.clone(),
@@ -428,7 +436,10 @@ pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         tool: default_tool(kind),
         object: Board {
             size_m,
-            density_kg_m3: plan.object.mass_kg / size_m.iter().product::<f64>(),
+            density_kg_m3: mass_kg / plan.object.shape().volume_m3(),
+            plate: plate.clone(),
+            mass_kg: plate.as_ref().map(|_| mass_kg),
+            com_m,
             material: "unknown".into(),
         },
         operation: plan.operation,
@@ -440,5 +451,46 @@ pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         uncertainty: Uncertainty::default(),
         limits: limits_with_defaults(&LimitsSection::default(), kind),
         expect: Expectation::default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        model::{plate::PlateRecord, polygon::circle},
+        scenario::read_plan,
+    };
+
+    #[test]
+    fn a_plan_for_another_plate_does_not_match() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
+        let (mut plan, robot) = read_plan(&path, None).unwrap();
+        let pierced = |plan: &mut Plan, centre_m: [f64; 2]| {
+            let outline_m = plan.object.shape().outline_m();
+            plan.object.plate = Some(PlateRecord { outline_m, holes_m: vec![circle(centre_m, 0.02, 8)] }.into());
+        };
+        pierced(&mut plan, [0.0, 0.1]);
+        let scenario = default_for_plan(&plan, &robot);
+        assert_eq!(scenario.object.mass_kg(), plan.object.mass_kg);
+        let matches = |plan: &Plan| check_plan_matches(&path, "", &scenario, plan);
+        assert!(matches(&plan).is_ok());
+        let of_rounded_corners = |plan: &mut Plan| pierced(plan, [1e-9, 0.1]);
+        let others: [fn(&mut Plan); 3] = [
+            |plan| plan.object.plate = None,
+            |plan| plan.object.com_m = Some([0.01, 0.0, 0.0]),
+            |plan| plan.object.mass_kg += 0.01,
+        ];
+        for change in others {
+            let mut other = plan.clone();
+            change(&mut other);
+            let message = matches(&other).unwrap_err().to_string();
+            assert!(message.contains("a plan for a board of"), "{message}");
+        }
+        let mut moved = plan.clone();
+        pierced(&mut moved, [0.001, 0.1]);
+        assert!(matches(&moved).is_err());
+        of_rounded_corners(&mut moved);
+        assert!(matches(&moved).is_ok());
     }
 }

@@ -4,6 +4,7 @@ use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, Rigid
 
 use super::{
     balance::{JointState, drive_work_j, mechanical_energy_j},
+    board::collider_of,
     bodies::ArmBodies,
     body_chain::{BodyChain, ChainLink},
     conditions::Conditions,
@@ -58,7 +59,7 @@ impl SimArm {
     pub fn new(
         world: &mut PhysicsWorld,
         robot: &Robot,
-        checked: &CheckedArm<'_>,
+        (number, checked): (usize, &CheckedArm<'_>),
         feed_forward: FeedForward,
         object: &PlacedObject,
         conditions: &Conditions,
@@ -74,7 +75,8 @@ impl SimArm {
         let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
         let hand = GraspingHand { arm, bodies: &merged, x_og: hold.x_og };
         let loading = PadLoading::new(&hand, object, grip_force_n, contact_softness_s2(world));
-        let contact = PadContact { friction: conditions.real_friction(), loading };
+        let contact =
+            PadContact { friction: conditions.real_friction(), loading, collider: collider_of(object, number) };
         let mut gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
         let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
 

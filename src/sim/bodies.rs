@@ -44,9 +44,7 @@ impl CompositeInertia {
     /// A board with its inertia in the engine, see [`inertial_mass_kg`].
     pub fn of_board(object: &PlacedObject) -> Self {
         let mass_kg = inertial_mass_kg(object);
-        let [x, y, z] = object.size_m.map(|side| side * side * mass_kg / 12.0);
-        let inertia_b = Matrix3::from_diagonal(&Vector3::new(y + z, x + z, x + y));
-        Self { mass_kg, com_b: Vector3::zeros(), inertia_b }
+        Self { mass_kg, com_b: object.com_o(), inertia_b: object.shape().inertia_o(mass_kg) }
     }
 
     /// Adds a link at `x_bl`.

@@ -7,7 +7,7 @@
 use super::conditions::Conditions;
 use crate::{
     check::CheckedPlan,
-    collision::{Body, CollisionModel, Nearest, PersonClearance, Scene},
+    collision::{BoardBody, Body, CollisionModel, Nearest, PersonClearance, Scene},
     model::trace::{PersonTouch, Sample, Trace},
     robot::{ArmState, Robot},
 };
@@ -63,7 +63,7 @@ pub(super) struct DistanceMonitor<'a> {
     model: &'a CollisionModel,
     /// Indices of the robot's arms in the order of the samples.
     arms: Vec<usize>,
-    board_size_m: [f64; 3],
+    board: &'a BoardBody,
     /// Interval between two measurements in steps.
     interval_steps: usize,
     /// The person, if the plan has one.
@@ -74,13 +74,13 @@ pub(super) struct DistanceMonitor<'a> {
 impl<'a> DistanceMonitor<'a> {
     /// The monitor of a plan.
     pub fn of(checked: &'a CheckedPlan<'_>, conditions: &Conditions) -> Self {
-        let board_size_m = checked.plan().object.size_m;
-        let person = checked.person().map(|_| PersonClearance::new(&checked.person_parts(), board_size_m));
+        let board = checked.board();
+        let person = checked.person().map(|_| PersonClearance::new(&checked.person_parts(), board));
         Self {
             robot: checked.robot(),
             model: checked.collision(),
             arms: checked.arms().iter().map(|arm| arm.index).collect(),
-            board_size_m,
+            board,
             interval_steps: ((INTERVAL_S / conditions.settings.timestep_s).round() as usize).max(1),
             person: person.map(|person| (person, Watched::new(NEAR_PERSON_M))),
             itself: Watched::new(NEAR_ROBOT_M),
@@ -110,8 +110,8 @@ impl<'a> DistanceMonitor<'a> {
             watched.measure(|within_m| model.nearest_to_person(person, &link_poses, &x_wo, within_m));
         }
         if of_itself {
-            let (holding, board_size_m) = (&self.arms[..], self.board_size_m);
-            let scene = Scene { link_poses: &link_poses, holding, board_size_m, x_wo, person: &[], clearance_m: 0.0 };
+            let (holding, board) = (&self.arms[..], self.board);
+            let scene = Scene { link_poses: &link_poses, holding, board, x_wo, person: &[], clearance_m: 0.0 };
             self.itself.measure(|within_m| model.nearest_of_robot(&scene, within_m));
         }
     }

@@ -82,6 +82,7 @@
 
 mod arm;
 mod balance;
+mod board;
 mod bodies;
 mod body_chain;
 mod conditions;

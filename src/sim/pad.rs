@@ -31,6 +31,8 @@ pub(super) struct PadContact {
     pub friction: f64,
     /// The load on it and the compliance of its contacts.
     pub loading: PadLoading,
+    /// The number of the board's collider that it touches.
+    pub collider: usize,
 }
 
 /// X_GP of the pad of finger `k` (0 on the +y_G side) at zero travel: x_P along x_G, z_P into the object.
@@ -73,7 +75,7 @@ impl SimPad {
                 .density(0.0)
                 .friction(contact.friction)
                 .position(convert::to_engine_pose(&(x_fp * x_pc)))
-                .collision_groups(pad_groups());
+                .collision_groups(pad_groups(contact.collider));
             world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
         });
         Self { finger, x_fp, colliders }

@@ -1,7 +1,7 @@
 //! The shape of a pad for engines with point contacts: solids whose contact points together have the load capacity of a
 //! face under uniform pressure (docs/method.md#72-grippers-and-pads).
 
-use nalgebra::{Isometry3, Point3};
+use nalgebra::{Isometry3, Matrix2, Point3, Vector2};
 
 use super::{
     bodies::ArmBodies,
@@ -52,8 +52,7 @@ pub(super) struct PadLoading {
     finger_kg: f64,
     /// Inertia of the board as a mass, kg.
     board_kg: f64,
-    /// Sides of the board, m.
-    board_m: [f64; 3],
+    board: BoardTurning,
     /// X_OC, C with the axes of G at the centre between the pads.
     x_oc: Pose,
     /// Softness `1 / omega^2` of the contacts, s^2.
@@ -69,19 +68,18 @@ impl PadLoading {
             force_n,
             finger_kg: finger.mass.mass_kg + drive_inertia_kg(object),
             board_kg: inertial_mass_kg(object),
-            board_m: object.size_m,
+            board: BoardTurning::of(object),
             x_oc: *x_og * Isometry3::from(arm.gripper.grasp_point_g()),
             softness_s2,
         }
     }
 
     /// Compliance of a contact at `[x, z]` from the centre along x_G and z_G, m/N: `1 / (m omega^2)`, with `1/m =
-    /// 1/m_finger + 1/m_board + y^2/I_x + x^2/I_y` the inverse effective mass of the two bodies along the board's
-    /// normal. The palm's motion is neglected.
+    /// 1/m_finger + 1/m_board + (r x z) I^-1 (r x z)` the inverse effective mass of the two bodies along the board's
+    /// normal, `r` from its centre of mass. The palm's motion is neglected.
     fn compliance_m_n(&self, [x, z]: [f64; 2]) -> f64 {
         let p_o = self.x_oc * Point3::new(x, 0.0, z);
-        let [size_x, size_y, size_z] = self.board_m.map(|side| side * side);
-        let turning = 12.0 * (p_o.y * p_o.y / (size_y + size_z) + p_o.x * p_o.x / (size_x + size_z));
+        let turning = self.board.turning(&p_o);
         self.softness_s2 * (1.0 / self.finger_kg + (1.0 + turning) / self.board_kg)
     }
 
@@ -89,6 +87,47 @@ impl PadLoading {
     fn corner_compliance_m_n(&self, [x, z]: [f64; 2]) -> f64 {
         let corners = [[x, z], [x, -z], [-x, z], [-x, -z]];
         corners.iter().map(|corner| self.compliance_m_n(*corner)).sum::<f64>() / 4.0
+    }
+}
+
+/// How a board turns if a force along z_O acts beside its centre of mass.
+#[derive(Clone, Copy)]
+enum BoardTurning {
+    /// A box about its centre, with these sides, m.
+    Box([f64; 3]),
+    /// Any other board.
+    Plate {
+        /// Its centre of mass along x_O and y_O, m.
+        com_m: Vector2<f64>,
+        /// The inverse of its inertia about x_O and y_O for a mass of 1 kg, 1/m^2.
+        inverse_per_m2: Matrix2<f64>,
+    },
+}
+
+impl BoardTurning {
+    fn of(object: &PlacedObject) -> Self {
+        if object.is_uniform_box() {
+            return Self::Box(object.size_m);
+        }
+        let inertia_m2 = object.shape().inertia_o(1.0).fixed_view::<2, 2>(0, 0).into_owned();
+        // The inertia of a board with a thickness is positive definite.
+        let inverse_per_m2 = inertia_m2.try_inverse().unwrap_or_else(Matrix2::zeros);
+        Self::Plate { com_m: object.com_o().xy(), inverse_per_m2 }
+    }
+
+    /// `m (r x z) I^-1 (r x z)` of a point in O: how many times the board's inverse mass its turning adds.
+    fn turning(&self, p_o: &Point3<f64>) -> f64 {
+        match self {
+            Self::Box(sides_m) => {
+                let [size_x, size_y, size_z] = sides_m.map(|side| side * side);
+                12.0 * (p_o.y * p_o.y / (size_y + size_z) + p_o.x * p_o.x / (size_x + size_z))
+            }
+            Self::Plate { com_m, inverse_per_m2 } => {
+                let r_m = p_o.coords.xy() - com_m;
+                let lever_m = Vector2::new(r_m.y, -r_m.x);
+                lever_m.dot(&(inverse_per_m2 * lever_m))
+            }
+        }
     }
 }
 
@@ -157,6 +196,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
+    use crate::model::plate::PlateRecord;
 
     #[test]
     fn the_mean_radius_is_that_of_the_rectangle() {
@@ -165,12 +205,29 @@ mod tests {
     }
 
     #[test]
+    fn a_rectangle_as_an_outline_turns_as_the_box_does() {
+        let cuboid = PlacedObject::cuboid([0.5, 0.4, 0.03], 0.8, Pose::identity());
+        let outline_m = cuboid.shape().outline_m();
+        let plate = Some(PlateRecord { outline_m, holes_m: Vec::new() }.into());
+        let of_plate = BoardTurning::of(&PlacedObject { plate, ..cuboid.clone() });
+        let of_box = BoardTurning::of(&cuboid);
+        for (x, y) in [(0.2, 0.0), (0.0, 0.15), (0.2, -0.1), (-0.05, 0.19)] {
+            let p_o = Point3::new(x, y, 0.015);
+            // Rounding of the moments and of their inverse.
+            assert!((of_plate.turning(&p_o) / of_box.turning(&p_o) - 1.0).abs() < 1e-12);
+        }
+        let shifted = BoardTurning::of(&PlacedObject { com_m: Some([0.1, 0.0, 0.0]), ..cuboid });
+        let [at, from_com] = [0.3, 0.2].map(|x| Point3::new(x, 0.0, 0.0));
+        assert!((shifted.turning(&at) / of_box.turning(&from_com) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn the_compliance_of_a_contact_is_that_of_the_effective_mass() {
         let at = |x: f64| PadLoading {
             force_n: 30.0,
             finger_kg: 0.2,
             board_kg: 0.2,
-            board_m: [0.5, 0.4, 0.03],
+            board: BoardTurning::Box([0.5, 0.4, 0.03]),
             x_oc: Isometry3::from(Vector3::new(x, 0.0, 0.0)),
             softness_s2: 1e-8,
         };

@@ -1,11 +1,12 @@
 //! The scene: arms, board, gravity and the tool's wrench.
 
 use nalgebra::{Isometry3, Point3, Vector3};
-use rapier3d_f64::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
+use rapier3d_f64::prelude::{PhysicsWorld, RigidBodyHandle};
 
 use super::{
     arm::SimArm,
     balance::{Balance, mechanical_energy_j, weight_n},
+    board::insert_board,
     conditions::Conditions,
     convert,
     error::SimError,
@@ -13,14 +14,14 @@ use super::{
     hand_over::HandOver,
     pad::BoardHandles,
     tool_load::{ToolState, wrench_w},
-    world::{board_groups, inertial_mass_kg, new_world},
+    world::new_world,
 };
 use crate::{
     check::CheckedPlan,
     model::{
         frames::Pose,
         load::ForceFrame,
-        plan::{PlacedObject, Plan},
+        plan::Plan,
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },
@@ -35,7 +36,9 @@ const LOST_RAD_S: f64 = 100.0;
 pub struct SimScene {
     world: PhysicsWorld,
     arms: Vec<SimArm>,
-    board: BoardHandles,
+    /// The board as each arm touches it; its body is the same for all.
+    boards: Vec<BoardHandles>,
+    board: RigidBodyHandle,
     /// The operation's wrench about the tool point, O axes.
     wrench_o: Wrench,
     /// The tool point in O, m.
@@ -64,17 +67,22 @@ impl SimScene {
         conditions.check()?;
         let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
         let mut world = new_world(conditions.settings.timestep_s, stiffness_scale);
-        let board = insert_board(&mut world, &plan.object, conditions.real_friction());
+        let boards = insert_board(&mut world, &plan.object, &plan.arms, conditions.real_friction());
+        // A checked plan has an arm.
+        let board = boards.first().ok_or(SimError::Engine)?.body;
         let mut arms = Vec::with_capacity(checked.arms().len());
-        for (arm, feed_forward) in checked.arms().iter().zip(feed_forward(checked, conditions.friction)) {
-            arms.push(SimArm::new(&mut world, checked.robot(), arm, feed_forward, &plan.object, conditions)?);
+        for (number, (arm, feed_forward)) in
+            checked.arms().iter().zip(feed_forward(checked, conditions.friction)).enumerate()
+        {
+            arms.push(SimArm::new(&mut world, checked.robot(), (number, arm), feed_forward, &plan.object, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;
         Ok(Self {
-            balance: Balance::new(&world, board.body, energy_j),
+            balance: Balance::new(&world, board, energy_j),
             world,
             arms,
+            boards,
             board,
             wrench_o: plan.operation.wrench_o,
             p_ot_m,
@@ -112,12 +120,12 @@ impl SimScene {
         let x_wo = self.x_wo();
         self.tool_wrench_w = wrench_w(self.frame, &self.tool.wrench_o, &x_wo, &self.x_wo_planned);
         let tip_w = x_wo * Point3::from(self.tool.p_ot_m);
-        let body = &self.world.bodies[self.board.body];
+        let body = &self.world.bodies[self.board];
         let com_w = body.center_of_mass();
         let support = Wrench::from_force(weight_n(body) * (self.hand_over.carried_share() - 1.0));
         let outer_w = self.tool_wrench_w + support.about(&(convert::from_engine_vector(com_w) - tip_w.coords));
         self.balance.begin_step(&self.world, &outer_w, &tip_w.coords);
-        let body = &mut self.world.bodies[self.board.body];
+        let body = &mut self.world.bodies[self.board];
         body.reset_forces(false);
         body.reset_torques(false);
         body.add_force_at_point(
@@ -131,7 +139,7 @@ impl SimScene {
 
     /// X_WO.
     pub fn x_wo(&self) -> Pose {
-        convert::from_engine_pose(self.world.bodies[self.board.body].position())
+        convert::from_engine_pose(self.world.bodies[self.board].position())
     }
 
     /// Writes the state and the forces of the last step into a sample of [`blank_sample`]'s shape. The caller sets time
@@ -141,11 +149,11 @@ impl SimScene {
         sample.p_ot_m = self.tool.p_ot_m;
         sample.tool_wrench_w = self.tool_wrench_w;
         sample.x_wo = self.x_wo();
-        for (arm, sample_arm) in self.arms.iter().zip(&mut sample.arms) {
+        for ((arm, &board), sample_arm) in self.arms.iter().zip(&self.boards).zip(&mut sample.arms) {
             arm.observe_joints(&self.world, sample_arm);
             sample_arm.x_oc = sample.x_wo.inverse() * arm.gripper.x_wc(&self.world);
             for (pad, sample_pad) in arm.gripper.pads.iter().zip(&mut sample_arm.pads) {
-                *sample_pad = pad.observe(&self.world, self.board);
+                *sample_pad = pad.observe(&self.world, board);
             }
         }
         sample.self_check = self.self_check(&sample.arms);
@@ -153,11 +161,12 @@ impl SimScene {
 
     /// The self-checks of the last step.
     fn self_check(&self, observed: &[ArmSample]) -> StepCheck {
-        let pads = self.arms.iter().flat_map(|arm| &arm.gripper.pads);
+        let pads = self.arms.iter().zip(&self.boards);
+        let pads = pads.flat_map(|(arm, &board)| arm.gripper.pads.iter().map(move |pad| (pad, board)));
         let pads_w_n = observed.iter().flat_map(|arm| &arm.pads).map(|pad| pad.wrench_w.force_n).sum();
         let apart_m = |arm: &ArmSample| (arm.finger_m[0] - arm.finger_m[1]).abs();
         StepCheck {
-            penetration_m: pads.map(|pad| pad.penetration_m(&self.world, self.board)).fold(0.0, f64::max),
+            penetration_m: pads.map(|(pad, board)| pad.penetration_m(&self.world, board)).fold(0.0, f64::max),
             force_residual_n: self.balance.force_residual_n(&self.world, &pads_w_n),
             coupling_m: observed.iter().map(apart_m).fold(0.0, f64::max),
             contact_energy_j: self.balance.contact_energy_j,
@@ -175,24 +184,8 @@ impl SimScene {
 }
 
 /// Kinetic and gravitational energy of arms and board, J.
-fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: BoardHandles) -> f64 {
-    arms.iter().map(|arm| arm.energy_j(world)).sum::<f64>() + mechanical_energy_j(&world.bodies[board.body])
-}
-
-/// Inserts the board as a free body of uniform density, with the inertia of [`inertial_mass_kg`].
-fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, friction: f64) -> BoardHandles {
-    let [hx, hy, hz] = object.size_m.map(|side| side / 2.0);
-    // A sleeping board would not react to the load.
-    let body = RigidBodyBuilder::dynamic().pose(convert::to_engine_pose(&object.x_wo)).can_sleep(false);
-    let body = world.bodies.insert(body);
-    let collider = ColliderBuilder::cuboid(hx, hy, hz)
-        .mass(inertial_mass_kg(object))
-        .friction(friction)
-        .collision_groups(board_groups());
-    let collider = world.colliders.insert_with_parent(collider, body, &mut world.bodies);
-    world.bodies[body].recompute_mass_properties_from_colliders(&world.colliders);
-    world.bodies[body].set_gravity_scale(object.mass_kg / inertial_mass_kg(object), false);
-    BoardHandles { body, collider }
+fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: RigidBodyHandle) -> f64 {
+    arms.iter().map(|arm| arm.energy_j(world)).sum::<f64>() + mechanical_energy_j(&world.bodies[board])
 }
 
 /// A sample of the right shape, without observations.

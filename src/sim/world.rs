@@ -102,12 +102,17 @@ pub(super) fn contact_softness_s2(world: &PhysicsWorld) -> f64 {
     1.0 / (omega_rad_s * omega_rad_s)
 }
 
-/// Pads collide with the board alone.
-pub(super) fn pad_groups() -> InteractionGroups {
-    InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And)
+/// Pads collide with the collider of the board with this number alone, see `board::insert_board`.
+pub(super) fn pad_groups(collider: usize) -> InteractionGroups {
+    InteractionGroups::new(Group::GROUP_1, board_group(collider), InteractionTestMode::And)
 }
 
-/// The board collides with the pads alone.
-pub(super) fn board_groups() -> InteractionGroups {
-    InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And)
+/// A collider of the board collides with the pads of its hands alone.
+pub(super) fn board_groups(collider: usize) -> InteractionGroups {
+    InteractionGroups::new(board_group(collider), Group::GROUP_1, InteractionTestMode::And)
+}
+
+/// The group of a collider of the board: every bit but the first.
+fn board_group(collider: usize) -> Group {
+    Group::from_bits_truncate(1 << (1 + collider % 31))
 }

@@ -3,6 +3,8 @@
 //!
 //! Two beams are considered, and the worse one counts: a strip that is simply supported by the two hands farthest apart, with
 //! the force in its middle, and a strip that is clamped along the line through these hands and carries the force at the tool.
+//! A strip of a box is as wide as the board across it. A strip of a plate is as wide as the material of the narrowest section
+//! across it: holes weaken it over its whole length.
 
 use nalgebra::Vector2;
 
@@ -71,17 +73,21 @@ pub fn bending(plan: &Plan, properties: &BendingProperties) -> Option<Bending> {
     let tool = plan.operation.x_ot.translation.vector.xy();
     let force_n = plan.operation.wrench_o.force_n.z.abs();
     let [x_m, y_m, thickness_m] = plan.object.size_m;
-    let strip = |along: Vector2<f64>| {
+    let strip = |from: Vector2<f64>, along: Vector2<f64>| {
         let length_m = along.norm();
         // A single hand, or a tool on the line through the hands: no length, and so no bending, whatever the width.
         let unit = if length_m > 0.0 { along / length_m } else { Vector2::x() };
-        Strip { length_m, width_m: x_m * unit.y.abs() + y_m * unit.x.abs(), thickness_m }
+        let width_m = match &plan.object.plate {
+            Some(plate) if length_m > 0.0 => plate.narrowest_section_m(from.into(), (from + along).into()),
+            _ => x_m * unit.y.abs() + y_m * unit.x.abs(),
+        };
+        Strip { length_m, width_m, thickness_m }
     };
     let between = other - one;
     let to_tool = tool - one;
     let along = if between.norm() > 0.0 { between * (to_tool.dot(&between) / between.norm_squared()) } else { between };
-    let of_supported = strip(between).supported(force_n, properties.youngs_modulus_pa);
-    let of_clamped = strip(to_tool - along).clamped(force_n, properties.youngs_modulus_pa);
+    let of_supported = strip(one, between).supported(force_n, properties.youngs_modulus_pa);
+    let of_clamped = strip(one + along, to_tool - along).clamped(force_n, properties.youngs_modulus_pa);
     Some(Bending {
         deflection_m: of_supported.deflection_m.max(of_clamped.deflection_m),
         stress_pa: of_supported.stress_pa.max(of_clamped.stress_pa),
@@ -117,7 +123,10 @@ mod tests {
 
     use super::*;
     use crate::{
-        model::operation::{Operation, OperationKind},
+        model::{
+            operation::{Operation, OperationKind},
+            plate::PlateRecord,
+        },
         scenario::read_plan,
     };
 
@@ -185,6 +194,25 @@ mod tests {
         let mut along_face = one_edge;
         along_face.operation.wrench_o.force_n = Vector3::new(3.0, 4.0, 0.0);
         assert_eq!(bending(&along_face, &FOAM).unwrap().deflection_m, 0.0);
+    }
+
+    #[test]
+    fn a_hole_between_the_hands_weakens_a_plate_and_one_beside_them_does_not() {
+        let size_m = [0.5, 0.4, 0.006];
+        let mut plan = plan([[-0.2, 0.0], [0.2, 0.0]], [0.0, 0.0], 15.0, size_m);
+        let of_box = bending(&plan, &FOAM).unwrap();
+        let outline_m = plan.object.shape().outline_m();
+        let mut with_hole = |[x, y]: [f64; 2]| {
+            let hole = vec![[x, y], [x + 0.04, y], [x + 0.04, y + 0.1], [x, y + 0.1]];
+            plan.object.plate = Some(PlateRecord { outline_m: outline_m.clone(), holes_m: vec![hole] }.into());
+            bending(&plan, &FOAM).unwrap()
+        };
+        // A quarter of the section is missing: 4/3 of the deflection and the stress. Rounding of the section's ends.
+        let between = with_hole([0.05, -0.05]);
+        assert!((between.deflection_m / of_box.deflection_m - 4.0 / 3.0).abs() < 1e-9);
+        assert!((between.stress_pa / of_box.stress_pa - 4.0 / 3.0).abs() < 1e-9);
+        let beside = with_hole([0.205, -0.05]);
+        assert!((beside.deflection_m / of_box.deflection_m - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vecto
 use super::{
     contact_model::{ContactModel, ContactModelError},
     hand::{HandModel, PadModel},
-    patch::clip_to_rectangle,
+    patch::{clip_to_outline, clip_to_rectangle},
 };
 use crate::{
     check::{CheckedArm, CheckedPlan},
@@ -37,10 +37,10 @@ impl ContactModel {
     /// The contact model of these hands, see [`HandModel::new`].
     #[must_use]
     pub fn from_hands(hands: Vec<HandModel>, object: &PlacedObject, operation: &Operation) -> Self {
-        let weight_o = object.x_wo.rotation.inverse() * (GRAVITY_W * object.mass_kg);
+        let weight_o = Wrench::from_force(object.x_wo.rotation.inverse() * (GRAVITY_W * object.mass_kg));
         Self {
             hands,
-            weight: Wrench::from_force(weight_o),
+            weight: if object.is_uniform_box() { weight_o } else { weight_o.about(&object.com_o()) },
             load: operation.wrench_about_object(),
             p_ot: operation.x_ot.translation.vector,
         }
@@ -111,8 +111,12 @@ fn pad_model(
     let x_fp = face_pose(&centre_o, &rotation);
     let [width, height, thickness] = object.size_m;
     let half_sides = pad.size_m.map(|side| side / 2.0);
-    let (centre_f, half_sides_m) = clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides)
-        .ok_or_else(|| ContactModelError::PadOffBoard { hand: hold.name.clone(), pad: name.into() })?;
+    let clipped = match &object.plate {
+        None => clip_to_rectangle([width / 2.0, height / 2.0], &x_fp, half_sides),
+        Some(plate) => clip_to_outline(plate.sides(), &x_fp, half_sides),
+    };
+    let (centre_f, half_sides_m) =
+        clipped.ok_or_else(|| ContactModelError::PadOffBoard { hand: hold.name.clone(), pad: name.into() })?;
     let place_o = Vector3::new(centre_f.x, centre_f.y, -normal_o.z * thickness / 2.0);
     // A uniform layer: a part of it has the same share of its stiffness as of its area.
     let share = half_sides_m[0] * half_sides_m[1] / (half_sides[0] * half_sides[1]);

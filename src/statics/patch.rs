@@ -2,6 +2,8 @@
 
 use nalgebra::{Isometry2, Point2, Vector2};
 
+use crate::model::plate::OutlineSide;
+
 /// Mean distance of a rectangle's points from its centre, `e = (1/A) integral of r dA`, m, for half sides `a`, `b`:
 ///
 /// `e = d/3 + a^2/(6 b) asinh(b/a) + b^2/(6 a) asinh(a/b)`, `d = sqrt(a^2 + b^2)`.
@@ -29,17 +31,38 @@ pub fn clip_to_rectangle(
     x_fp: &Isometry2<f64>,
     pad_half_m: [f64; 2],
 ) -> Option<(Point2<f64>, [f64; 2])> {
+    let edge = |axis: usize, side: f64| {
+        let mut outward_f = Vector2::zeros();
+        outward_f[axis] = side;
+        (outward_f, face_half_m[axis])
+    };
+    let edges = [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(axis, side)| edge(axis, side));
+    clip(edges.into_iter(), x_fp, pad_half_m)
+}
+
+/// As [`clip_to_rectangle`], for a face with a convex outline; its holes are left out of account.
+#[must_use]
+pub fn clip_to_outline(
+    sides: &[OutlineSide],
+    x_fp: &Isometry2<f64>,
+    pad_half_m: [f64; 2],
+) -> Option<(Point2<f64>, [f64; 2])> {
+    clip(sides.iter().map(|side| (Vector2::from(side.outward), side.reach_m)), x_fp, pad_half_m)
+}
+
+/// Clips a pad to half planes `outward . p <= reach` of the face.
+fn clip(
+    edges: impl Iterator<Item = (Vector2<f64>, f64)>,
+    x_fp: &Isometry2<f64>,
+    pad_half_m: [f64; 2],
+) -> Option<(Point2<f64>, [f64; 2])> {
     let mut low = Vector2::new(-pad_half_m[0], -pad_half_m[1]);
     let mut high = -low;
-    for axis in 0..2 {
-        for side in [1.0, -1.0] {
-            // The edge as a half plane in pad coordinates: outward . p <= reach.
-            let mut outward_f = Vector2::zeros();
-            outward_f[axis] = side;
-            let outward_p = x_fp.rotation.inverse() * outward_f;
-            let reach_m = face_half_m[axis] - outward_f.dot(&x_fp.translation.vector);
-            trim(&mut low, &mut high, &outward_p, reach_m)?;
-        }
+    for (outward_f, face_reach_m) in edges {
+        // In pad coordinates.
+        let outward_p = x_fp.rotation.inverse() * outward_f;
+        let reach_m = face_reach_m - outward_f.dot(&x_fp.translation.vector);
+        trim(&mut low, &mut high, &outward_p, reach_m)?;
     }
     let centre_p = (low + high) / 2.0;
     let half = (high - low) / 2.0;
@@ -109,6 +132,27 @@ mod tests {
         assert_eq!((centre, half), (Point2::new(0.1, -0.1), [0.02, 0.018]));
         let outside = Isometry2::new(Vector2::new(0.3, 0.0), 0.7);
         assert!(clip_to_rectangle([0.25, 0.20], &outside, [0.02, 0.018]).is_none());
+    }
+
+    /// For a rectangle both are the same function; for a triangle the remainder is inside all three sides.
+    #[test]
+    fn an_outline_clips_as_its_half_planes_do() {
+        let side = |outward: [f64; 2], reach_m: f64| OutlineSide { outward, reach_m, along_m: [-1.0, 1.0] };
+        let rectangle =
+            [side([1.0, 0.0], 0.25), side([-1.0, 0.0], 0.25), side([0.0, 1.0], 0.2), side([0.0, -1.0], 0.2)];
+        let tilted = std::f64::consts::FRAC_1_SQRT_2;
+        let triangle = [side([tilted, tilted], 0.1), side([-tilted, tilted], 0.1), side([0.0, -1.0], 0.1)];
+        for (x, y, angle) in [(0.24, 0.19, 0.3), (0.0, 0.0, 1.0), (0.1, 0.02, -0.4), (0.05, 0.0, 2.0)] {
+            let x_fp = Isometry2::new(Vector2::new(x, y), angle);
+            let pad = [0.0202, 0.018];
+            assert_eq!(clip_to_outline(&rectangle, &x_fp, pad), clip_to_rectangle([0.25, 0.2], &x_fp, pad));
+            let Some((centre, half)) = clip_to_outline(&triangle, &x_fp, pad) else { continue };
+            for corner in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+                let p = centre + x_fp.rotation * Vector2::new(corner[0] * half[0], corner[1] * half[1]);
+                let inside = |side: &OutlineSide| Vector2::from(side.outward).dot(&p.coords) <= side.reach_m + 1e-12;
+                assert!(triangle.iter().all(inside), "{p}");
+            }
+        }
     }
 
     proptest::proptest! {

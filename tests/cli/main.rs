@@ -6,6 +6,7 @@ mod natural_results;
 mod process;
 
 mod bad_input;
+mod bad_plates;
 mod bounds;
 mod commands;
 mod determinism;

@@ -3,8 +3,9 @@
 use benchdog::{
     model::{
         FORMAT,
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::EdgeGrasp,
         operation::Operation,
         plan::{ArmHold, PlacedObject, Plan},
     },
@@ -57,7 +58,8 @@ fn x_wo() -> Pose {
 pub fn plan(robot: &Robot, operation: Operation, mass_kg: f64, grip_force_n: f64) -> Plan {
     let hold = |name: &str, edge: Edge| {
         let arm = robot.arm_index(name).unwrap();
-        let x_og = EdgeGrasp { edge, along_m: 0.0, depth_m: 0.035, angle_rad: 0.0, flipped: false }.x_og(BOARD_M);
+        let grasp = EdgeGrasp { edge, along_m: 0.0, depth_m: 0.035, angle_rad: 0.0, flipped: false };
+        let x_og = grasp.x_og(&BoardShape::cuboid(BOARD_M));
         ArmHold {
             name: name.into(),
             joints: robot.arms[arm].joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
@@ -71,8 +73,8 @@ pub fn plan(robot: &Robot, operation: Operation, mass_kg: f64, grip_force_n: f64
         name: "two arms".into(),
         robot: "baxter".into(),
         operation,
-        object: PlacedObject { size_m: BOARD_M, mass_kg, x_wo: x_wo() },
-        arms: vec![hold("left", Edge::PlusX), hold("right", Edge::MinusX)],
+        object: PlacedObject::cuboid(BOARD_M, mass_kg, x_wo()),
+        arms: vec![hold("left", Edge::PLUS_X), hold("right", Edge::MINUS_X)],
         human: None,
         comfort: None,
         stability: None,

@@ -153,7 +153,7 @@ pub fn plan(robot: &Robot, x_wg: Pose, grip: &Grip, wrench_g: Wrench) -> Plan {
             wrench_o: Wrench::new(rotation_og * wrench_g.force_n, rotation_og * wrench_g.moment_nm),
             x_ot: Pose::identity(),
         },
-        object: PlacedObject { size_m: [0.1, 0.1, THICKNESS_M], mass_kg: grip.mass_kg, x_wo: x_wg * x_go },
+        object: PlacedObject::cuboid([0.1, 0.1, THICKNESS_M], grip.mass_kg, x_wg * x_go),
         arms: vec![ArmHold {
             name: arm.name.clone(),
             joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),

@@ -13,6 +13,7 @@ mod holds;
 mod loads;
 mod patch;
 mod person;
+mod plates;
 mod prediction;
 mod steps;
 

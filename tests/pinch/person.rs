@@ -1,7 +1,7 @@
 //! A person too close to robot and board, and one at a safe distance.
 
 use benchdog::{
-    collision::{CollisionModel, PersonClearance, PersonPart, Scene},
+    collision::{BoardBody, CollisionModel, PersonClearance, PersonPart, Scene},
     human::{Human, default_tool, standing_pose_w},
     judge::{Judgement, judge},
     model::{
@@ -49,7 +49,8 @@ fn posture(robot: &Robot, x_m: f64) -> HumanPosture {
 fn distance_m(robot: &Robot, plan: &Plan, x_m: f64) -> f64 {
     let HumanPosture { x_wb, q_rad, .. } = posture(robot, x_m);
     let human = Human::new(&PERSON, &default_tool(OperationKind::Wrench)).unwrap();
-    let person = PersonClearance::new(&human.capsules_w(&x_wb, &q_rad).map(PersonPart::from), plan.object.size_m);
+    let board = BoardBody::new(&plan.object.shape());
+    let person = PersonClearance::new(&human.capsules_w(&x_wb, &q_rad).map(PersonPart::from), &board);
     let poses = robot.planned_link_poses(&plan.arms, plan.object.size_m[2]);
     let model = CollisionModel::new(robot);
     model.nearest_to_person(&person, &poses, &plan.object.x_wo, f64::INFINITY).unwrap().distance_m
@@ -121,7 +122,7 @@ fn the_robots_distance_from_itself_and_the_board_is_that_of_its_links_in_the_sam
     let robot = common::baxter();
     let plan = pulled(robot, 20.0);
     let (trace, _) = simulated(robot, &plan);
-    let model = CollisionModel::new(robot);
+    let (model, board) = (CollisionModel::new(robot), BoardBody::new(&plan.object.shape()));
     let arms: Vec<usize> = plan.arms.iter().map(|hold| robot.arm_index(&hold.name).unwrap()).collect();
     for sample in trace.samples.iter().step_by(5) {
         let states = arms.iter().zip(&sample.arms).map(|(&arm, state)| ArmState {
@@ -133,7 +134,7 @@ fn the_robots_distance_from_itself_and_the_board_is_that_of_its_links_in_the_sam
         let scene = Scene {
             link_poses: &link_poses,
             holding: &arms,
-            board_size_m: plan.object.size_m,
+            board: &board,
             x_wo: sample.x_wo,
             person: &[],
             clearance_m: 0.0,

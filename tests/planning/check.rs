@@ -3,7 +3,13 @@
 use benchdog::{
     check::{CheckedPlan, Flaw},
     human::{Human, default_tool},
-    model::{operation::OperationKind, plan::Plan, scenario::Person},
+    model::{
+        operation::OperationKind,
+        plan::Plan,
+        plate::PlateRecord,
+        polygon::{Point, circle},
+        scenario::Person,
+    },
     robot::Robot,
     scenario::read_plan,
 };
@@ -32,6 +38,63 @@ fn a_good_plan_has_no_flaw() {
     let checked = checked(&robot, &plan);
     assert_eq!(checked.arms().len(), 2);
     assert_eq!(checked.first_contact(0.0), None);
+}
+
+/// The plan's board as a plate with these holes.
+fn pierced(plan: &mut Plan, holes_m: Vec<Vec<Point>>) {
+    let outline_m = plan.object.shape().outline_m();
+    plan.object.plate = Some(PlateRecord { outline_m, holes_m }.into());
+}
+
+#[test]
+fn each_fault_of_a_plate_is_one_flaw_with_its_key() {
+    /// A key, a change of a plan whose board is a plate, and the flaw that it makes.
+    type Case = (&'static str, fn(&mut Plan), fn(&Flaw) -> bool);
+    let cases: [Case; 7] = [
+        (
+            "object.plate.outline_m",
+            |plan| plan.object.plate = Some(PlateRecord { outline_m: Vec::new(), holes_m: Vec::new() }.into()),
+            |flaw| matches!(flaw, Flaw::Plate(_)),
+        ),
+        (
+            "object.plate.holes_m[0]",
+            |plan| pierced(plan, vec![vec![[0.0, 0.0], [0.0, 0.3], [-0.1, 0.0]]]),
+            |flaw| matches!(flaw, Flaw::Plate(_)),
+        ),
+        ("object.size_m", |plan| plan.object.size_m[0] += 1e-3, |flaw| matches!(flaw, Flaw::PlateSize { .. })),
+        (
+            "object.com_m",
+            |plan| plan.object.com_m = Some([0.0, 0.0, f64::NAN]),
+            |flaw| matches!(flaw, Flaw::CentreOfMass { .. }),
+        ),
+        (
+            "operation.x_ot",
+            |plan| plan.operation.x_ot.translation.vector.x = 0.3,
+            |flaw| matches!(flaw, Flaw::ToolOffPlate { .. }),
+        ),
+        (
+            "operation.x_ot",
+            |plan| pierced(plan, vec![circle([0.12, 0.0], 0.02, 12)]),
+            |flaw| matches!(flaw, Flaw::ToolOffPlate { .. }),
+        ),
+        (
+            "arms[1].x_og",
+            |plan| {
+                let at = plan.arms[1].x_og.translation.vector;
+                pierced(plan, vec![circle([at.x, at.y], 0.006, 12)]);
+            },
+            |flaw| matches!(flaw, Flaw::PadOffPlate { arm: 1, .. }),
+        ),
+    ];
+    assert_eq!(flaws(|plan| pierced(plan, Vec::new())), []);
+    for (key, change, expected) in cases {
+        let found = flaws(|plan| {
+            pierced(plan, Vec::new());
+            change(plan);
+        });
+        assert!(found.len() == 1 && expected(&found[0]) && found[0].key() == key, "{key}: {found:?}");
+        assert!(!found[0].found().is_empty() && !found[0].expected().is_empty());
+    }
 }
 
 #[test]

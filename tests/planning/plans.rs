@@ -3,8 +3,9 @@
 use std::{cell::Cell, ops::ControlFlow};
 
 use benchdog::{
-    collision::{CollisionModel, Scene},
+    collision::{BoardBody, CollisionModel, Scene},
     model::{
+        board::BoardShape,
         frames::Pose,
         plan::Plan,
         scenario::{Budget, PlannerKind},
@@ -225,6 +226,7 @@ fn no_search_of_a_circle_evaluates_more_than_allowed() {
 /// Every step of every motion within joint limits, on the grasps, free of collisions, short, and from plan to plan.
 fn motions_are_clear(found: &path::Continuous, size_m: [f64; 3]) {
     let collision = CollisionModel::new(baxter());
+    let board = BoardBody::new(&BoardShape::cuboid(size_m));
     let grasp = &found.sequence.iter().flatten().next().unwrap().arms;
     let chains: Vec<_> = (0..2).map(|arm| Chain::new(baxter(), arm, 0.0)).collect();
     assert_eq!(found.motions.len(), path::POINTS - 1);
@@ -248,7 +250,7 @@ fn motions_are_clear(found: &path::Continuous, size_m: [f64; 3]) {
             let scene = Scene {
                 link_poses: &poses,
                 holding: &[0, 1],
-                board_size_m: size_m,
+                board: &board,
                 x_wo: step.x_wo,
                 person: &[],
                 clearance_m: 0.0,

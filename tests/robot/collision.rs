@@ -1,9 +1,11 @@
 //! Collision checks of the built-in Baxter against distances computed by hand and by brute force over all pairs of primitives.
 
+use std::sync::LazyLock;
+
 use benchdog::{
-    collision::{Body, CollisionModel, PersonClearance, PersonPart, Scene},
+    collision::{BoardBody, Body, CollisionModel, PersonClearance, PersonPart, Scene},
     human::{BodyPart, Side},
-    model::frames::Pose,
+    model::{board::BoardShape, frames::Pose, plate::PlateRecord, polygon::circle},
     robot::{ArmState, PlacedShape, Robot, Shape},
 };
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -18,6 +20,7 @@ use proptest::prelude::*;
 use crate::common::baxter;
 
 const BOARD_SIZE_M: [f64; 3] = [0.5, 0.4, 0.03];
+static BOARD: LazyLock<BoardBody> = LazyLock::new(|| BoardBody::new(&BoardShape::cuboid(BOARD_SIZE_M)));
 
 /// The manufacturer's neutral posture of an arm, rad: elbow bent, forearm level.
 const NEUTRAL_RAD: [f64; 7] = [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0];
@@ -46,7 +49,7 @@ fn part(p0: [f64; 3], p1: [f64; 3], radius_m: f64) -> PersonPart {
 }
 
 fn scene<'a>(link_poses: &'a [Pose], holding: &'a [usize], x_wo: Pose, person: &'a [PersonPart]) -> Scene<'a> {
-    Scene { link_poses, holding, board_size_m: BOARD_SIZE_M, x_wo, person, clearance_m: 0.0 }
+    Scene { link_poses, holding, board: &BOARD, x_wo, person, clearance_m: 0.0 }
 }
 
 #[test]
@@ -187,7 +190,7 @@ fn capsule_w(part: &PersonPart) -> Shapes {
 /// always have.
 fn brute_force_margin_m(robot: &Robot, scene: &Scene) -> f64 {
     let links = links_w(robot, scene.link_poses);
-    let board = board_w(scene.board_size_m, &scene.x_wo);
+    let board = board_w(BOARD_SIZE_M, &scene.x_wo);
     let mut margin_m = f64::INFINITY;
     for a in 0..links.len() {
         for b in a + 1..links.len() {
@@ -300,7 +303,7 @@ fn tool_hand_and_forearm_are_ignored_near_the_board() {
     let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
     let in_the_board = part([-3.1, 0.0, 0.0], [-2.9, 0.0, 0.0], 0.05);
     let nearest = |part| {
-        let person = PersonClearance::new(&[part], BOARD_SIZE_M);
+        let person = PersonClearance::new(&[part], &BOARD);
         model.nearest_to_person(&person, &poses, &far_away(), 0.0).map(|nearest| nearest.bodies[0])
     };
     assert_eq!(nearest(in_the_board), Some(Body::Board));
@@ -314,6 +317,41 @@ fn tool_hand_and_forearm_are_ignored_near_the_board() {
     assert_eq!(nearest(PersonPart { robot_clearance_m: 0.0, board_clearance_m: None, ..in_the_torso }), None);
 }
 
+/// The body of a plate with this outline and a hole in its middle.
+fn plate_body(outline_m: Vec<[f64; 2]>) -> BoardBody {
+    let plate = PlateRecord { outline_m, holes_m: vec![circle([0.0, 0.0], 0.05, 32)] };
+    BoardBody::new(&BoardShape::plate(plate.into(), BOARD_SIZE_M[2]))
+}
+
+#[test]
+fn a_plate_is_the_prism_over_its_outline_and_its_hole_is_filled() {
+    let robot = baxter();
+    let model = CollisionModel::new(robot);
+    let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
+    // The board is 3 m behind the robot, which is farther from the part.
+    let x_wo = far_away();
+    let distance_m = |board: &BoardBody, p_o: [f64; 3]| {
+        let p_w = x_wo * Point3::from(p_o);
+        let part = part(p_w.coords.into(), p_w.coords.into(), 0.01);
+        let found =
+            model.nearest_to_person(&PersonClearance::new(&[part], board), &poses, &x_wo, f64::INFINITY).unwrap();
+        (found.bodies[0] == Body::Board).then_some(found.distance_m)
+    };
+    let rectangle = plate_body(BoardShape::cuboid(BOARD_SIZE_M).outline_m());
+    let diamond = plate_body(vec![[0.25, 0.0], [0.0, 0.2], [-0.25, 0.0], [0.0, -0.2]]);
+    for p_o in [[0.3, 0.25, 0.0], [0.1, 0.1, 0.2], [0.0, 0.5, 0.1], [0.24, -0.19, 0.05]] {
+        let [of_box, of_plate] = [&BOARD, &rectangle].map(|board| distance_m(board, p_o).unwrap());
+        // parry's iteration.
+        assert!((of_box - of_plate).abs() < 1e-6, "{p_o:?}: {of_box} {of_plate}");
+    }
+    // By hand: the line 0.2 x + 0.25 y = 0.05 of the diamond, from a corner of its bounding box.
+    let expected_m = 0.05 / 0.2_f64.hypot(0.25) - 0.01;
+    assert!((distance_m(&diamond, [0.25, 0.2, 0.0]).unwrap() - expected_m).abs() < 1e-6);
+    assert!(distance_m(&rectangle, [0.25, 0.2, 0.0]).unwrap() < 0.0);
+    // In the hole.
+    assert!(distance_m(&diamond, [0.0, 0.0, 0.0]).unwrap() < 0.0);
+}
+
 #[test]
 fn a_scene_that_is_not_finite_is_not_free() {
     let robot = baxter();
@@ -323,7 +361,8 @@ fn a_scene_that_is_not_finite_is_not_free() {
     let mut broken = poses.clone();
     broken[7] = nowhere;
     let person = [part([f64::INFINITY, 0.0, 0.0], [2.0, 0.0, 0.0], 0.1)];
-    let endless = Scene { board_size_m: [f64::NAN, 0.4, 0.03], ..scene(&poses, &[], far_away(), &[]) };
+    let of_nan = BoardBody::new(&BoardShape::cuboid([f64::NAN, 0.4, 0.03]));
+    let endless = Scene { board: &of_nan, ..scene(&poses, &[], far_away(), &[]) };
     let cases = [
         (scene(&broken, &[], far_away(), &[]), Body::Link(7)),
         (scene(&poses[..5], &[], far_away(), &[]), Body::Link(5)),
@@ -355,7 +394,7 @@ proptest! {
             UnitQuaternion::from_euler_angles(turn[0], turn[1], turn[2]),
         );
         let part = part(ends[0], ends[1], radius_m);
-        let person = PersonClearance::new(&[part], BOARD_SIZE_M);
+        let person = PersonClearance::new(&[part], &BOARD);
         let found = model.nearest_to_person(&person, &poses, &x_wo, f64::INFINITY).unwrap();
         let bodies = links_w(robot, &poses).into_iter().chain([board_w(BOARD_SIZE_M, &x_wo)]);
         let expected_m = bodies.map(|body| distance_m(&body, &capsule_w(&part))).fold(f64::INFINITY, f64::min);

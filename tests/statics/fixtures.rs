@@ -4,8 +4,9 @@ use std::path::Path;
 
 use benchdog::{
     model::{
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::EdgeGrasp,
         operation::Operation,
         plan::{ArmHold, PlacedObject},
         scenario::Limits,
@@ -174,12 +175,12 @@ pub fn baxter_holds(count: usize, seed: u64) -> (Robot, Vec<(Vec<ArmHold>, Place
         let p = Vector3::new(rng.random_range(0.45..0.6), rng.random_range(-0.05..0.05), rng.random_range(0.1..0.5));
         let x_wo = Isometry3::from_parts(p.into(), turn);
         let along_m = rng.random_range(-0.1..0.1);
-        let arms: Option<Vec<_>> = [("left", Edge::PlusY), ("right", Edge::MinusY)]
+        let arms: Option<Vec<_>> = [("left", Edge::PLUS_Y), ("right", Edge::MINUS_Y)]
             .into_iter()
             .enumerate()
             .map(|(number, (name, edge))| {
                 let grasp = EdgeGrasp { edge, along_m, depth_m: 0.035, angle_rad: 0.0, flipped: rng.random_bool(0.5) };
-                let x_og = grasp.x_og(size_m);
+                let x_og = grasp.x_og(&BoardShape::cuboid(size_m));
                 let chain = &chains[number];
                 let q_rad = InverseKinematics::for_chain(chain).samples(&(x_wo * x_og), 16).into_iter().next()?;
                 let joints = robot.arms[number].joints.iter().map(|&j| robot.joints[j].name.clone()).collect();
@@ -187,7 +188,7 @@ pub fn baxter_holds(count: usize, seed: u64) -> (Robot, Vec<(Vec<ArmHold>, Place
             })
             .collect();
         let Some(arms) = arms else { continue };
-        let object = PlacedObject { size_m, mass_kg: 0.21, x_wo };
+        let object = PlacedObject::cuboid(size_m, 0.21, x_wo);
         let operation = if holds.len() % 2 == 0 {
             Operation::drill([rng.random_range(-0.1..0.1), rng.random_range(-0.1..0.1)], 15.0, size_m[2])
         } else {

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     collision::{Body, Violation},
-    model::{frames::Pose, grasp::Edge},
+    model::{board::Edge, frames::Pose},
     planner::{
         domain::draw_edge,
         params::library::{GRASPS_PER_ARM, RESAMPLED_PER_PATTERN},
@@ -31,7 +31,8 @@ pub fn grasps_of_board(
     if let Some(arm) = reached.iter().position(Vec::is_empty) {
         return Err(DrawFailure::Reach { arm });
     }
-    let mut combinations = Combinations::new(&reached);
+    let opposite = |edge| robot.opposite(edge);
+    let mut combinations = Combinations::new(&reached, &opposite);
     let mut entries: Vec<LibraryEntry> = Vec::new();
     let mut patterns = Vec::new();
     // Without any combination the second arm reaches no edge that matches the first one's.
@@ -66,7 +67,7 @@ pub fn grasps_of_board(
 /// The drawn grasps of one arm that it reaches, with configurations.
 fn reached_grasps(robot: &GraspingRobot, arm: &GraspingArm, x_wo: &Pose, random: &mut Pcg64) -> Vec<ArmGrasp> {
     let draw = |_| {
-        let edge = draw_edge(random);
+        let edge = draw_edge(&robot.edges, random)?;
         draw_arm_grasp(robot, arm, edge, x_wo, random)
     };
     let count = GRASPS_PER_ARM[robot.arms.len().min(GRASPS_PER_ARM.len()) - 1];
@@ -91,6 +92,8 @@ fn arms_of(robot: &GraspingRobot, violation: &Violation) -> Vec<usize> {
 /// (docs/method.md#25-edge-grasps), in lexicographic order, without those that contain what was excluded.
 struct Combinations<'a> {
     reached: &'a [Vec<ArmGrasp>],
+    /// The edge opposite to another.
+    opposite: &'a dyn Fn(Edge) -> Edge,
     /// The present choice, as indices; `None` at the end.
     numbers: Option<Vec<usize>>,
     /// Grasps of each arm that are excluded whatever the other arms do.
@@ -101,9 +104,10 @@ struct Combinations<'a> {
 
 impl<'a> Combinations<'a> {
     /// Every arm has a grasp.
-    fn new(reached: &'a [Vec<ArmGrasp>]) -> Self {
+    fn new(reached: &'a [Vec<ArmGrasp>], opposite: &'a dyn Fn(Edge) -> Edge) -> Self {
         Self {
             reached,
+            opposite,
             numbers: (!reached.is_empty()).then(|| vec![0; reached.len()]),
             excluded: reached.iter().map(|grasps| vec![false; grasps.len()]).collect(),
             excluded_pairs: HashSet::new(),
@@ -124,9 +128,14 @@ impl<'a> Combinations<'a> {
         (0..numbers.len()).find(|&arm| {
             let beside = |other: usize| [(other, numbers[other]), (arm, numbers[arm])];
             self.excluded[arm][numbers[arm]]
-                || (arm == 1 && !edges_match([0, 1].map(|arm: usize| self.reached[arm][numbers[arm]].grasp.edge)))
+                || (arm == 1 && !self.edges_match([0, 1].map(|arm: usize| self.reached[arm][numbers[arm]].grasp.edge)))
                 || (0..arm).any(|other| self.excluded_pairs.contains(&beside(other)))
         })
+    }
+
+    /// True if the second gripper of a plan may hold this edge beside the first.
+    fn edges_match(&self, [first, second]: [Edge; 2]) -> bool {
+        second == first || second == (self.opposite)(first)
     }
 
     /// Goes to the next grasp of an arm, with the first grasps of the arms after it.
@@ -158,23 +167,18 @@ impl<'a> Combinations<'a> {
     }
 }
 
-/// True if the second gripper of a plan may hold this edge beside the first.
-fn edges_match([first, second]: [Edge; 2]) -> bool {
-    second == first || second == first.turned(2)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::model::grasp::EdgeGrasp;
+    use crate::model::{board::QUARTERS, grasp::EdgeGrasp};
 
     /// The grasps of several arms: the edge of each, and its number as the depth.
     fn reached(edges: &[Vec<usize>]) -> Vec<Vec<ArmGrasp>> {
         let grasp = |(number, edge): (usize, &usize)| ArmGrasp {
             grasp: EdgeGrasp {
-                edge: Edge::ALL[*edge],
+                edge: Edge(*edge),
                 along_m: 0.0,
                 depth_m: number as f64,
                 angle_rad: 0.0,
@@ -203,7 +207,8 @@ mod tests {
                 let pairs = (0..numbers.len()).flat_map(|b| (0..=b).map(move |a| (a, b)));
                 pairs.into_iter().find(|&(a, b)| collides(own(a), own(b)))
             };
-            let mut combinations = Combinations::new(&reached);
+            let opposite = |Edge(edge): Edge| Edge((edge + 2) % QUARTERS);
+            let mut combinations = Combinations::new(&reached, &opposite);
             let (mut passed, mut tests) = (Vec::new(), 0);
             while let Some(arms) = combinations.next() {
                 tests += 1;
@@ -224,8 +229,8 @@ mod tests {
                 }).collect();
             }
             every.retain(|numbers| {
-                let edge = |arm: usize| Edge::ALL[edges[arm][numbers[arm]]];
-                (numbers.len() < 2 || edges_match([edge(0), edge(1)])) && collision(numbers).is_none()
+                let edge = |arm: usize| Edge(edges[arm][numbers[arm]]);
+                (numbers.len() < 2 || edge(1) == edge(0) || edge(1) == opposite(edge(0))) && collision(numbers).is_none()
             });
             let sizes: Vec<usize> = edges.iter().map(Vec::len).collect();
             let pairs: usize = (0..sizes.len()).map(|b| sizes[b] * (1 + sizes[..b].iter().sum::<usize>())).sum();

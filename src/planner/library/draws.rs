@@ -7,10 +7,7 @@ use super::{
     grasping_robot::{GraspingArm, GraspingRobot},
 };
 use crate::{
-    model::{
-        frames::Pose,
-        grasp::{Edge, EdgeGrasp},
-    },
+    model::{board::Edge, frames::Pose, grasp::EdgeGrasp},
     planner::{domain, params::library::GRASP_ATTEMPTS},
 };
 
@@ -24,7 +21,7 @@ pub fn draw_arm_grasp(
 ) -> Option<ArmGrasp> {
     let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
     let grasp = draw_grasp(robot, arm, edge, near, random)?;
-    let x_wg = x_wo * grasp.x_og(robot.size_m);
+    let x_wg = x_wo * grasp.x_og(&robot.board);
     let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
     Some(ArmGrasp { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
 }
@@ -38,6 +35,6 @@ pub fn draw_grasp(
     random: &mut Pcg64,
 ) -> Option<EdgeGrasp> {
     (0..GRASP_ATTEMPTS)
-        .map(|_| domain::draw_grasp(edge, robot.size_m, arm.depth_m, random))
-        .find(|grasp| robot.fits(arm, grasp) && accepts(&grasp.x_og(robot.size_m)))
+        .map(|_| domain::draw_grasp(edge, &robot.board, arm.depth_m, random))
+        .find(|grasp| robot.fits(arm, grasp) && accepts(&grasp.x_og(&robot.board)))
 }

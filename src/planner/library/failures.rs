@@ -13,6 +13,8 @@ use crate::{
 pub enum DrawFailure {
     /// The robot has no arm.
     NoArm,
+    /// No edge of the board is as long as a pad is wide.
+    NoEdge,
     /// No drawn grasp of an arm has its pads on the board and its palm clear of it.
     Pads { arm: usize },
     /// The first arm brings the board nowhere into the search domain.
@@ -43,7 +45,7 @@ impl DrawFailures {
         self.counts.iter().map(|&(failure, count)| {
             let why = match failure {
                 DrawFailure::NoArm | DrawFailure::Domain | DrawFailure::Reach { .. } => Rejection::RobotReach,
-                DrawFailure::Pads { .. } => Rejection::Pads,
+                DrawFailure::NoEdge | DrawFailure::Pads { .. } => Rejection::Pads,
                 DrawFailure::Collision { .. } => Rejection::Collision,
             };
             (why, count)
@@ -56,6 +58,7 @@ impl DrawFailures {
         let words = |&(failure, draws): &(DrawFailure, u64)| {
             let what = match failure {
                 DrawFailure::NoArm => "the robot has no arm".to_owned(),
+                DrawFailure::NoEdge => "every edge of the board is shorter than a pad is wide".to_owned(),
                 DrawFailure::Pads { arm } => {
                     format!("the pads of the {} gripper lie partly off the board, or its palm is too close", name(arm))
                 }

@@ -2,10 +2,7 @@
 
 use arrayvec::ArrayVec;
 
-use crate::model::{
-    frames::Pose,
-    grasp::{Edge, EdgeGrasp},
-};
+use crate::model::{board::Edge, frames::Pose, grasp::EdgeGrasp};
 
 /// One arm's grasp and configuration.
 #[derive(Clone, Debug)]

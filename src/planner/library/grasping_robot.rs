@@ -1,4 +1,4 @@
-//! A robot prepared to grasp boards of one size: kinematics, reach maps and collision model.
+//! A robot prepared to grasp boards of one shape: kinematics, reach maps and collision model.
 
 use super::{
     grasp::{ArmGrasp, BoardGrasp},
@@ -6,8 +6,12 @@ use super::{
     reach::ReachMap,
 };
 use crate::{
-    collision::{CollisionModel, Scene},
-    model::{frames::Pose, grasp::EdgeGrasp},
+    collision::{BoardBody, CollisionModel, Scene},
+    model::{
+        board::{BoardShape, Edge},
+        frames::Pose,
+        grasp::EdgeGrasp,
+    },
     planner::domain::{self, DEPTH_M, SearchDomain},
     robot::{ArmState, Chain, InverseKinematics, Robot},
 };
@@ -15,8 +19,10 @@ use crate::{
 /// A robot with its fingers opened to a board's thickness.
 pub struct GraspingRobot {
     pub robot: Robot,
-    /// Sides of the board, m.
-    pub size_m: [f64; 3],
+    pub board: BoardShape,
+    /// The edges of the board that the search grasps.
+    pub edges: Vec<Edge>,
+    board_body: BoardBody,
     pub arms: Vec<GraspingArm>,
     /// Where the search looks for poses of the board.
     pub domain: SearchDomain,
@@ -46,14 +52,16 @@ pub struct GraspingArm {
 }
 
 impl GraspingRobot {
-    /// Prepares a robot for boards with these sides and this clearance, m.
-    pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
+    /// Prepares a robot for boards of this shape and this clearance, m.
+    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
         let collision = CollisionModel::new(robot);
+        let board_body = BoardBody::new(board);
+        let edges = domain::graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper));
         let arms = robot.arms.iter().enumerate().map(|(index, arm)| {
-            let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, size_m[2]));
+            let finger_travel_m = [0, 1].map(|finger| arm.gripper.travel_for_gap_m(finger, board.thickness_m()));
             let chain = Chain::new(robot, index, finger_travel_m[0]);
             let palm = palm(robot, index, &chain);
-            let depth_m = palm.depths_m(&collision, &arm.gripper, size_m, clearance_m);
+            let depth_m = palm.depths_m(&collision, &arm.gripper, (board, &board_body, &edges), clearance_m);
             GraspingArm {
                 index,
                 name: arm.name.clone(),
@@ -71,7 +79,9 @@ impl GraspingRobot {
         Self {
             domain: SearchDomain::of(chains, robot.floor_z_m, robot.search_box),
             robot: robot.clone(),
-            size_m,
+            edges,
+            board_body,
+            board: board.clone(),
             arms,
             collision,
             clearance_m,
@@ -93,8 +103,8 @@ impl GraspingRobot {
 
     /// The collision scene of robot and board without a person.
     pub fn scene<'s>(&'s self, link_poses: &'s [Pose], x_wo: Pose) -> Scene<'s> {
-        let (holding, board_size_m, clearance_m) = (&self.grasping[..], self.size_m, self.clearance_m);
-        Scene { link_poses, holding, board_size_m, x_wo, person: &[], clearance_m }
+        let (holding, board, clearance_m) = (&self.grasping[..], &self.board_body, self.clearance_m);
+        Scene { link_poses, holding, board, x_wo, person: &[], clearance_m }
     }
 
     /// True if the arms and the board are clear of each other.
@@ -107,7 +117,7 @@ impl GraspingRobot {
     /// follow.
     pub fn follow(&self, arms: &mut [ArmGrasp], x_wo: &Pose) -> bool {
         self.arms.iter().zip(arms).all(|(arm, own)| {
-            let x_wg = x_wo * own.grasp.x_og(self.size_m);
+            let x_wg = x_wo * own.grasp.x_og(&self.board);
             let found = arm.inverse.local(&x_wg, &own.q_rad).found();
             let reached = found.is_some();
             own.q_rad = found.unwrap_or_default();
@@ -117,14 +127,20 @@ impl GraspingRobot {
 
     /// True if the pads of an arm's gripper lie on the board and its palm is clear of it.
     pub fn fits(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
-        let is_clear = |palm: &Palm| palm.is_clear(&self.collision, grasp, self.size_m, self.clearance_m);
-        domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
+        let x_go = || grasp.x_og(&self.board).inverse();
+        let is_clear = |palm: &Palm| palm.is_clear(&self.collision, &self.board_body, &x_go(), self.clearance_m);
+        domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, &self.board)
             && arm.palm.as_ref().is_none_or(is_clear)
     }
 
+    /// Of the edges that the search grasps the one most opposite to another.
+    pub fn opposite(&self, edge: Edge) -> Edge {
+        self.board.most_opposite(edge, &self.edges)
+    }
+
     /// See [`domain::pad_margins_m`].
-    pub fn pad_margins_m(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> [f64; 4] {
-        domain::pad_margins_m(&self.robot.arms[arm.index].gripper, grasp, self.size_m)
+    pub fn pad_margins_m(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> Vec<f64> {
+        domain::pad_margins_m(&self.robot.arms[arm.index].gripper, grasp, &self.board)
     }
 }
 

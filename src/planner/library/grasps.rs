@@ -1,7 +1,7 @@
-//! The grasp library: collision-free grasps of boards of one size.
+//! The grasp library: collision-free grasps of boards of one shape.
 //!
 //! Whether a robot can grasp a board in some pose depends neither on the person nor on the task, and is the constraint that
-//! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that size: the first
+//! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that shape: the first
 //! arm's configuration and grasp are drawn, which gives the board's pose; inverse kinematics brings the other arms there.
 
 use rand_pcg::Pcg64;
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     collision::Violation,
-    model::frames::Pose,
+    model::{board::BoardShape, frames::Pose},
     planner::{
         domain::{draw_edge, draw_other_edge},
         params::library::{
@@ -28,9 +28,9 @@ use crate::{
     robot::Robot,
 };
 
-/// Collision-free grasps of a robot for boards of one size with one clearance. It depends on nothing else.
+/// Collision-free grasps of a robot for boards of one shape with one clearance. It depends on nothing else.
 pub struct GraspLibrary {
-    /// The robot, prepared for boards of that size.
+    /// The robot, prepared for boards of that shape.
     pub robot: GraspingRobot,
     /// The grasps.
     pub entries: Vec<LibraryEntry>,
@@ -39,10 +39,10 @@ pub struct GraspLibrary {
 }
 
 impl GraspLibrary {
-    /// The library of a robot for boards with these sides, m, that keeps a clearance, m; it has fewer than the usual number of
+    /// The library of a robot for boards of this shape that keeps a clearance, m; it has fewer than the usual number of
     /// entries where grasps are rare.
-    pub fn new(robot: &Robot, size_m: [f64; 3], clearance_m: f64) -> Self {
-        let robot = GraspingRobot::new(robot, size_m, clearance_m);
+    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
+        let robot = GraspingRobot::new(robot, board, clearance_m);
         let (entries, failures) = draw_entries(&robot, GRASPS, 0);
         Self { robot, entries, failures }
     }
@@ -108,9 +108,9 @@ fn draw_entries_by_board(robot: &GraspingRobot, wanted: usize, stream: u128) -> 
 /// A grasp of the first arm and the pose of the board that it holds.
 fn draw_first(robot: &GraspingRobot, random: &mut Pcg64) -> Result<(ArmGrasp, Pose), DrawFailure> {
     let first = robot.arms.first().ok_or(DrawFailure::NoArm)?;
-    let edge = draw_edge(random);
+    let edge = draw_edge(&robot.edges, random).ok_or(DrawFailure::NoEdge)?;
     let grasp = draw_grasp(robot, first, edge, |_| true, random).ok_or(DrawFailure::Pads { arm: 0 })?;
-    let x_go = grasp.x_og(robot.size_m).inverse();
+    let x_go = grasp.x_og(&robot.board).inverse();
     let in_domain = |x_wo: &Pose| robot.domain.contains(x_wo);
     let (q_rad, x_wo) = (0..FIRST_ARM_ATTEMPTS)
         .find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))
@@ -123,7 +123,7 @@ fn draw_entry(robot: &GraspingRobot, random: &mut Pcg64) -> Result<LibraryEntry,
     let edge = first.grasp.edge;
     let mut arms = vec![first];
     for (number, arm) in robot.arms.iter().skip(1).enumerate() {
-        let edge = draw_other_edge(edge, random);
+        let edge = draw_other_edge(edge, robot.opposite(edge), random);
         let reached = draw_arm_grasp(robot, arm, edge, &x_wo, random);
         arms.push(reached.ok_or(DrawFailure::Reach { arm: number + 1 })?);
     }

@@ -2,10 +2,11 @@
 //! (docs/method.md#25-edge-grasps).
 
 use crate::{
-    collision::CollisionModel,
+    collision::{BoardBody, CollisionModel},
     model::{
+        board::{BoardShape, Edge},
         frames::Pose,
-        grasp::{Edge, EdgeGrasp},
+        grasp::EdgeGrasp,
     },
     planner::domain::DEPTH_M,
     robot::Gripper,
@@ -22,21 +23,31 @@ pub struct Palm {
 }
 
 impl Palm {
-    /// True if the palm keeps its clearance, m, from a board with these sides that the gripper holds with this grasp.
-    pub fn is_clear(&self, model: &CollisionModel, grasp: &EdgeGrasp, size_m: [f64; 3], clearance_m: f64) -> bool {
-        let x_go = grasp.x_og(size_m).inverse();
-        let distances = self.links.iter().map(|(link, x_gl)| model.link_to_board_m(*link, x_gl, size_m, &x_go));
+    /// True if the palm keeps its clearance, m, from a board at this pose in G.
+    pub fn is_clear(&self, model: &CollisionModel, board: &BoardBody, x_go: &Pose, clearance_m: f64) -> bool {
+        let distances = self.links.iter().map(|(link, x_gl)| model.link_to_board_m(*link, x_gl, board, x_go));
         distances.fold(f64::INFINITY, f64::min) > clearance_m
     }
 
-    /// The depths that a gripper can have on boards with these sides, m: [`DEPTH_M`], from less where its pads lie on the face, to
-    /// less where its palm would be closer than the clearance, m.
-    pub fn depths_m(&self, model: &CollisionModel, gripper: &Gripper, size_m: [f64; 3], clearance_m: f64) -> [f64; 2] {
+    /// The depths that a gripper can have at any of these edges of a board, m: [`DEPTH_M`], from less where its pads lie on the
+    /// face, to less where its palm would be closer than the clearance, m, at the middle of an edge. The edges of a box are
+    /// alike: one stands for all.
+    pub fn depths_m(
+        &self,
+        model: &CollisionModel,
+        gripper: &Gripper,
+        (board, body, edges): (&BoardShape, &BoardBody, &[Edge]),
+        clearance_m: f64,
+    ) -> [f64; 2] {
+        let tested = if board.plate.is_some() { edges } else { &[Edge::PLUS_X] };
         let pad = &gripper.fingers[0].pad;
         let least_m = DEPTH_M[0].min(pad.size_m[1] / 2.0 - pad.centre_m[1]).max(0.0);
         let is_clear = |depth_m: f64| {
-            let grasp = EdgeGrasp { edge: Edge::PlusX, along_m: 0.0, depth_m, angle_rad: 0.0, flipped: false };
-            self.is_clear(model, &grasp, size_m, clearance_m)
+            tested.iter().all(|&edge| {
+                let along_m = board.edge(edge).along_m.iter().sum::<f64>() / 2.0;
+                let grasp = EdgeGrasp { edge, along_m, depth_m, angle_rad: 0.0, flipped: false };
+                self.is_clear(model, body, &grasp.x_og(board).inverse(), clearance_m)
+            })
         };
         if is_clear(DEPTH_M[1]) {
             return [least_m, DEPTH_M[1]];
@@ -55,7 +66,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use crate::{
-        model::grasp::Edge,
+        collision::BoardBody,
         planner::{
             domain::DEPTH_M,
             library::{GraspingRobot, draw_grasp},
@@ -68,8 +79,8 @@ mod tests {
     #[test]
     fn the_palm_limits_the_depth() {
         let loaded = paper::operations()[0].load().unwrap();
-        let size_m = loaded.scenario.object.size_m;
-        let of = |clearance_m: f64| GraspingRobot::new(&loaded.robot, size_m, clearance_m);
+        let board = loaded.scenario.object.shape();
+        let of = |clearance_m: f64| GraspingRobot::new(&loaded.robot, &board, clearance_m);
         // Baxter's palm is 47 mm from the board at a depth of 60 mm (docs/method.md#35-clearances).
         let [usual, wide, wider] = [0.005, 0.060, 0.070].map(of);
         for (arm, (wide, wider)) in usual.arms.iter().zip(wide.arms.iter().zip(&wider.arms)) {
@@ -83,12 +94,12 @@ mod tests {
         let arm = &wide.arms[0];
         let mut drawn = 0;
         for number in 0..200 {
-            let edge = Edge::ALL[number % Edge::ALL.len()];
+            let edge = wide.edges[number % wide.edges.len()];
             let Some(grasp) = draw_grasp(&wide, arm, edge, |_| true, &mut random) else { continue };
             drawn += 1;
             assert!((arm.depth_m[0]..=arm.depth_m[1]).contains(&grasp.depth_m));
             let palm = arm.palm.as_ref().unwrap();
-            assert!(palm.is_clear(&wide.collision, &grasp, size_m, 0.060));
+            assert!(palm.is_clear(&wide.collision, &BoardBody::new(&board), &grasp.x_og(&board).inverse(), 0.060));
         }
         assert!(drawn > 50, "{drawn}");
     }

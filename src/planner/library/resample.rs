@@ -70,13 +70,14 @@ fn moved(x_wo: &Pose, domain: &SearchDomain, random: &mut Pcg64) -> Pose {
 mod tests {
     use super::*;
     use crate::{
+        model::{board::BoardShape, plate::PlateRecord},
         planner::library::{BoardGrasp, GraspLibrary},
         reproduce::paper,
     };
 
     fn library() -> GraspLibrary {
         let loaded = paper::operations()[0].load().unwrap();
-        GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m, loaded.scenario.limits.clearance_m())
+        GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), loaded.scenario.limits.clearance_m())
     }
 
     #[test]
@@ -93,13 +94,13 @@ mod tests {
             assert!(boards.iter().any(similar));
             assert!(robot.domain.contains(x_wo));
             for (arm, own) in robot.arms.iter().zip(arms) {
-                let missed = arm.chain.gripper_pose(&own.q_rad).inverse() * (x_wo * own.grasp.x_og(robot.size_m));
+                let missed = arm.chain.gripper_pose(&own.q_rad).inverse() * (x_wo * own.grasp.x_og(&robot.board));
                 // The tolerance of docs/method.md#34-constraints: 1e-6 m and rad.
                 assert!(missed.translation.vector.norm() < 1e-6 && missed.rotation.angle() < 1e-6);
                 assert!(robot.fits(arm, &own.grasp));
             }
             let [left, right] = [0, 1].map(|arm: usize| arms[arm].grasp.edge);
-            assert!(left == right || left == right.turned(2));
+            assert!(left == right || left == robot.opposite(right));
             let link_poses = robot.link_poses(arms);
             assert!(robot.collision.first_violation(&robot.scene(&link_poses, *x_wo)).is_none());
         }
@@ -107,6 +108,19 @@ mod tests {
         let same =
             found.iter().filter(|entry| entry.grasp.arms[0].grasp.edge == entry.grasp.arms[1].grasp.edge).count();
         assert!(same > 0 && same < found.len());
+    }
+
+    /// A plate whose sides are 30 mm long has no edge for pads of 40.4 mm, and the evidence says so.
+    #[test]
+    fn a_plate_without_an_edge_for_the_pads_has_no_grasp() {
+        let loaded = paper::operations()[0].load().unwrap();
+        let outline_m = vec![[0.015, -0.015], [0.015, 0.015], [-0.015, 0.015], [-0.015, -0.015]];
+        let board = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
+        let library = GraspLibrary::new(&loaded.robot, &board, 0.005);
+        assert!(library.entries.is_empty() && library.robot.edges.is_empty());
+        assert!(resample(&library.robot, &[Pose::identity()], 20, [1, 1]).is_empty());
+        let text = library.failures.evidence(&loaded.robot).to_string();
+        assert!(text.contains("100.0 % every edge of the board is shorter than a pad is wide"), "{text}");
     }
 
     #[test]

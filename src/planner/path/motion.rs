@@ -68,7 +68,7 @@ fn reached(
 ) -> Option<BoardGrasp> {
     let arms = robot.arms.iter().zip(&grasp.arms).zip(seeds);
     let arms = arms.map(|((arm, own), seed)| {
-        let q_rad = arm.inverse.near(&(x_wo * own.grasp.x_og(robot.size_m)), &seed).found()?;
+        let q_rad = arm.inverse.near(&(x_wo * own.grasp.x_og(&robot.board)), &seed).found()?;
         Some(ArmGrasp { grasp: own.grasp, q_rad })
     });
     Some(BoardGrasp { x_wo, arms: arms.collect::<Option<_>>()? })

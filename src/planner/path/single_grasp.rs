@@ -110,7 +110,7 @@ fn displaced_grasp(problem: &mut PathProblem<'_>, from: &BoardGrasp, scale: f64)
         if !robot.fits(arm, &grasp) {
             return None;
         }
-        arms.push(ArmGrasp { grasp, q_rad: arm.inverse.local(&(x_wo * grasp.x_og(robot.size_m)), &seed).found()? });
+        arms.push(ArmGrasp { grasp, q_rad: arm.inverse.local(&(x_wo * grasp.x_og(&robot.board)), &seed).found()? });
     }
     let grasp = BoardGrasp { x_wo, arms };
     problem.is_clear(&grasp).then_some(grasp)

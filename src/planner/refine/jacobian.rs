@@ -231,13 +231,13 @@ impl<'a, 'p> Jacobian<'a, 'p> {
         gradient
     }
 
-    /// Gradients of the distances of a gripper's pads inside each edge of the board.
-    fn pad_gradients(&self, arm: usize) -> [DVector<f64>; 4] {
+    /// Gradients of the margins of a gripper's pads on the board.
+    fn pad_gradients(&self, arm: usize) -> Vec<DVector<f64>> {
         let robot = self.problem.robot;
         let grasp = self.here.candidate.arms[arm].grasp;
         let margins_m = |grasp| robot.pad_margins_m(&robot.arms[arm], &grasp);
         let here_m = margins_m(grasp);
-        let mut gradients = [(); 4].map(|()| self.zeros());
+        let mut gradients = vec![self.zeros(); here_m.len()];
         for (part, number) in self.variables.of_grasp(arm).enumerate() {
             let there_m = margins_m(perturbed_grasp(grasp, part, DIFFERENCE));
             for (side, gradient) in gradients.iter_mut().enumerate() {
@@ -283,10 +283,21 @@ mod tests {
                 loaded.scenario.planner.budget = Budget::Fast;
                 loaded.scenario.human.place = place;
                 let clearance_m = loaded.scenario.limits.clearance_m();
-                let library = GraspLibrary::new(&loaded.robot, loaded.scenario.object.size_m, clearance_m);
+                let library = GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), clearance_m);
                 compare_starts(&loaded.scenario, &library);
             }
         }
+    }
+
+    /// As above, on a plate with slanted edges and a hole.
+    #[test]
+    fn gradients_equal_differences_on_a_plate() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plate-with-hole.toml");
+        let mut loaded = crate::scenario::load(&path).unwrap();
+        loaded.scenario.planner.budget = Budget::Fast;
+        let clearance_m = loaded.scenario.limits.clearance_m();
+        let library = GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), clearance_m);
+        compare_starts(&loaded.scenario, &library);
     }
 
     fn compare_starts(scenario: &Scenario, library: &GraspLibrary) {

@@ -152,15 +152,15 @@ impl Variables {
         let normal: Matrix6<f64> = &jacobian * jacobian.transpose() + Matrix6::from_diagonal_element(DAMPING);
         let Some(inverse) = normal.try_inverse() else { return derivatives };
         let pseudo_inverse = jacobian.transpose() * inverse;
-        let size_m = problem.scenario.object.size_m;
-        let here = x_wo * own.grasp.x_og(size_m);
+        let board = &problem.robot.board;
+        let here = x_wo * own.grasp.x_og(board);
         for (number, work) in self.work.iter().enumerate() {
             let twist = work.board.twist_at(&here.translation.vector.into());
             derivatives.set_column(number, &(&pseudo_inverse * twist));
         }
         let grasp = self.of_grasp(arm);
         for (part, number) in grasp.clone().enumerate() {
-            let there = x_wo * perturbed_grasp(own.grasp, part, DIFFERENCE).x_og(size_m);
+            let there = x_wo * perturbed_grasp(own.grasp, part, DIFFERENCE).x_og(board);
             let twist = RigidTwist::between(&here, &there).twist_at(&here.translation.vector.into());
             derivatives.set_column(number, &(&pseudo_inverse * twist));
         }

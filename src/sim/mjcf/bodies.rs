@@ -5,13 +5,16 @@ use std::io;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::{
-    super::{bodies::MovingBody, gripper::FINGER_DAMPING_N_S_M, pad::x_gp, pad_shape::Solid, pad_springs::PadSpring},
+    super::{
+        board::TouchedBox, bodies::MovingBody, gripper::FINGER_DAMPING_N_S_M, pad::x_gp, pad_shape::Solid,
+        pad_springs::PadSpring,
+    },
     exported_arm::ExportedArm,
     scenery,
-    xml::{Xml, empty, geom, numbers, pose_attributes, site, with},
+    xml::{Xml, empty, geom, mesh_geom, numbers, pose_attributes, site, with},
 };
 use crate::{
-    model::plan::PlacedObject,
+    model::{board_mesh::BoardMesh, plan::PlacedObject},
     robot::{Joint, JointKind, Robot},
 };
 
@@ -123,18 +126,63 @@ fn pads(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, k: usize, body: &Mo
     Ok(())
 }
 
-/// The board, a free body, with the site of the tool: at the tool point, with the axes of O.
-pub(super) fn board(xml: &mut Xml, object: &PlacedObject, p_ot_m: &Vector3<f64>) -> io::Result<()> {
-    let [x, y, z] = object.size_m;
-    let element = with(xml.create_element("body").with_attribute(("name", "board")), &pose_attributes(&object.x_wo));
-    element.write_inner_content(|xml| {
-        empty(xml, "freejoint", &[("name", "board".into())])?;
+/// The name of the board: its body, its geom and the mesh of a plate.
+const BOARD: &str = "board";
+/// The group of geoms that viewers hide at first.
+const HIDDEN_GROUP: u8 = 3;
+
+/// The mesh of a plate, among the assets.
+pub(super) fn plate_mesh(xml: &mut Xml, object: &PlacedObject) -> io::Result<()> {
+    let Some(plate) = &object.plate else { return Ok(()) };
+    let mesh = BoardMesh::new(plate, object.size_m[2]);
+    let corners: Vec<f64> = mesh
+        .triangles_o
+        .iter()
+        .flatten()
+        .flat_map(|corner| corner.coords.into_iter().copied().collect::<Vec<_>>())
+        .collect();
+    let faces: Vec<String> = (0..3 * mesh.triangles_o.len()).map(|corner| corner.to_string()).collect();
+    let attributes = [("name", BOARD.to_owned()), ("vertex", numbers(&corners)), ("face", faces.join(" "))];
+    xml.create_element("asset").write_inner_content(|xml| empty(xml, "mesh", &attributes))?;
+    Ok(())
+}
+
+/// Mass, centre of mass and inertia of the board.
+fn board_inertial(xml: &mut Xml, object: &PlacedObject) -> io::Result<()> {
+    let mass = ("mass", object.mass_kg.to_string());
+    if object.is_uniform_box() {
+        let [x, y, z] = object.size_m;
         let inertia = [y * y + z * z, x * x + z * z, x * x + y * y].map(|sum| sum * object.mass_kg / 12.0);
-        let attributes =
-            [("pos", "0 0 0".to_owned()), ("mass", object.mass_kg.to_string()), ("diaginertia", numbers(&inertia))];
-        empty(xml, "inertial", &attributes)?;
-        let half_m = object.size_m.map(|side| side / 2.0);
-        geom(xml, "board", ("box", &half_m), &Isometry3::identity(), (TOUCHING_GROUP, BOARD_RGBA))?;
+        return empty(xml, "inertial", &[("pos", "0 0 0".to_owned()), mass, ("diaginertia", numbers(&inertia))]);
+    }
+    let inertia = object.shape().inertia_o(object.mass_kg);
+    let of = |row: usize, column: usize| inertia[(row, column)];
+    let full = [of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2)];
+    empty(xml, "inertial", &[("pos", numbers(object.com_o().as_slice())), mass, ("fullinertia", numbers(&full))])
+}
+
+/// The board, a free body, with the site of the tool: at the tool point, with the axes of O.
+pub(super) fn board(
+    xml: &mut Xml,
+    object: &PlacedObject,
+    arms: &[ExportedArm<'_>],
+    p_ot_m: &Vector3<f64>,
+) -> io::Result<()> {
+    let element = with(xml.create_element("body").with_attribute(("name", BOARD)), &pose_attributes(&object.x_wo));
+    element.write_inner_content(|xml| {
+        empty(xml, "freejoint", &[("name", BOARD.into())])?;
+        board_inertial(xml, object)?;
+        if object.plate.is_some() {
+            // The picture of the plate, and what each hand touches of it.
+            mesh_geom(xml, BOARD, &Isometry3::identity(), (TOUCHING_GROUP, BOARD_RGBA))?;
+            for arm in arms {
+                let TouchedBox { x_ob, half_m } = &arm.touched;
+                geom(xml, &arm.touched_name(), ("box", half_m), x_ob, (HIDDEN_GROUP, BOARD_RGBA))?;
+            }
+        } else {
+            let half_m = object.size_m.map(|side| side / 2.0);
+            geom(xml, BOARD, ("box", &half_m), &Isometry3::identity(), (TOUCHING_GROUP, BOARD_RGBA))?;
+        }
         site(xml, "tool", &Isometry3::from(*p_ot_m))
     })?;
     Ok(())

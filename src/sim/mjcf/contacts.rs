@@ -70,7 +70,7 @@ pub(super) fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], board_kg: f
                 let [time_constant_s, impedance] = softness(part.compliance_m_n, arm.finger_per_kg + 1.0 / board_kg);
                 let mut attributes = vec![
                     ("geom1", arm.part_name(k, &part)),
-                    ("geom2", "board".to_owned()),
+                    ("geom2", arm.touched_name()),
                     ("condim", "3".into()),
                     ("friction", numbers(&[mu, mu, 0.005, 0.0001, 0.0001])),
                 ];

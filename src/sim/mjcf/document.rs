@@ -13,7 +13,7 @@ use super::{
         world::{contact_softness_s2, drive_inertia_kg, new_world},
     },
     actuators::{actuators, controls},
-    bodies::{board, children},
+    bodies::{board, children, plate_mesh},
     contacts::{contact_pairs, couplings, option, timestep_s},
     data::{custom, largest_wrench_o},
     exported_arm::ExportedArm,
@@ -72,6 +72,7 @@ fn document(xml: &mut Xml, exported: &Exported<'_>) -> io::Result<()> {
         let board_w_m = object.x_wo.translation.vector;
         // The part of the scene that a viewer shows at first.
         empty(xml, "statistic", &[("center", numbers(board_w_m.as_slice())), ("extent", "1".into())])?;
+        plate_mesh(xml, object)?;
         scenery::assets(xml, robot)?;
         let mut positions = Vec::new();
         let inertia = [drive_inertia_kg(object), timestep_s(&conditions.settings)];
@@ -80,7 +81,7 @@ fn document(xml: &mut Xml, exported: &Exported<'_>) -> io::Result<()> {
             for arm in arms {
                 children(xml, robot, arm, inertia, None, &mut positions)?;
             }
-            board(xml, object, &plan.operation.x_ot.translation.vector)
+            board(xml, object, arms, &plan.operation.x_ot.translation.vector)
         })?;
         contact_pairs(xml, arms, object.mass_kg, conditions.real_friction())?;
         couplings(xml, robot, arms)?;

@@ -3,6 +3,7 @@
 use nalgebra::{Isometry3, Point3};
 
 use super::super::{
+    board::TouchedBox,
     bodies::{ArmBodies, MovingBody},
     conditions::Conditions,
     feed_forward::FeedForward,
@@ -34,6 +35,10 @@ pub(super) struct ExportedArm<'a> {
     pub grip_force_n: f64,
     /// The load on its pads.
     pub loading: PadLoading,
+    /// What of the board its pads touch.
+    pub touched: TouchedBox,
+    /// True if that is a part of a plate, which only this hand touches.
+    is_of_plate: bool,
     /// Inverse mass of a finger as MuJoCo's contacts assume it, 1/kg, see [`inverse_mass_per_kg`].
     pub finger_per_kg: f64,
 }
@@ -67,6 +72,8 @@ impl<'a> ExportedArm<'a> {
             finger_m,
             grip_force_n,
             loading,
+            touched: TouchedBox::of(&object.shape(), &hold.x_og),
+            is_of_plate: object.plate.is_some(),
         }
     }
 
@@ -78,6 +85,11 @@ impl<'a> ExportedArm<'a> {
     /// The name of a part of finger `k`'s pad.
     pub fn part_name(&self, k: usize, part: &PadPart) -> String {
         format!("{} {}", self.pad_name(k), part.name)
+    }
+
+    /// The name of the geom of the board that its pads touch.
+    pub fn touched_name(&self) -> String {
+        if self.is_of_plate { format!("board at {} hand", self.hold.name) } else { "board".into() }
     }
 
     /// The parts of finger `k`'s pad.
