@@ -11,6 +11,12 @@ use crate::model::scenario::{Budget, Scenario};
 /// grasps of `results/` the simulated failing load is 0.93 to 1.20 of it, so the factor covers the error where a hold fails early.
 pub const COMPLIANT_SAFETY_FACTOR: f64 = 1.1;
 
+/// The limit on candidates of one grasp pattern for this many arms. The limits are those of two arms, which have 32 patterns (four
+/// edges, two of them for the second arm, either side of each gripper); one arm has 8, so each may have four times as many.
+pub const fn per_pattern(limit: usize, arms: usize) -> usize {
+    if arms == 1 { 4 * limit } else { limit }
+}
+
 /// Numbers of the grasp library ([`super::library`]).
 pub mod library {
     /// Grasps of a library: enough that each of the usual orientations of a board has some dozen.

@@ -14,7 +14,7 @@ use super::{
     evaluate::{self, Configuration, Evaluator, Feasible},
     library::{BoardGrasp, COARSE_POINTS, LibraryEntry, MEDIUM_POINTS, Posture, PostureMap, pattern},
     outcome::Rejection,
-    params::{SearchBudget, screening::SECOND_RANKING},
+    params::{SearchBudget, per_pattern, screening::SECOND_RANKING},
     problem::Problem,
 };
 use crate::{
@@ -107,13 +107,14 @@ fn evaluate_pairs(evaluator: &mut Evaluator<'_>, budget: &SearchBudget, pairs: &
     aligned.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<Feasible> = Vec::new();
     let mut used: Vec<&LibraryEntry> = Vec::new();
+    let most_alike = per_pattern(budget.starts_per_pattern, evaluator.problem.robot.arms.len());
     for (_, entry, candidate) in aligned {
         if kept.len() == budget.starts || evaluator.stats.is_exhausted() {
             break;
         }
         let own = pattern(&entry.grasp.arms);
         let alike = used.iter().filter(|other| pattern(&other.grasp.arms) == own).count();
-        if alike == budget.starts_per_pattern || used.iter().any(|other| std::ptr::eq(*other, entry)) {
+        if alike == most_alike || used.iter().any(|other| std::ptr::eq(*other, entry)) {
             continue;
         }
         evaluator.stats.count();

@@ -18,7 +18,7 @@ use super::{
     natural_boards::{entries_for_place, natural_entries},
     outcome::{PlanError, Rejection},
     params::{
-        SearchBudget, WarmStartBudget,
+        SearchBudget, WarmStartBudget, per_pattern,
         screening::{REPAIRS_PER_START, STARTS_PER_PATTERN},
         warm_starts::{KEPT, KEPT_PER_PATTERN, SAME_OPTIMUM},
     },
@@ -179,12 +179,13 @@ impl WarmStarts {
         transferred.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut kept: Vec<Feasible> = Vec::with_capacity(count);
         let mut repairs = 0;
+        let most_alike = per_pattern(STARTS_PER_PATTERN, evaluator.problem.robot.arms.len());
         for (_, candidate) in transferred {
             if kept.len() == count || repairs == REPAIRS_PER_START * count || evaluator.stats.is_exhausted() {
                 break;
             }
             let alike = kept.iter().filter(|other| other.candidate.pattern() == candidate.pattern()).count();
-            if alike == STARTS_PER_PATTERN {
+            if alike == most_alike {
                 continue;
             }
             repairs += 1;
@@ -253,7 +254,7 @@ fn half_length_m(robot: &GraspingRobot, edge: Edge) -> f64 {
     robot.board.edge(edge).along_m[1]
 }
 
-/// The best solutions that differ: at most [`KEPT_PER_PATTERN`] have the same pattern but for a turn of the board, and those
+/// The best solutions that differ: at most [`KEPT_PER_PATTERN`] of two arms have the same pattern but for a turn of the board, and those
 /// have different objectives.
 fn distinct(found: Vec<Feasible>, board: &BoardShape) -> Vec<Feasible> {
     let mut kept: Vec<(Feasible, GraspPattern)> = Vec::with_capacity(KEPT);
@@ -266,7 +267,8 @@ fn distinct(found: Vec<Feasible>, board: &BoardShape) -> Vec<Feasible> {
         let same = |(other, _): &(Feasible, _)| {
             (other.objective - solution.objective).abs() < SAME_OPTIMUM * solution.objective.abs()
         };
-        if alike.clone().count() < KEPT_PER_PATTERN && !alike.any(same) {
+        let most_alike = per_pattern(KEPT_PER_PATTERN, solution.candidate.arms.len());
+        if alike.clone().count() < most_alike && !alike.any(same) {
             kept.push((solution, pattern));
         }
     }

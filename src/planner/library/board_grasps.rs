@@ -16,7 +16,10 @@ use crate::{
     model::{board::Edge, frames::Pose},
     planner::{
         domain::draw_edge,
-        params::library::{GRASPS_PER_ARM, RESAMPLED_PER_PATTERN},
+        params::{
+            library::{GRASPS_PER_ARM, RESAMPLED_PER_PATTERN},
+            per_pattern,
+        },
     },
 };
 
@@ -35,11 +38,12 @@ pub fn grasps_of_board(
     let mut combinations = Combinations::new(&reached, &opposite);
     let mut entries: Vec<LibraryEntry> = Vec::new();
     let mut patterns = Vec::new();
+    let most_alike = per_pattern(RESAMPLED_PER_PATTERN, robot.arms.len());
     // Without any combination the second arm reaches no edge that matches the first one's.
     let mut failure = DrawFailure::Reach { arm: 1 };
     while let Some(arms) = combinations.next() {
         let pattern = pattern(&arms);
-        if patterns.iter().filter(|other| **other == pattern).count() >= RESAMPLED_PER_PATTERN {
+        if patterns.iter().filter(|other| **other == pattern).count() >= most_alike {
             combinations.advance(arms.len() - 1);
             continue;
         }
@@ -187,6 +191,17 @@ mod tests {
             q_rad: Vec::new(),
         };
         edges.iter().map(|edges| edges.iter().enumerate().map(grasp).collect()).collect()
+    }
+
+    /// Patterns times the limit of each are as many for one arm as for two.
+    #[test]
+    fn one_arm_has_as_many_candidates_as_two() {
+        let sides = [false, true];
+        // A box has four edges; the second arm holds the first one's edge or the opposite one.
+        let one = QUARTERS * sides.len();
+        let two = QUARTERS * 2 * sides.len() * sides.len();
+        assert_eq!(one * per_pattern(3, 1), two * per_pattern(3, 2));
+        assert_eq!(per_pattern(3, 3), 3);
     }
 
     proptest! {
