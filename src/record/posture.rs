@@ -47,5 +47,5 @@ pub fn encode_posture(of: &Robot, positions: &[f64]) -> Result<Vec<u8>, RecordEr
     let points = of.body_points.iter().map(|point| vec3(&(x_wl[point.link] * point.p_l).coords));
     let points = Points3D::new(points).with_radii([0.008]).with_colors([palette::points()]);
     recording.log_static(&entity(&["scene", "points", "robot"]), &points)?;
-    rrd::bytes(recording.into_messages().into_iter())
+    rrd::bytes(recording.into_messages())
 }

@@ -139,6 +139,24 @@ fn poses_in_the_world() {
     }
 }
 
+/// The board is that of the scenario: with its outline, its holes and its centre of mass.
+#[test]
+fn grasps_of_a_plate() {
+    let folder = files();
+    let plate = "[object]\nthickness_m = 0.030\nholes = [{ centre_m = [0.0, 0.0], radius_m = 0.05 }]\n\
+                 com_m = [0.01, 0.0, 0.0]\n\
+                 outline_m = [[0.25, -0.2], [0.25, 0.2], [-0.2, 0.2], [-0.25, 0.1], [-0.25, -0.2]]\n";
+    std::fs::write(folder.path().join("cut.toml"), format!("{CUT}\n{plate}")).unwrap();
+    let arms = ["isaac.yaml", "--arm", "left=grasp_0", "--arm", "right=grasp_2"];
+    for pose in [None, Some(board_pose())] {
+        let of_pose: Vec<&str> = pose.iter().flat_map(|pose| ["--board-pose", pose]).collect();
+        import(folder.path(), &[&arms[..], &of_pose].concat());
+        let object = read_plan(&folder.path().join("plan.json"), Some(baxter())).unwrap().0.object;
+        let read = object.plate.unwrap();
+        assert_eq!((read.sides().len(), read.holes_m().len(), object.com_m), (5, 1, Some([0.01, 0.0, 0.0])));
+    }
+}
+
 #[test]
 fn what_cannot_be_imported() {
     let folder = files();

@@ -77,6 +77,31 @@ fn joints_in_any_order_give_the_same_plan() {
     assert_eq!(read(&named).unwrap(), expected);
 }
 
+/// Outline, holes and centre of mass stay; a faulty outline is found before the inverse kinematics needs it.
+#[test]
+fn values_of_a_plan_for_a_plate_are_filled_in() {
+    let mut plan = with_arms(|arm| {
+        arm.remove("q_rad");
+        arm.remove("joints");
+    });
+    let [x_m, y_m] = [0, 1].map(|axis: usize| plan["object"]["size_m"][axis].as_f64().unwrap() / 2.0);
+    let outline_m = json!([[x_m, -y_m], [x_m, y_m], [-x_m, y_m], [-x_m, -y_m]]);
+    let holes_m = json!([[[0.0, 0.0], [0.05, 0.0], [0.0, 0.05]]]);
+    plan["object"]["plate"] = json!({"outline_m": outline_m, "holes_m": holes_m});
+    plan["object"]["com_m"] = json!([0.01, 0.02, 0.0]);
+    let found = read(&plan).unwrap();
+    assert_eq!(found.object.com_m, Some([0.01, 0.02, 0.0]));
+    assert_eq!(serde_json::to_value(&found.object.plate).unwrap(), plan["object"]["plate"]);
+    for hold in &found.arms {
+        let reached = chain(hold).gripper_pose(&hold.q_rad);
+        // The residual of the inverse kinematics, 1e-9, as entries of matrices.
+        assert!(apart(&reached, &(found.object.x_wo * hold.x_og)) < 1e-8);
+    }
+    plan["object"]["plate"]["outline_m"] = json!([[x_m, -y_m], [-x_m, -y_m], [-x_m, y_m], [x_m, y_m]]);
+    let message = read(&plan).unwrap_err();
+    assert!(message.starts_with("plan.json:1: object.plate.outline_m: found"), "{message}");
+}
+
 /// The trace of the plan with its joints in another order, through the binary, and of the plan that is written.
 #[test]
 fn the_trace_does_not_depend_on_the_form() {

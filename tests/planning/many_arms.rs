@@ -2,6 +2,7 @@
 
 use benchdog::{
     model::{
+        grasp::grasped_edge,
         plan::Plan,
         scenario::{Budget, Scenario},
     },
@@ -51,6 +52,22 @@ fn one_to_four_arms_find_a_plan() {
         let flaws = planner::verify(&plan, &scenario, &robot);
         assert!(flaws.is_empty(), "{arms} arms: {flaws:?}");
     }
+}
+
+/// The third arm may hold any edge of a plate that is long enough for its pads, and no pad reaches into the hole.
+#[test]
+fn three_arms_find_a_plan_for_a_plate_with_a_hole() {
+    let path = root().join("scenarios/plate-with-hole.toml");
+    let mut scenario = benchdog::scenario::load(&path).unwrap().scenario;
+    let (of_plate, other) = (scenario.object.clone(), fast());
+    (scenario.planner, scenario.grip) = (other.planner, other.grip);
+    let robot = pandas(&bases(3));
+    let plan = plan_by(&Planner::new(&robot), &scenario);
+    assert_eq!((plan.arms.len(), &plan.object.plate), (3, &of_plate.plate));
+    let flaws = planner::verify(&plan, &scenario, &robot);
+    assert!(flaws.is_empty(), "{flaws:?}");
+    let board = plan.object.shape();
+    assert!(plan.arms.iter().all(|hold| grasped_edge(&hold.x_og, &board).is_some()));
 }
 
 /// Boards of three and more arms are drawn in parallel.

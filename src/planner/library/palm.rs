@@ -67,6 +67,7 @@ mod tests {
 
     use crate::{
         collision::BoardBody,
+        model::{board::BoardShape, plate::PlateRecord},
         planner::{
             domain::DEPTH_M,
             library::{GraspingRobot, draw_grasp},
@@ -102,5 +103,40 @@ mod tests {
             assert!(palm.is_clear(&wide.collision, &BoardBody::new(&board), &grasp.x_og(&board).inverse(), 0.060));
         }
         assert!(drawn > 50, "{drawn}");
+    }
+
+    /// At the middle of an edge, which is longer than the palm is wide, a plate is to the palm what a box is. Grasps near the
+    /// corners of a plate keep the clearance too.
+    #[test]
+    fn the_palm_limits_the_depth_in_plates() {
+        let loaded = paper::operations()[0].load().unwrap();
+        let robot_for = |board: &BoardShape| GraspingRobot::new(&loaded.robot, board, 0.060);
+        let cuboid = loaded.scenario.object.shape();
+        let plate =
+            |outline_m: Vec<[f64; 2]>| BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.03);
+        let of_box = robot_for(&cuboid);
+        let boards = [plate(cuboid.outline_m()), plate(vec![[0.3, -0.2], [0.1, 0.3], [-0.3, -0.2]])];
+        for board in boards {
+            let robot = robot_for(&board);
+            let mut random = Pcg64::new(2, 0);
+            for (arm, other) in robot.arms.iter().zip(&of_box.arms) {
+                // To the last bisection, and the tolerance of parry's distance of convex hulls.
+                let off_m = [0, 1].map(|end: usize| (arm.depth_m[end] - other.depth_m[end]).abs());
+                assert!(off_m[0] == 0.0 && off_m[1] < 1e-6, "{:?} {:?}", arm.depth_m, other.depth_m);
+                let palm = arm.palm.as_ref().unwrap();
+                let draws = (0..200).filter_map(|number: usize| {
+                    let edge = robot.edges[number % robot.edges.len()];
+                    draw_grasp(&robot, arm, edge, |_| true, &mut random)
+                });
+                let drawn: Vec<_> = draws.collect();
+                assert!(drawn.len() > 50, "{}", drawn.len());
+                let body = BoardBody::new(&board);
+                assert!(
+                    drawn
+                        .iter()
+                        .all(|grasp| { palm.is_clear(&robot.collision, &body, &grasp.x_og(&board).inverse(), 0.060) })
+                );
+            }
+        }
     }
 }

@@ -29,6 +29,9 @@ const MENDED_INERTIA: f64 = 0.1;
 /// Eigenvalues below this are those of a part of some grams, which no result depends on, kg m^2.
 const NEGLIGIBLE_INERTIA_KG_M2: f64 = 1e-6;
 
+/// A shape with its pose in a frame.
+type PosedShape = (Isometry3<f64>, Shape);
+
 /// What reads links.
 pub(super) struct Reader<'a> {
     pub packages: &'a Packages,
@@ -95,11 +98,7 @@ impl Reader<'_> {
     }
 
     /// The convex shapes of a collision geometry, and the mesh file that has them.
-    fn shapes(
-        &self,
-        link: &str,
-        collision: &urdf_rs::Collision,
-    ) -> Result<(Vec<(Isometry3<f64>, Shape)>, Option<PathBuf>), String> {
+    fn shapes(&self, link: &str, collision: &urdf_rs::Collision) -> Result<(Vec<PosedShape>, Option<PathBuf>), String> {
         let x_lg = read_pose(&collision.origin)?;
         let Geometry::Mesh { filename, scale } = &collision.geometry else {
             let placed = primitives(&collision.geometry)?.into_iter().map(|(x_gs, shape)| (x_lg * x_gs, shape));
@@ -134,7 +133,7 @@ impl Reader<'_> {
 }
 
 /// The convex primitives of a geometry that is no mesh, each with its pose. A capsule is a cylinder with a sphere at either end.
-fn primitives(geometry: &Geometry) -> Result<Vec<(Isometry3<f64>, Shape)>, String> {
+fn primitives(geometry: &Geometry) -> Result<Vec<PosedShape>, String> {
     let centred = |shape| vec![(Isometry3::identity(), shape)];
     let (shapes, sizes) = match geometry {
         Geometry::Box { size } => (centred(Shape::Box { half_m: size.map(|side| side / 2.0) }), size.to_vec()),
