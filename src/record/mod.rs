@@ -30,6 +30,7 @@ mod palette;
 mod person;
 mod plate;
 mod plots;
+mod poses;
 mod posture;
 mod read;
 mod robot;

@@ -9,7 +9,7 @@ use super::{
     frames::{Frames, quaternion, vec3},
     messages::Messages,
     palette,
-    scene::{log_poses, transform},
+    poses::{log_poses, transform},
 };
 use crate::{
     model::frames::Pose,

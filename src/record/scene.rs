@@ -1,13 +1,13 @@
 //! The 3-D scene: robot, board, operation, person, tool, pads and forces.
 
 use nalgebra::{Point3, Vector3};
-use rerun::{Arrows3D, Boxes3D, EntityPath, FillMode, LineStrips3D, Points3D, Transform3D, ViewCoordinates};
+use rerun::{Arrows3D, Boxes3D, EntityPath, FillMode, LineStrips3D, Points3D, ViewCoordinates};
 
 use super::{
     crossings,
     entity::entity,
     error::RecordError,
-    frames::{Frames, arm_indices, frames, quaternion, vec3},
+    frames::{Frames, arm_indices, frames, vec3},
     input::RecordingInput,
     messages::Messages,
     palette, person, plate, robot,
@@ -170,20 +170,4 @@ fn log_forces(
     messages.log_static(path, style)?;
     let arrows = Arrows3D::from_vectors(vectors).with_origins(origins).with_labels(labels);
     messages.log_columns(path, times_s, arrows.columns_of_unit_batches().map_err(RecordError::encode)?)
-}
-
-pub(super) fn log_poses(
-    messages: &mut Messages,
-    path: &EntityPath,
-    times_s: &[f64],
-    poses: impl Iterator<Item = Pose>,
-) -> Result<(), RecordError> {
-    let (translations, rotations): (Vec<_>, Vec<_>) =
-        poses.map(|pose| (vec3(&pose.translation.vector), quaternion(&pose.rotation))).unzip();
-    let transforms = Transform3D::new().with_many_translation(translations).with_many_quaternion(rotations);
-    messages.log_columns(path, times_s, transforms.columns_of_unit_batches().map_err(RecordError::encode)?)
-}
-
-pub(super) fn transform(pose: &Pose) -> Transform3D {
-    Transform3D::new().with_translation(vec3(&pose.translation.vector)).with_quaternion(quaternion(&pose.rotation))
 }

@@ -8,7 +8,10 @@ use std::sync::Arc;
 
 use nalgebra::{Unit, Vector3};
 
-use super::tree::{ArmState, Finger, Gripper, JointKind, Pad, Robot};
+use super::{
+    faces::{mean_y, nearest_face},
+    tree::{ArmState, Drive, Finger, Gripper, JointKind, Linkage, Pad, Robot},
+};
 use crate::model::frames::Pose;
 
 /// Number of positions at which the opening map is checked to be monotonic.
@@ -19,27 +22,6 @@ const BISECTIONS: usize = 52;
 
 /// The largest angle by which a pad may turn over the opening, rad: two degrees, as the flatness of a rubber pad allows.
 const PARALLEL_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
-
-/// The mechanism of a gripper's fingers.
-#[derive(Clone, Debug)]
-pub struct Linkage {
-    /// One joint that moves both pads, or one for each.
-    drives: Vec<Drive>,
-    /// For each pad the joint that carries it, an index into [`Robot::joints`].
-    carriers: [usize; 2],
-    /// For each pad its link.
-    pad_links: [usize; 2],
-    /// For each pad the side of the plane y_G = 0 that it is on, 1 or -1.
-    sides: [f64; 2],
-}
-
-/// A joint that moves pads, with its positions when the gripper is closed and when it is open, rad or m.
-#[derive(Clone, Copy, Debug)]
-struct Drive {
-    joint: usize,
-    closed: f64,
-    open: f64,
-}
 
 impl Linkage {
     /// The linkage between a palm and two pads.
@@ -74,8 +56,7 @@ impl Linkage {
 
     /// Finds the sides of the pads and which end of each drive's range is open.
     fn orient(&mut self, robot: &Robot, frame: usize) -> Result<(), String> {
-        let y_m =
-            [0, 1].map(|pad| super::assemble::mean_y(robot, self.pad_links[pad], &self.x_gl(robot, frame, 0.5)[pad]));
+        let y_m = [0, 1].map(|pad| mean_y(robot, self.pad_links[pad], &self.x_gl(robot, frame, 0.5)[pad]));
         self.sides = y_m.map(f64::signum);
         if self.sides[0] == self.sides[1] {
             return Err("found both pads on one side of y_G = 0, expected one on either side".into());
@@ -149,7 +130,7 @@ impl Linkage {
     /// Distance of each pad's face from the plane y_G = 0, m.
     fn faces_m(&self, robot: &Robot, frame: usize, share: f64) -> [f64; 2] {
         let x_gl = self.x_gl(robot, frame, share);
-        [0, 1].map(|pad| super::assemble::nearest_face(robot, self.pad_links[pad], &x_gl[pad], self.sides[pad]))
+        [0, 1].map(|pad| nearest_face(robot, self.pad_links[pad], &x_gl[pad], self.sides[pad]))
     }
 
     fn gap_m(&self, robot: &Robot, frame: usize, share: f64) -> f64 {

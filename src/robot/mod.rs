@@ -7,6 +7,7 @@ mod assemble;
 pub mod bimanual;
 pub mod chain;
 mod description;
+mod faces;
 mod faults;
 mod geometry;
 pub mod inverse;
@@ -21,10 +22,10 @@ pub use chain::Chain;
 pub use faults::{Fault, Faults, RobotError};
 pub use geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry};
 pub use inverse::{InverseKinematics, Solution};
-pub use linkage::Linkage;
 pub use load::BUILTIN;
 pub use mesh::{DrawnForm, DrawnPart, MeshPart};
 pub use packages::Packages;
 pub use tree::{
-    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Mimic, Pad, Robot, RobotOptions, SearchBox,
+    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Linkage, Mimic, Pad, Robot, RobotOptions,
+    SearchBox,
 };

@@ -4,10 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
-use super::{
-    geometry::{PlacedShape, Visual},
-    linkage::Linkage,
-};
+use super::geometry::{PlacedShape, Visual};
 use crate::model::{frames::Pose, plan::ArmHold};
 
 /// A robot: a tree of links, its arms, and the data of the description.
@@ -165,6 +162,27 @@ pub struct Gripper {
     pub pad_stiffness_n_m: Option<f64>,
     /// The mechanism that moves the fingers, if it is not one prismatic joint each.
     pub linkage: Option<Linkage>,
+}
+
+/// The mechanism of a gripper's fingers (docs/method.md#26-linkage-grippers).
+#[derive(Clone, Debug)]
+pub struct Linkage {
+    /// One joint that moves both pads, or one for each.
+    pub(super) drives: Vec<Drive>,
+    /// For each pad the joint that carries it, an index into [`Robot::joints`].
+    pub(super) carriers: [usize; 2],
+    /// For each pad its link.
+    pub(super) pad_links: [usize; 2],
+    /// For each pad the side of the plane y_G = 0 that it is on, 1 or -1.
+    pub(super) sides: [f64; 2],
+}
+
+/// A joint that moves pads, with its positions when the gripper is closed and when it is open, rad or m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drive {
+    pub joint: usize,
+    pub closed: f64,
+    pub open: f64,
 }
 
 /// One finger and its pad.

@@ -6,6 +6,7 @@
 
 mod draft;
 mod hand;
+mod hulls;
 mod pairs;
 mod place;
 mod points;
@@ -91,9 +92,9 @@ pub fn setup(input: &SetupInput, folder: &Path) -> Result<Setup, SetupError> {
     };
     let yaw_deg = place::yaw_deg(&with(0.0, &[])?);
     let mut robot = with(yaw_deg, &[])?;
-    let mut decompose = pairs::in_the_way(&robot);
+    let mut decompose = hulls::in_the_way(&robot);
     if !decompose.is_empty() {
-        decompose = pairs::worth_decomposing(&robot, &with(yaw_deg, &decompose)?, &decompose);
+        decompose = hulls::worth_decomposing(&robot, &with(yaw_deg, &decompose)?, &decompose);
         robot = with(yaw_deg, &decompose)?;
     }
     let floor_z_m = place::floor_z_m(&robot);

@@ -20,7 +20,7 @@ const SAMPLES: usize = 2_000;
 const SEED: u64 = 1;
 
 /// The share of postures from which on an overlap is taken for one of the shapes and not of the parts.
-const ALWAYS: f64 = 0.95;
+pub(super) const ALWAYS: f64 = 0.95;
 
 /// For links with at most so many joints between them: the share of postures from which on an overlap is taken for one of the
 /// shapes. The limits of few joints keep the parts themselves apart; every other joint of most arms only rolls.
@@ -124,41 +124,6 @@ pub(super) fn allowed(robot: &Robot, disabled: Option<&[[String; 2]]>) -> Vec<Al
     reasons.into_iter().map(|(links, reason)| AllowedPair { links, reason }).collect()
 }
 
-/// The share of random postures from which on a hull that overlaps another link is in the way.
-const IN_THE_WAY: f64 = 0.05;
-
-/// A decomposition is worth its cost if it takes away this share of the overlaps of a pair.
-const WORTH: f64 = 0.3;
-
-/// The links with hulls of meshes that overlap others often, but not always, and not only their neighbours.
-pub(super) fn in_the_way(robot: &Robot) -> Vec<usize> {
-    let is_hull = |link: &usize| {
-        let shapes = &robot.links[*link].shapes;
-        shapes.iter().any(|placed| matches!(placed.shape, crate::robot::Shape::Hull(_)))
-    };
-    let pairs = often(robot).into_iter().map(|(links, _)| links);
-    let links: BTreeSet<usize> = pairs.flatten().filter(is_hull).collect();
-    links.into_iter().collect()
-}
-
-/// Of the links that were decomposed those for which it was worth it.
-pub(super) fn worth_decomposing(hulls: &Robot, parts: &Robot, decomposed: &[usize]) -> Vec<usize> {
-    let after: BTreeMap<[usize; 2], f64> = Overlaps::of(parts).shares.into_iter().collect();
-    let better: Vec<[usize; 2]> = often(hulls)
-        .into_iter()
-        .filter(|(links, before)| after.get(links).copied().unwrap_or_default() <= (1.0 - WORTH) * before)
-        .map(|(links, _)| links)
-        .collect();
-    decomposed.iter().copied().filter(|link| better.iter().any(|links| links.contains(link))).collect()
-}
-
-/// Pairs that are not neighbours and overlap often, but not always, and their shares of the random postures.
-fn often(robot: &Robot) -> Vec<([usize; 2], f64)> {
-    let adjacent = adjacent(robot);
-    let shares = Overlaps::of(robot).shares.into_iter();
-    shares.filter(|(links, share)| (IN_THE_WAY..ALWAYS).contains(share) && !adjacent.contains(links)).collect()
-}
-
 /// How often links overlap in random postures.
 #[derive(Clone, Debug)]
 pub struct Overlaps {
@@ -200,7 +165,7 @@ fn overlaps(robot: &Robot, model: &CollisionModel) -> Overlaps {
 
 /// Pairs of neighbours: one joint moves one against the other, directly or through fixed joints; or they are the two fingers
 /// of one gripper, which meet when it closes.
-fn adjacent(robot: &Robot) -> BTreeSet<[usize; 2]> {
+pub(super) fn adjacent(robot: &Robot) -> BTreeSet<[usize; 2]> {
     let mut pairs = apart(robot, 1);
     let carriers = active_carriers(robot);
     let carried =

@@ -84,8 +84,7 @@ impl ReachMap {
             let sample = &self.samples[number];
             let mut q_rad = sample.q_rad.clone();
             // A prismatic joint does not turn the gripper about its axis.
-            let turn_rad = if chain.begins_revolute() { azimuth_rad - sample.azimuth_rad } else { 0.0 };
-            let first = q_rad[0] + turn_rad;
+            let first = if chain.begins_revolute() { q_rad[0] + azimuth_rad - sample.azimuth_rad } else { q_rad[0] };
             let within = |joint: usize, q: f64| {
                 let turns = [q, q - 2.0 * PI, q + 2.0 * PI];
                 turns.into_iter().find(|q| (chain.lower()[joint]..=chain.upper()[joint]).contains(q))

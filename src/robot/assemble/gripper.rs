@@ -10,9 +10,9 @@ use crate::{
     model::frames::Pose,
     robot::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
+        faces::{mean_y, nearest_face},
         geometry::{PlacedShape, Shape, Visual, VisualGeometry},
-        linkage::Linkage,
-        tree::{Finger, Gripper, JointKind, Pad, Robot},
+        tree::{Finger, Gripper, JointKind, Linkage, Pad},
     },
 };
 
@@ -361,21 +361,4 @@ fn squared(pose: &Pose) -> nalgebra::UnitQuaternion<f64> {
     let rounded = matrix.matrix().map(f64::round);
     let is_square = (matrix.matrix() - rounded).amax() < AXIS_TOLERANCE * AXIS_TOLERANCE;
     if is_square { nalgebra::UnitQuaternion::from_matrix(&rounded) } else { pose.rotation }
-}
-
-/// Mean y_G of the centres of a link's shapes, m.
-pub(in crate::robot) fn mean_y(robot: &Robot, link: usize, x_gl: &Pose) -> f64 {
-    let shapes = &robot.links[link].shapes;
-    let sum: f64 = shapes.iter().map(|placed| (x_gl * placed.x_ls).translation.y).sum();
-    sum / shapes.len() as f64
-}
-
-/// Distance of a link's innermost face from the plane y_G = 0, positive on the given side, m.
-pub(in crate::robot) fn nearest_face(robot: &Robot, link: usize, x_gl: &Pose, side: f64) -> f64 {
-    let inner = robot.links[link].shapes.iter().map(|placed| {
-        let x_gs = x_gl * placed.x_ls;
-        let inward_s = x_gs.rotation.inverse() * Vector3::new(0.0, -side, 0.0);
-        side * x_gs.translation.y - placed.shape.support_m(&inward_s)
-    });
-    inner.fold(f64::INFINITY, f64::min)
 }

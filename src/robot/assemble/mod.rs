@@ -16,7 +16,6 @@ use super::{
     urdf::Tree,
 };
 use crate::model::frames::Pose;
-pub(super) use gripper::{mean_y, nearest_face};
 
 /// Combines a description with its URDF. `None` if there are faults. The options come before the description.
 pub(super) fn assemble(

@@ -3,7 +3,7 @@
 use nalgebra::{Unit, Vector3};
 use urdf_rs::JointType;
 
-use super::read_pose;
+use super::pose::read_pose;
 use crate::robot::tree::{Joint, JointKind, Mimic};
 
 /// A joint and its effort limit.

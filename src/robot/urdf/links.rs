@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use urdf_rs::Geometry;
 
-use super::read_pose;
+use super::pose::read_pose;
 use crate::robot::{
     geometry::{MeshFile, PlacedShape, Shape, Visual, VisualGeometry},
     mesh::Convexity,

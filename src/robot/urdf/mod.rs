@@ -5,10 +5,9 @@
 
 mod joints;
 mod links;
+mod pose;
 
 use std::{collections::BTreeMap, path::PathBuf};
-
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 use super::{
     faults::Collector,
@@ -184,13 +183,4 @@ fn names<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<BTreeMa
         }
     }
     Ok(index)
-}
-
-fn read_pose(pose: &urdf_rs::Pose) -> Result<Pose, String> {
-    if !pose.xyz.iter().chain(pose.rpy.iter()).all(|v| v.is_finite()) {
-        return Err("found an origin that is not finite, expected m and rad".into());
-    }
-    let [roll, pitch, yaw] = pose.rpy.0;
-    let rotation = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-    Ok(Isometry3::from_parts(Translation3::from(pose.xyz.0), rotation))
 }

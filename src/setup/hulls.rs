@@ -1,0 +1,101 @@
+//! Links whose meshes are better divided into convex parts: their hulls are in the way of other links, or of the board.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+
+use super::pairs::{ALWAYS, Overlaps, adjacent};
+use crate::{
+    collision::{BoardBody, CollisionModel},
+    model::board::BoardShape,
+    robot::{Arm, Robot, Shape},
+};
+
+/// The share of random postures from which on a hull that overlaps another link is in the way.
+const IN_THE_WAY: f64 = 0.05;
+
+/// A decomposition is worth its cost if it takes away this share of the overlaps of a pair.
+const WORTH: f64 = 0.3;
+
+/// Distance from a board in the gripper within which a link of the hand is in the way, m: the usual clearance.
+const BOARD_CLEARANCE_M: f64 = 0.005;
+
+/// How much farther from the board the parts of a mesh must be than its hull, m.
+const FARTHER_M: f64 = 0.002;
+
+/// The board that is put into each gripper: its width and height, m.
+const BOARD_M: f64 = 0.3;
+
+/// The links with hulls of meshes that overlap others often, but not always, and not only their neighbours; or that are near a
+/// board in the gripper.
+pub(super) fn in_the_way(robot: &Robot) -> Vec<usize> {
+    let is_hull = |link: &usize| {
+        let shapes = &robot.links[*link].shapes;
+        shapes.iter().any(|placed| matches!(placed.shape, Shape::Hull(_)))
+    };
+    let pairs = often(robot).into_iter().flat_map(|(links, _)| links);
+    let links: BTreeSet<usize> = pairs.chain(near_boards(robot).into_keys()).filter(is_hull).collect();
+    links.into_iter().collect()
+}
+
+/// Of the links that were decomposed those for which it was worth it.
+pub(super) fn worth_decomposing(hulls: &Robot, parts: &Robot, decomposed: &[usize]) -> Vec<usize> {
+    let after: BTreeMap<[usize; 2], f64> = Overlaps::of(parts).shares.into_iter().collect();
+    let better: Vec<[usize; 2]> = often(hulls)
+        .into_iter()
+        .filter(|(links, before)| after.get(links).copied().unwrap_or_default() <= (1.0 - WORTH) * before)
+        .map(|(links, _)| links)
+        .collect();
+    let (before, after) = (near_boards(hulls), near_boards(parts));
+    let is_farther = |link: &usize| {
+        let after_m = after.get(link).copied().unwrap_or(BOARD_CLEARANCE_M);
+        before.get(link).is_some_and(|before_m| after_m >= before_m + FARTHER_M)
+    };
+    let is_worth = |link: &usize| is_farther(link) || better.iter().any(|links| links.contains(link));
+    decomposed.iter().copied().filter(is_worth).collect()
+}
+
+/// Pairs that are not neighbours and overlap often, but not always, and their shares of the random postures.
+fn often(robot: &Robot) -> Vec<([usize; 2], f64)> {
+    let adjacent = adjacent(robot);
+    let shares = Overlaps::of(robot).shares.into_iter();
+    shares.filter(|(links, share)| (IN_THE_WAY..ALWAYS).contains(share) && !adjacent.contains(links)).collect()
+}
+
+/// The links of hands but fingers that are near a board which the pads cover to its edge, and their distances, m.
+fn near_boards(robot: &Robot) -> BTreeMap<usize, f64> {
+    let model = CollisionModel::new(robot);
+    let x_wl = robot.link_poses(&robot.positions(&[]));
+    let carriers = robot.carriers();
+    let mut near = BTreeMap::new();
+    for arm in &robot.arms {
+        let gripper = &arm.gripper;
+        let (board, x_go) = board_between(arm, robot);
+        let x_wo = x_wl[gripper.frame_link] * x_go;
+        let hand = (0..robot.links.len()).filter(|&link| carriers[link] == carriers[gripper.frame_link]);
+        for link in hand.filter(|&link| !robot.links[link].shapes.is_empty()) {
+            let distance_m = model.link_to_board_m(link, &x_wl[link], &board, &x_wo);
+            if distance_m < BOARD_CLEARANCE_M {
+                near.insert(link, distance_m);
+            }
+        }
+    }
+    near
+}
+
+/// A board as thick as the gap between the pads at rest, which the pads just cover, and its pose in G.
+fn board_between(arm: &Arm, robot: &Robot) -> (BoardBody, Isometry3<f64>) {
+    let gripper = &arm.gripper;
+    let gap_m: f64 = gripper
+        .fingers
+        .iter()
+        .map(|finger| finger.pad.offset_m + finger.opening_sign * (robot.joints[finger.joint].rest - finger.closed_m))
+        .sum();
+    let pad = &gripper.fingers[0].pad;
+    let edge_z_m = pad.centre_m[1] - pad.size_m[1] / 2.0;
+    let board = BoardBody::new(&BoardShape::cuboid([BOARD_M, BOARD_M, gap_m.max(0.001)]));
+    // z_O along y_G; the board reaches forward from the rear edge of the pads.
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), -std::f64::consts::FRAC_PI_2);
+    let centre_g = Point3::new(0.0, 0.0, edge_z_m + BOARD_M / 2.0);
+    (board, Isometry3::from_parts(centre_g.into(), turn))
+}
