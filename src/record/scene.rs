@@ -10,7 +10,9 @@ use super::{
     frames::{Frames, arm_indices, frames, vec3},
     input::RecordingInput,
     messages::Messages,
-    palette, person, plate, robot,
+    palette, person, plate,
+    poses::log_poses,
+    robot,
 };
 use crate::model::{
     frames::Pose,
