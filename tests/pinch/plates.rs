@@ -188,6 +188,13 @@ fn an_exported_plate_has_its_mass_and_a_box_for_each_hand() {
             pairs.clone().count() == 6 && pairs.clone().all(|pair| pair.attribute("geom1").unwrap().starts_with(hand))
         );
     }
-    let faces = numbers(named("plate"), "face").len();
-    assert_eq!(faces, numbers(named("plate"), "vertex").len() / 3);
+    // The picture is the mesh of the same name, at O.
+    let of_board = |tag: &str| {
+        let is_it = |node: &roxmltree::Node<'_, '_>| node.has_tag_name(tag) && node.attribute("name") == Some("board");
+        document.descendants().find(is_it).unwrap()
+    };
+    assert_eq!(of_board("geom").attribute("mesh"), Some("board"));
+    assert_eq!(numbers(of_board("geom"), "pos"), [0.0; 3]);
+    let mesh = of_board("mesh");
+    assert_eq!(numbers(mesh, "face").len(), numbers(mesh, "vertex").len() / 3);
 }
