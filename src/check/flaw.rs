@@ -413,13 +413,7 @@ impl Flaw {
             Self::Wrench { .. } => bounds::wrench_in_words(),
             Self::Pull { .. } => "a force that pushes into the board: more than 0".into(),
             Self::TipInside { .. } => format!("a tip on a face of the board, within {:.0} mm", GIVEN.position_m * 1e3),
-            Self::ToolPoint { found_m, half_sides_m: [x, y, z] } => {
-                if is_off(found_m[2], *z) {
-                    format!("a point on the board: |z| <= {z} m")
-                } else {
-                    format!("a point on the board: |x| <= {x} m, |y| <= {y} m")
-                }
-            }
+            Self::ToolPoint { found_m, half_sides_m } => point_on_board(found_m, half_sides_m),
             Self::NoArm => "at least one".into(),
             Self::UnknownArm { known, .. } => format!("an arm of the robot: {}", known.join(", ")),
             Self::ArmTwice { .. } => "every arm once".into(),
@@ -462,6 +456,15 @@ impl Flaw {
                 format!("{computed}, as recomputed")
             }
         }
+    }
+}
+
+/// What is expected of a tool point off a box: along its thickness if that is wrong, else along its sides.
+fn point_on_board(found_m: &[f64; 3], [x, y, z]: &[f64; 3]) -> String {
+    if is_off(found_m[2], *z) {
+        format!("a point on the board: |z| <= {z} m")
+    } else {
+        format!("a point on the board: |x| <= {x} m, |y| <= {y} m")
     }
 }
 

@@ -75,7 +75,7 @@ impl Robot {
         })
     }
 
-    /// The robot of a URDF alone, without arms, and the effort limit of each joint, N m or N, 0 where there is none.
+    /// The robot of a URDF alone, without arms, and the effort limit of each joint, N m or N, 0 where the URDF has no limit.
     ///
     /// # Errors
     /// As for [`Robot::load`].

@@ -23,7 +23,7 @@ const PALM_CLEARANCE_M: f64 = 0.015;
 /// Side of a clamp's pads, m, its opening, m, and its distance in front of the hand, m: assumed.
 const CLAMP_PAD_M: f64 = 0.040;
 const CLAMP_OPENING_M: [f64; 2] = [0.0, 0.060];
-const CLAMP_AHEAD_M: f64 = 0.010;
+const CLAMP_AHEAD_M: f64 = 0.040;
 
 /// Largest distance of G from the centre of the pads at which an existing frame is taken for G, m.
 const NEAR_PADS_M: f64 = 0.03;

@@ -139,7 +139,7 @@ fn an_unknown_robot() {
     assert_scenario_refused(
         "[grip]",
         "[robot]\ndescription = \"backster\"\n\n[grip]",
-        "bad.toml:13: robot.description: found robot \"backster\", expected a built-in robot (baxter) or the path of a description file",
+        "bad.toml:13: robot.description: found robot \"backster\", expected a built-in robot (baxter, dual-panda, dual-ur5) or the path of a description file",
     );
 }
 
@@ -255,7 +255,7 @@ fn a_plan_for_an_unknown_robot() {
     assert_plan_refused(
         "\"robot\": \"baxter\"",
         "\"robot\": \"backster\"",
-        "bad.json:4: robot: found robot \"backster\", expected a built-in robot (baxter) or the path of a description file",
+        "bad.json:4: robot: found robot \"backster\", expected a built-in robot (baxter, dual-panda, dual-ur5) or the path of a description file",
     );
 }
 
