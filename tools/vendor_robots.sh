@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Describes, checks and runs robots as vendors publish them, and prints a table:
 #     tools/vendor_robots.sh FOLDER [NAME...]
-# FOLDER/robots has the unpacked package example-robot-data 6.0.0 (see docs/robot.md); `benchdog` is on the path. A robot with
-# two arms, or with a gripper, must hold a board under a drill of 10 N if its line ends with `holds`.
+# FOLDER/robots has the unpacked package example-robot-data 6.0.0 (see docs/robot.md); `benchdog` is on the path. A robot must
+# hold a board under a drill of 10 N if its line ends with `holds`.
 set -euo pipefail
 folder=$1
 shift
@@ -35,14 +35,14 @@ while read -r name urdf expected; do
 done <<'LIST'
 baxter baxter_description/urdf/baxter.urdf holds
 panda panda_description/urdf/panda.urdf holds
-ur5 ur_description/urdf/ur5_robot.urdf
-ur10 ur_description/urdf/ur10_robot.urdf
+ur5 ur_description/urdf/ur5_robot.urdf holds
+ur10 ur_description/urdf/ur10_robot.urdf holds
 pr2 pr2_description/urdf/pr2.urdf holds
 tiago-dual tiago_description/robots/tiago_dual.urdf holds
 tiago-pro tiago_pro_description/robots/tiago_pro.urdf holds
 icub icub_description/robots/icub.urdf
 talos talos_data/robots/talos_full_v2.urdf
-xarm7 xarm_description/urdf/xarm7.urdf
-kinova kinova_description/robots/kinova.urdf
+xarm7 xarm_description/urdf/xarm7.urdf holds
+kinova kinova_description/robots/kinova.urdf holds
 LIST
 exit "$failed"

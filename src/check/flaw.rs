@@ -471,7 +471,7 @@ fn point_on_board(found_m: &[f64; 3], [x, y, z]: &[f64; 3]) -> String {
 /// What is expected of a tool point on a plate.
 pub const ON_MATERIAL: &str = "a point of the plate, inside its outline and outside its holes";
 
-/// A tool point that is off the material of a plate, in words; `depth_m` as [`Plate::depth_m`] has it.
+/// A tool point that is off the material of a plate, in words; `depth_m` as [`Plate::depth_m`](crate::model::plate::Plate::depth_m) has it.
 #[must_use]
 pub fn off_material(x_m: f64, y_m: f64, depth_m: f64) -> String {
     format!("[{x_m}, {y_m}], {:.2} mm off the material", -depth_m * 1e3)

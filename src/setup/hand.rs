@@ -312,13 +312,9 @@ impl Scene<'_> {
         let tip = self.tip_link();
         let start_w = self.x_wl[last].translation.vector;
         let along_w = self.x_wl[tip].translation.vector - start_w;
-        let last_axis_w = self.run.joints.last().map_or_else(Vector3::z, |&joint| {
-            self.x_wl[self.robot.joints[joint].child_link].rotation * self.robot.joints[joint].axis_j.into_inner()
-        });
         let behind = self.behind_end();
-        let mass_w = self.mean_w(&behind).map(|mean_w| mean_w - start_w);
-        let wanted = along_w.try_normalize(0.005).or_else(|| mass_w.and_then(|along| along.try_normalize(0.005)));
-        let z_w = self.nearest_axis(&self.x_wl[last], &wanted.unwrap_or(last_axis_w));
+        let wanted = along_w.try_normalize(0.005).unwrap_or_else(|| self.outward_axis_w());
+        let z_w = self.nearest_axis(&self.x_wl[last], &wanted);
         let y_w = self.perpendicular(last, &z_w);
         let tip_w = self.x_wl[tip].translation.vector;
         let points = behind.iter().flat_map(|&link| self.points_w(link));
@@ -339,6 +335,15 @@ impl Scene<'_> {
             pad_centre_m: [0.0, (centre_m * 1e3).round() / 1e3],
             remark: Some(remark),
         }
+    }
+
+    /// The axis of the last joint, away from the joint before it.
+    fn outward_axis_w(&self) -> Vector3<f64> {
+        let frame = |joint: usize| self.x_wl[self.robot.joints[joint].child_link];
+        let [.., before, last] = self.run.joints[..] else { return Vector3::z() };
+        let axis_w = frame(last).rotation * self.robot.joints[last].axis_j.into_inner();
+        let outward = axis_w.dot(&(frame(last).translation.vector - frame(before).translation.vector));
+        if outward < 0.0 { -axis_w } else { axis_w }
     }
 
     /// The link at the end of the run that is farthest from its last joint.
