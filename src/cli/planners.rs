@@ -11,13 +11,13 @@ use super::{exit::CliError, interrupt};
 use crate::{
     model::{plan::Plan, scenario::Scenario},
     planner::{Observer, Outcome, Planner},
-    robot::Robot,
+    robot::{Robot, RobotOptions},
 };
 
 /// One planner per robot: scenarios with the same robot share its maps.
 #[derive(Default)]
 pub struct Planners {
-    known: Mutex<Vec<(String, Arc<Planner>)>>,
+    known: Mutex<Vec<(RobotKey, Arc<Planner>)>>,
     /// Time that the maps of each scenario took to make, ms.
     map_ms: Mutex<HashMap<String, f64>>,
 }
@@ -26,11 +26,12 @@ impl Planners {
     /// The planner of a robot.
     pub fn of(&self, robot: &Robot) -> Arc<Planner> {
         let mut known = lock(&self.known);
-        if let Some((_, planner)) = known.iter().find(|(description, _)| *description == robot.description) {
+        let key = (robot.description.clone(), robot.options.clone());
+        if let Some((_, planner)) = known.iter().find(|(other, _)| *other == key) {
             return planner.clone();
         }
         let planner = Arc::new(Planner::new(robot));
-        known.push((robot.description.clone(), planner.clone()));
+        known.push((key, planner.clone()));
         planner
     }
 
@@ -81,7 +82,29 @@ impl Planners {
     }
 }
 
+/// A robot's description and with what it was loaded: another posture of idle joints is another robot to a planner.
+type RobotKey = (String, RobotOptions);
+
 /// The tables stay valid if a thread panics: they only change by whole entries.
 fn lock<T>(table: &Mutex<T>) -> MutexGuard<'_, T> {
     table.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn a_robot_in_another_posture_has_a_planner_of_its_own() {
+        let load = |head_pan_rad: f64| {
+            let options =
+                RobotOptions { posture: [("head_pan".to_owned(), head_pan_rad)].into(), ..RobotOptions::default() };
+            Robot::load_with("baxter", Path::new(""), &options).unwrap()
+        };
+        let planners = Planners::default();
+        let [ahead, again, aside] = [0.0, 0.0, 0.5].map(|head_pan_rad| planners.of(&load(head_pan_rad)));
+        assert!(Arc::ptr_eq(&ahead, &again) && !Arc::ptr_eq(&ahead, &aside));
+    }
 }

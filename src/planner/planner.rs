@@ -88,7 +88,7 @@ impl Planner {
         if let Some(maps) = kept(&lock(&self.maps)) {
             return maps;
         }
-        let library = GraspLibrary::new(&self.robot, &board, scenario.limits.clearance_m());
+        let library = GraspLibrary::new(&self.robot.at_gap(board.thickness_m()), &board, scenario.limits.clearance_m());
         let made = Maps {
             board: board.clone(),
             clearance_mm,
