@@ -256,6 +256,7 @@ impl Robot {
             }
         }
         robot.description.clone_from(&self.description);
+        robot.files.clone_from(&self.files);
         robot.with_linkages = Some(Arc::clone(original));
         robot
     }

@@ -77,7 +77,7 @@ pub fn middle(robot: &Robot) -> Vec<Vec<f64>> {
     robot.arms.iter().map(|arm| arm.joints.iter().map(of_joint).collect()).collect()
 }
 
-/// The joint positions of all arms at these angles, with half-open grippers.
+/// The joint positions of all arms at these angles, with grippers at a share of the travel of their fingers.
 pub fn positions(robot: &Robot, q_rad: &[Vec<f64>], open: f64) -> Vec<f64> {
     let states = robot.arms.iter().enumerate().zip(q_rad).map(|((arm, of), q_rad)| ArmState {
         arm,
@@ -113,11 +113,11 @@ pub(super) fn allowed(robot: &Robot, disabled: Option<&[[String; 2]]>) -> Vec<Al
             reasons.entry(links).or_insert(Reason::Often);
         }
     }
-    let near = model.links_nearer_than(&robot.link_poses(&positions(robot, &middle(robot), 0.5)), NEIGHBOURS_M);
+    let in_the_middle = robot.link_poses(&positions(robot, &middle(robot), 0.5));
+    let near = model.links_nearer_than(&in_the_middle, NEIGHBOURS_M);
     for links in near.into_iter().filter(|links| adjacent.contains(links)) {
         reasons.entry(links).or_insert(Reason::Adjacent);
     }
-    let in_the_middle = robot.link_poses(&positions(robot, &middle(robot), 0.5));
     for links in model.overlapping_links(&in_the_middle) {
         reasons.entry(links).or_insert(Reason::Middle);
     }

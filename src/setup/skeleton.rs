@@ -30,7 +30,7 @@ struct Group {
     joints: Vec<usize>,
 }
 
-/// The runs that are long enough for an arm and not named after something else, longest reach first; at most four.
+/// The runs that are long enough for an arm and not named after something else, in the order of the URDF; at most four.
 pub(super) fn arms(robot: &Robot) -> Vec<Run> {
     let group_of = group_of_links(robot);
     let mut runs = Vec::new();

@@ -112,8 +112,12 @@ fn a_scenarios_posture_comes_before_the_descriptions() {
     assert_relative_eq!(column.translation.z, 0.2 + 0.1 + 0.1, epsilon = 1e-15);
     for (joint, position, expected) in [
         ("lift", 0.5, "posture: found 0.5 for lift, expected 0 to 0.4"),
-        ("cable", 0.1, "posture: found cable, expected a joint that follows no other"),
-        ("hoist", 0.1, "posture: found \"hoist\", expected the name of a joint of the urdf that moves"),
+        ("cable", 0.1, "robot.toml: posture of the scenario: found cable, expected a joint that follows no other"),
+        (
+            "hoist",
+            0.1,
+            "robot.toml: posture of the scenario: found \"hoist\", expected the name of a joint of the urdf that moves",
+        ),
     ] {
         let error = load_with(&description(LINKAGE), &urdf(), &posture(joint, position)).unwrap_err();
         assert!(error.contains(expected), "{error}");
@@ -197,6 +201,14 @@ proptest! {
         let there = pose(&rail().at_gap(other_m), other_m, "right_tip").translation.vector;
         prop_assert!((slid.y - there.y).abs() < 1e-13 && (slid.z - found.translation.z).abs() < 1e-13);
     }
+}
+
+/// A command protects all files that it has read, also those of a robot whose linkage it holds at another gap.
+#[test]
+fn a_robot_at_another_gap_was_read_from_the_same_files() {
+    let robot = rail();
+    assert_eq!(robot.files.len(), 2, "{:?}", robot.files);
+    assert_eq!(robot.at_gap(0.03).files, robot.files);
 }
 
 #[test]

@@ -170,30 +170,37 @@ impl Assembler<'_> {
     fn pose(&mut self, description: &Description, posture: &BTreeMap<String, f64>) {
         for (name, position) in &description.posture {
             let given = posture.get(name.get_ref()).unwrap_or(position.get_ref());
-            self.pose_joint(name.get_ref(), *given, name.span(), "posture");
+            let problem = self.pose_joint(name.get_ref(), *given);
+            if let Some(problem) = problem {
+                self.problem(name.span(), format!("posture: {problem}"));
+            }
         }
-        // Those of a scenario have been checked with the scenario only as numbers.
         for (name, position) in posture {
             if description.posture.keys().all(|known| known.get_ref() != name) {
-                self.pose_joint(name, *position, 0..0, "robot.posture");
+                if let Some(problem) = self.pose_joint(name, *position) {
+                    // It is in another file, whose key the caller names.
+                    self.faults.add_to(self.source.file, format!("posture of the scenario: {problem}"));
+                }
             }
         }
     }
 
-    fn pose_joint(&mut self, name: &str, position: f64, span: Range<usize>, key: &str) {
+    /// Sets the rest position of a joint; what was found and expected if it cannot have it.
+    fn pose_joint(&mut self, name: &str, position: f64) -> Option<String> {
         let joint = self.robot.joints.iter().position(|joint| joint.name == name);
         let moves = |joint: &usize| self.robot.joints[*joint].kind != JointKind::Fixed;
         let Some(index) = joint.filter(moves) else {
-            return self.fault(span, key, format!("\"{name}\""), "the name of a joint of the urdf that moves");
+            return Some(format!("found \"{name}\", expected the name of a joint of the urdf that moves"));
         };
         let joint = &mut self.robot.joints[index];
         if joint.mimic.is_some() {
-            return self.fault(span, key, name, "a joint that follows no other");
+            return Some(format!("found {name}, expected a joint that follows no other"));
         }
         let [lower, upper] = [joint.lower, joint.upper];
         if !(lower..=upper).contains(&position) {
-            return self.fault(span, key, format!("{position} for {name}"), format!("{lower} to {upper}"));
+            return Some(format!("found {position} for {name}, expected {lower} to {upper}"));
         }
         joint.rest = position;
+        None
     }
 }
