@@ -26,25 +26,28 @@ const FARTHER_M: f64 = 0.002;
 /// The board that is put into each gripper: its width and height, m.
 const BOARD_M: f64 = 0.3;
 
+/// Two links and the share of the random postures in which they overlap.
+pub(super) type Often = ([usize; 2], f64);
+
 /// The links with hulls of meshes that overlap others often, but not always, and not only their neighbours; or that are near a
-/// board in the gripper.
-pub(super) fn in_the_way(robot: &Robot) -> Vec<usize> {
+/// board in the gripper. `often` is that of the robot.
+pub(super) fn in_the_way(robot: &Robot, often: &[Often]) -> Vec<usize> {
     let is_hull = |link: &usize| {
         let shapes = &robot.links[*link].shapes;
         shapes.iter().any(|placed| matches!(placed.shape, Shape::Hull(_)))
     };
-    let pairs = often(robot).into_iter().flat_map(|(links, _)| links);
+    let pairs = often.iter().flat_map(|(links, _)| *links);
     let links: BTreeSet<usize> = pairs.chain(near_boards(robot).into_keys()).filter(is_hull).collect();
     links.into_iter().collect()
 }
 
-/// Of the links that were decomposed those for which it was worth it.
-pub(super) fn worth_decomposing(hulls: &Robot, parts: &Robot, decomposed: &[usize]) -> Vec<usize> {
+/// Of the links that were decomposed those for which it was worth it. `often` is that of the robot with hulls.
+pub(super) fn worth_decomposing(hulls: &Robot, often: &[Often], parts: &Robot, decomposed: &[usize]) -> Vec<usize> {
     let after: BTreeMap<[usize; 2], f64> = Overlaps::of(parts).shares.into_iter().collect();
-    let better: Vec<[usize; 2]> = often(hulls)
-        .into_iter()
+    let better: Vec<[usize; 2]> = often
+        .iter()
         .filter(|(links, before)| after.get(links).copied().unwrap_or_default() <= (1.0 - WORTH) * before)
-        .map(|(links, _)| links)
+        .map(|(links, _)| *links)
         .collect();
     let (before, after) = (near_boards(hulls), near_boards(parts));
     let is_farther = |link: &usize| {
@@ -56,7 +59,7 @@ pub(super) fn worth_decomposing(hulls: &Robot, parts: &Robot, decomposed: &[usiz
 }
 
 /// Pairs that are not neighbours and overlap often, but not always, and their shares of the random postures.
-fn often(robot: &Robot) -> Vec<([usize; 2], f64)> {
+pub(super) fn often(robot: &Robot) -> Vec<Often> {
     let adjacent = adjacent(robot);
     let shares = Overlaps::of(robot).shares.into_iter();
     shares.filter(|(links, share)| (IN_THE_WAY..ALWAYS).contains(share) && !adjacent.contains(links)).collect()

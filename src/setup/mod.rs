@@ -92,9 +92,10 @@ pub fn setup(input: &SetupInput, folder: &Path) -> Result<Setup, SetupError> {
     };
     let yaw_deg = place::yaw_deg(&with(0.0, &[])?);
     let mut robot = with(yaw_deg, &[])?;
-    let mut decompose = hulls::in_the_way(&robot);
+    let often = hulls::often(&robot);
+    let mut decompose = hulls::in_the_way(&robot, &often);
     if !decompose.is_empty() {
-        decompose = hulls::worth_decomposing(&robot, &with(yaw_deg, &decompose)?, &decompose);
+        decompose = hulls::worth_decomposing(&robot, &often, &with(yaw_deg, &decompose)?, &decompose);
         robot = with(yaw_deg, &decompose)?;
     }
     let floor_z_m = place::floor_z_m(&robot);

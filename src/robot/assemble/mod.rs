@@ -176,11 +176,11 @@ impl Assembler<'_> {
             }
         }
         for (name, position) in posture {
-            if description.posture.keys().all(|known| known.get_ref() != name) {
-                if let Some(problem) = self.pose_joint(name, *position) {
-                    // It is in another file, whose key the caller names.
-                    self.faults.add_to(self.source.file, format!("posture of the scenario: {problem}"));
-                }
+            if description.posture.keys().all(|known| known.get_ref() != name)
+                && let Some(problem) = self.pose_joint(name, *position)
+            {
+                // It is in another file, whose key the caller names.
+                self.faults.add_to(self.source.file, format!("posture of the scenario: {problem}"));
             }
         }
     }
