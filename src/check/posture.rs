@@ -12,6 +12,7 @@ use crate::{
     collision::Scene,
     human::Standing,
     model::{
+        muscle_work::MuscleWork,
         plan::{PostureConstraint, PostureFigures, exceeded_scores},
         scenario::Limits,
     },
@@ -29,6 +30,14 @@ impl CheckedPlan<'_> {
         let free_share = self.collision().free_share_of_sight(&scene, &eye_w, &tip_w);
         let normal_t = plan.operation.face_normal_t(plan.object.size_m[2]);
         Some(human.posture_figures(&posture.q_rad, &normal_t, free_share))
+    }
+
+    /// What the muscles of the person's working arm do; `None` without a person.
+    #[must_use]
+    pub fn muscles(&self) -> Option<MuscleWork> {
+        let (CheckedPerson { posture, human }, plan) = (self.person()?, self.plan());
+        let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
+        human.muscle_work(&posture.q_rad, &posture.x_wb, &wrench_w)
     }
 
     /// Why the person would not stand so, not see the work, or not stand there, as a reason in words: each flaw after its name.

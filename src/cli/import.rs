@@ -182,6 +182,7 @@ fn plan_of(
         arms: holds.iter().zip(q_rad).map(arm).collect(),
         human: None,
         comfort: None,
+        muscles: None,
         stability: None,
         clearance: None,
         planner: None,

@@ -68,20 +68,27 @@ pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan, filled_in: &[Str
 
 fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
     let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
-    let posture = checked.posture();
+    let (posture, muscles) = (checked.posture(), checked.muscles());
+    let (verdict, simulated) = checked_and_judged(&checked, scenario)?;
+    Ok(Run { verdict: Verdict { muscles, ..verdict }, posture, plan: Some(plan), simulated })
+}
+
+/// The verdict on a plan with trace and judgement, if it was simulated.
+fn checked_and_judged(
+    checked: &CheckedPlan<'_>,
+    scenario: &Scenario,
+) -> Result<(Verdict, Option<(Trace, Judgement)>), CliError> {
     if let Some(contact) = checked.first_contact(0.0) {
-        let verdict = verdict_without_simulation(scenario, contact.verdict, contact.reason);
-        return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
+        return Ok((verdict_without_simulation(scenario, contact.verdict, contact.reason), None));
     }
     if let Some(reason) = checked.why_not_so(&scenario.limits) {
-        let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, reason);
-        return Ok(Run { verdict, posture, plan: Some(plan), simulated: None });
+        return Ok((verdict_without_simulation(scenario, VerdictKind::Infeasible, reason), None));
     }
-    let (trace, judgement) = simulated_and_judged(&checked, scenario)?;
+    let (trace, judgement) = simulated_and_judged(checked, scenario)?;
+    let plan = checked.plan();
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
-    let verdict = Verdict { notes: notes(scenario, &plan), ..verdict };
-    Ok(Run { verdict, posture, plan: Some(plan), simulated: Some((trace, judgement)) })
+    Ok((Verdict { notes: notes(scenario, plan), ..verdict }, Some((trace, judgement))))
 }
 
 /// The simulation of a plan and its judgement, confirmed at shorter time steps if it is near to a limit. A grasp that holds
@@ -141,6 +148,7 @@ fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason:
         confirmation: None,
         reason: Some(reason),
         notes: Vec::new(),
+        muscles: None,
         versions: versions(),
         seed: scenario.planner.seed,
         fingerprint: String::new(),

@@ -28,6 +28,7 @@ pub fn posture_comfort(
     let Muscular { activations, regularised, .. } = match settings.muscular {
         MuscularMetric::Paper => paper,
         MuscularMetric::Intrinsic => intrinsic,
+        MuscularMetric::Muscles => human.muscular(q_rad, x_wb, wrench_w, settings),
     };
     let body = human.body_points_w(x_wb, q_rad);
     let peripersonal_m = peripersonal_m(settings.peripersonal, settings.saturation_m, &body, robot_points_w);

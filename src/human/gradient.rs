@@ -23,7 +23,8 @@ use super::{
     arm::{Arm, ArmFrames},
     body::Body,
     intrinsic::Shoulder,
-    muscular::{self, JointTorques, Muscular},
+    muscles::{ArmLoad, Muscles},
+    muscular::{self, Ability, JointTorques, Muscular},
     ranges::ArmAngles,
     strength::{Sense, Strength},
 };
@@ -81,26 +82,29 @@ struct Force {
 pub(super) fn muscular_gradient(
     arm: &Arm,
     body: &Body,
-    strength: &Strength,
+    ability: &Ability,
     q_rad: &ArmAngles,
     load: &Load<'_>,
     settings: &ComfortSettings,
 ) -> MuscularGradient {
     let frames = arm.frames(q_rad);
     let torques = muscular::joint_torques(arm, body, load.tool_kg, &frames, load.wrench_b, load.gravity_b);
-    let muscular = torques.muscular(q_rad, &frames.r_bu, strength, settings);
     let point = Point {
         p_bt_m: frames.hand_point_b(&arm.x_ht.translation.vector),
         weights: holding_forces(body, &frames, load),
         frames,
         wrench_b: load.wrench_b,
     };
+    if settings.muscular == MuscularMetric::Muscles {
+        return point.gradient_of_muscles(&torques, q_rad, &ability.muscles);
+    }
+    let (strength, muscular) = (&ability.strength, torques.muscular(q_rad, &point.frames.r_bu, ability, settings));
     let of_joint = |joint: usize, sense: Sense| {
         let (total_nm, activation) = (torques.total_nm()[joint], muscular.activations[joint]);
         point.activation_slopes(joint, q_rad[joint], total_nm, activation, strength, sense)
     };
     let activations: [[f64; 7]; 7] = match settings.muscular {
-        MuscularMetric::Paper => {
+        MuscularMetric::Paper | MuscularMetric::Muscles => {
             let senses = torques.senses(q_rad, strength, settings.direction);
             std::array::from_fn(|joint| of_joint(joint, senses[joint]))
         }
@@ -155,8 +159,8 @@ impl Point<'_> {
             let turn = if joint < 3 { *axis_b } else { Vector3::zeros() };
             let shoulder = Shoulder {
                 r_vu: &self.frames.r_bu,
-                moment_nm: torques.shoulder_v_nm,
-                moment_slope: self.shoulder_moment_slope(joint),
+                moment_nm: torques.shoulder_v_nm(),
+                moment_slope: self.moment_slope(0, joint),
                 turn,
             };
             for (row, square) in shoulder.squares(strength).into_iter().enumerate() {
@@ -168,16 +172,37 @@ impl Point<'_> {
         slopes
     }
 
-    /// Derivative of the moment about the shoulder by a joint, N m/rad.
-    fn shoulder_moment_slope(&self, joint: usize) -> Vector3<f64> {
+    /// The comfort of the muscles and its derivatives by all joints.
+    fn gradient_of_muscles(&self, torques: &JointTorques, q_rad: &ArmAngles, muscles: &Muscles) -> MuscularGradient {
+        let ArmFrames { axes_b, r_bu, .. } = &self.frames;
+        let load = ArmLoad { r_vu: r_bu, q_rad, moments_nm: &torques.moments_v_nm };
+        let slopes_nm = std::array::from_fn(|joint| [0, 1, 2].map(|centre| self.moment_slope(centre, joint)));
+        let found = muscles.effort_slopes(&load, [&axes_b[0], &axes_b[1], &axes_b[2]], &slopes_nm);
+        let muscular = Muscular::of_muscles(found.as_ref().map(|found| &found.effort));
+        found.map_or(MuscularGradient { muscular, regularised: [0.0; 7], activations: [[0.0; 7]; 7] }, |found| {
+            let regularised = found.effort_slopes.map(|slope| -muscular.regularised.powi(2) * slope);
+            MuscularGradient { muscular, regularised, activations: found.missing_slopes }
+        })
+    }
+
+    /// Derivative of the moment about the shoulder (0), the elbow (1) or the wrist (2) by a joint, N m/rad.
+    fn moment_slope(&self, centre: usize, joint: usize) -> Vector3<f64> {
         let Self { frames, p_bt_m, weights, wrench_b } = self;
         let (axis, origin) = (&frames.axes_b[joint], frames.joint_origin_m(joint));
         let Wrench { force_n, moment_nm } = wrench_b;
+        // The centre itself moves with the joints before it.
+        let (p_bc_m, first_beyond) = match centre {
+            0 => (&frames.p_bs_m, 0),
+            1 => (&frames.p_be_m, 3),
+            _ => (&frames.p_bw_m, 4),
+        };
+        let moved = if joint < first_beyond { p_bc_m } else { origin };
         let of_wrench = axis.cross(moment_nm)
-            + axis.cross(&(p_bt_m - origin)).cross(force_n)
-            + (p_bt_m - frames.p_bs_m).cross(&axis.cross(force_n));
-        let of_weight = |force: &Force| axis.cross(&(force.p_b_m - origin)).cross(&force.force_n);
-        of_wrench + beyond(weights, joint).iter().map(of_weight).sum::<Vector3<f64>>()
+            + axis.cross(&(p_bt_m - moved)).cross(force_n)
+            + (p_bt_m - p_bc_m).cross(&axis.cross(force_n));
+        let of_weight = |force: &Force| axis.cross(&(force.p_b_m - moved)).cross(&force.force_n);
+        let turned = beyond(weights, joint.max(first_beyond));
+        of_wrench + turned.iter().map(of_weight).sum::<Vector3<f64>>()
     }
 }
 

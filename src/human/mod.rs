@@ -12,6 +12,7 @@
 //! | [`swivel`] | inverse kinematics, intervals of the swivel |
 //! | [`strength`] | largest torque of each joint |
 //! | [`muscular`] | joint torques, activations, muscular comfort |
+//! | [`muscles`] | which muscles work, and how hard |
 //! | [`gradient`] | derivatives by the joint angles |
 //! | [`peripersonal`] | peripersonal comfort |
 //! | [`ranges`] | ranges of the arm's joints, swing and twist of the shoulder |
@@ -27,6 +28,7 @@ pub mod arm;
 pub mod body;
 pub mod gradient;
 mod intrinsic;
+pub mod muscles;
 pub mod muscular;
 pub mod peripersonal;
 pub mod place;
@@ -50,6 +52,7 @@ mod tests;
 pub use arm::{Arm, ArmFrames};
 pub use body::{Body, MAX_LEAN_DEG, standing_pose_w};
 pub use gradient::{ArmAxes, MuscularGradient};
+pub use muscles::{MuscleEffort, MuscleProgram, Muscles};
 pub use muscular::{JointTorques, Muscular, MuscularFigures};
 pub use peripersonal::{Distances, Pull, peripersonal_m, peripersonal_pulls};
 pub use place::Standing;
@@ -62,10 +65,11 @@ pub use tools::{default_tool, named_tool, paper_tool};
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
-use self::mirror::Mirrored;
+use self::{mirror::Mirrored, muscular::Ability};
 use crate::model::{
     GRAVITY_W,
     frames::{Pose, rotation_from_xyzw},
+    muscle_work::MuscleWork,
     scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StandingPlace, StrengthDirection, Tool},
     wrench::Wrench,
 };
@@ -100,7 +104,7 @@ pub struct Human {
     hand: Hand,
     body: Body,
     arm: Arm,
-    strength: Strength,
+    ability: Ability,
     tool_kg: f64,
     /// Anatomical ranges of the arm; those of `arm` may be narrower.
     anatomy: ArmRanges,
@@ -137,12 +141,13 @@ impl Human {
             }
         }
         let strength = Strength::new(person.sex, person.percentile);
+        let ability = Ability { strength, muscles: Muscles::new(person) };
         let x_bv = body.x_bv();
         Ok(Self {
             hand: person.hand,
             body,
             arm,
-            strength,
+            ability,
             tool_kg: tool.mass_kg,
             anatomy,
             posture: person.posture,
@@ -173,7 +178,7 @@ impl Human {
 
     /// The strengths of the working arm.
     pub fn strength(&self) -> &Strength {
-        &self.strength
+        &self.ability.strength
     }
 
     /// Pose of the working shoulder's frame S in B. S has the axes of V.
@@ -232,16 +237,16 @@ impl Human {
         wrench_w: &Wrench,
         direction: StrengthDirection,
     ) -> [f64; 7] {
-        self.joint_torques(q_rad, x_wb, wrench_w).activations(q_rad, &self.strength, direction)
+        self.joint_torques(q_rad, x_wb, wrench_w).activations(q_rad, &self.ability.strength, direction)
     }
 
     /// The muscular comfort of a posture by the metric of the settings; arguments as for [`Self::joint_torques`].
     pub fn muscular(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench, settings: &ComfortSettings) -> Muscular {
         let frames = self.arm.frames(q_rad);
-        self.torques_at(&frames, x_wb, wrench_w).muscular(q_rad, &frames.r_bu, &self.strength, settings)
+        self.torques_at(&frames, x_wb, wrench_w).muscular(q_rad, &frames.r_bu, &self.ability, settings)
     }
 
-    /// The muscular comfort of a posture by both metrics; arguments as for [`Self::muscular`].
+    /// The muscular comfort of a posture by the metrics of joint strengths; arguments as for [`Self::muscular`].
     pub fn muscular_figures(
         &self,
         q_rad: &ArmAngles,
@@ -251,14 +256,25 @@ impl Human {
     ) -> MuscularFigures {
         let frames = self.arm.frames(q_rad);
         let torques = self.torques_at(&frames, x_wb, wrench_w);
-        let by = |muscular| {
-            torques.muscular(q_rad, &frames.r_bu, &self.strength, &ComfortSettings { muscular, ..*settings })
-        };
+        let by =
+            |muscular| torques.muscular(q_rad, &frames.r_bu, &self.ability, &ComfortSettings { muscular, ..*settings });
         MuscularFigures {
             paper: by(MuscularMetric::Paper),
             intrinsic: by(MuscularMetric::Intrinsic),
             shoulder: torques.shoulder_moment(&frames.r_bu),
         }
+    }
+
+    /// What the muscles of the working arm can do and have to; arguments as for [`Self::joint_torques`].
+    pub fn muscle_program(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench) -> MuscleProgram {
+        let frames = self.arm.frames(q_rad);
+        self.torques_at(&frames, x_wb, wrench_w).muscle_program(q_rad, &frames.r_bu, &self.ability.muscles)
+    }
+
+    /// What the muscles of the working arm do in a plan; `None` if a number is not finite. Arguments as for
+    /// [`Self::joint_torques`].
+    pub fn muscle_work(&self, q_rad: &ArmAngles, x_wb: &Pose, wrench_w: &Wrench) -> Option<MuscleWork> {
+        self.muscle_program(q_rad, x_wb, wrench_w).solve().map(|effort| effort.work())
     }
 
     /// The muscular comfort of a posture and its derivatives by the arm's angles, for a wrench about the tool tip that is
@@ -274,7 +290,7 @@ impl Human {
         let wrench_b = Wrench::new(r_bt * wrench_t.force_n, r_bt * wrench_t.moment_nm);
         let (wrench_v, gravity_v) = self.loads_v(&Pose::identity(), &wrench_b);
         let load = gradient::Load { tool_kg: self.tool_kg, wrench_b: &wrench_v, gravity_b: &gravity_v };
-        gradient::muscular_gradient(&self.arm, &self.body, &self.strength, q_rad, &load, settings)
+        gradient::muscular_gradient(&self.arm, &self.body, &self.ability, q_rad, &load, settings)
     }
 
     /// The axes of the working arm's joints in W, positive towards larger angles.

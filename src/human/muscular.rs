@@ -8,6 +8,7 @@ use super::{
     arm::{Arm, ArmFrames},
     body::Body,
     intrinsic::{self, CO_CONTRACTION, Shoulder},
+    muscles::{ArmLoad, MuscleEffort, MuscleProgram, Muscles},
     ranges::ArmAngles,
     strength::{Sense, Strength},
 };
@@ -19,10 +20,22 @@ use crate::model::{
 
 /// Regularisation of the muscular comfort: the sum of squares of a resting co-contraction of 3.8 % in each of seven joints.
 /// Bounds the comfort by 100 where gravity and load cancel.
-const RESTING: f64 = 0.01;
+pub(super) const RESTING: f64 = 0.01;
+
+/// Sum of squares of a resting tone of 2 % in each of 50 muscles. Bounds the comfort by 50.
+const MUSCLE_TONE: f64 = 0.02;
 
 /// Torques below this have no direction, since they are rounding errors, N m.
 const NO_SENSE_NM: f64 = 1e-9;
+
+/// What a person's arm can do.
+#[derive(Clone, Debug)]
+pub(super) struct Ability {
+    /// Of its joints.
+    pub strength: Strength,
+    /// Of its muscles.
+    pub muscles: Muscles,
+}
 
 /// The torques of the arm's joints, N m, positive towards larger angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,23 +44,25 @@ pub struct JointTorques {
     pub operation_nm: [f64; 7],
     /// `g(q)`: torques that hold upper arm, forearm, hand and tool against gravity.
     pub gravity_nm: [f64; 7],
-    /// The whole moment about the shoulder, of which the first three torques are parts: V axes, N m.
-    pub shoulder_v_nm: Vector3<f64>,
+    /// The whole moments about shoulder, elbow and wrist, of which the torques are parts: V axes, N m.
+    pub moments_v_nm: [Vector3<f64>; 3],
 }
 
-/// The muscular comfort of a posture under a load, by one of the two metrics.
+/// The muscular comfort of a posture under a load, by one of the three metrics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muscular {
-    /// Torque over strength, `alpha_i = |tau_i| / tau_max,i`: of each joint, or with the intrinsic metric of raising the upper
-    /// arm, moving it horizontally, turning it about itself, and of the four joints beyond.
+    /// What may be at most 1. Torque over strength, `alpha_i = |tau_i| / tau_max,i`: of each joint, or with the intrinsic metric
+    /// of raising the upper arm, moving it horizontally, turning it about itself, and of the four joints beyond. With the
+    /// muscles the moments that they cannot exert, over 0.1 N m: about x, y, z of V at the shoulder, then of elbow, pronation,
+    /// deviation, flexion of the wrist.
     pub activations: [f64; 7],
-    /// `1 / ||alpha||^2`; infinite if all activations are zero.
+    /// One over the effort, `||alpha||^2` or the muscles' sum of squares; infinite if that is zero.
     pub printed: f64,
-    /// `1 / (||alpha||^2 + eps)`, eps = 0.01 (paper) or 0.0175 (intrinsic).
+    /// `1 / (effort + eps)`, eps = 0.01 (paper), 0.0175 (intrinsic) or 0.02 (muscles).
     pub regularised: f64,
 }
 
-/// The muscular comfort of a posture by both metrics.
+/// The muscular comfort of a posture by the two metrics of joint strengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MuscularFigures {
     /// As printed in the paper.
@@ -59,13 +74,20 @@ pub struct MuscularFigures {
 }
 
 impl Muscular {
-    /// The comfort of these activations by a metric.
-    pub fn of(activations: [f64; 7], metric: MuscularMetric) -> Self {
-        let effort: f64 = activations.iter().map(|alpha| alpha * alpha).sum();
-        let resting = match metric {
-            MuscularMetric::Paper => RESTING,
-            MuscularMetric::Intrinsic => CO_CONTRACTION,
-        };
+    /// The comfort of these activations with the resting co-contraction of a metric, a sum of squares.
+    pub fn of(activations: [f64; 7], resting: f64) -> Self {
+        Self::of_effort(activations, activations.iter().map(|alpha| alpha * alpha).sum(), resting)
+    }
+
+    /// The comfort of the muscles; none if there is no optimum, which finite numbers always have.
+    pub fn of_muscles(effort: Option<&MuscleEffort>) -> Self {
+        match effort {
+            Some(effort) => Self::of_effort(effort.missing_shares(), effort.effort, MUSCLE_TONE),
+            None => Self::of_effort([f64::INFINITY; 7], f64::INFINITY, MUSCLE_TONE),
+        }
+    }
+
+    fn of_effort(activations: [f64; 7], effort: f64, resting: f64) -> Self {
         Self { activations, printed: 1.0 / effort, regularised: 1.0 / (effort + resting) }
     }
 }
@@ -76,6 +98,11 @@ impl JointTorques {
         std::array::from_fn(|i| self.operation_nm[i] + self.gravity_nm[i])
     }
 
+    /// The whole moment about the shoulder, V axes, N m.
+    pub fn shoulder_v_nm(&self) -> Vector3<f64> {
+        self.moments_v_nm[0]
+    }
+
     /// Torque over strength of each joint. The strength is that in the sense of the operation's torque (`paper`) or of the
     /// total torque (`torque`), and the smaller of both if that torque is zero (docs/method.md#47-direction-of-motion).
     pub fn activations(&self, q_rad: &ArmAngles, strength: &Strength, direction: StrengthDirection) -> [f64; 7] {
@@ -84,23 +111,33 @@ impl JointTorques {
     }
 
     /// The muscular comfort by the metric of the settings.
-    pub fn muscular(
+    pub(super) fn muscular(
         &self,
         q_rad: &ArmAngles,
         r_vu: &Matrix3<f64>,
-        strength: &Strength,
+        ability: &Ability,
         settings: &ComfortSettings,
     ) -> Muscular {
-        let activations = match settings.muscular {
-            MuscularMetric::Paper => self.activations(q_rad, strength, settings.direction),
-            MuscularMetric::Intrinsic => self.intrinsic_activations(q_rad, r_vu, strength),
-        };
-        Muscular::of(activations, settings.muscular)
+        let strength = &ability.strength;
+        match settings.muscular {
+            MuscularMetric::Paper => Muscular::of(self.activations(q_rad, strength, settings.direction), RESTING),
+            MuscularMetric::Intrinsic => {
+                Muscular::of(self.intrinsic_activations(q_rad, r_vu, strength), CO_CONTRACTION)
+            }
+            MuscularMetric::Muscles => {
+                Muscular::of_muscles(self.muscle_program(q_rad, r_vu, &ability.muscles).solve().as_ref())
+            }
+        }
+    }
+
+    /// What the muscles can do and have to.
+    pub(super) fn muscle_program(&self, q_rad: &ArmAngles, r_vu: &Matrix3<f64>, muscles: &Muscles) -> MuscleProgram {
+        muscles.program(&ArmLoad { r_vu, q_rad, moments_nm: &self.moments_v_nm })
     }
 
     /// The moment about the shoulder and its parts.
     pub fn shoulder_moment(&self, r_vu: &Matrix3<f64>) -> ShoulderMoment {
-        let moment_v_nm = self.shoulder_v_nm;
+        let moment_v_nm = self.shoulder_v_nm();
         let [raising_nm, horizontal_nm, axial_nm] = intrinsic::parts_nm(r_vu, &moment_v_nm);
         ShoulderMoment { moment_v_nm: moment_v_nm.into(), raising_nm, horizontal_nm, axial_nm }
     }
@@ -108,7 +145,7 @@ impl JointTorques {
     /// The activations of the intrinsic metric: of the shoulder's three parts, then torque over strength of each joint beyond, the
     /// strength in the sense of the joint's own torque.
     pub fn intrinsic_activations(&self, q_rad: &ArmAngles, r_vu: &Matrix3<f64>, strength: &Strength) -> [f64; 7] {
-        let (zero, moment_nm) = (Vector3::zeros(), self.shoulder_v_nm);
+        let (zero, moment_nm) = (Vector3::zeros(), self.shoulder_v_nm());
         let shoulder = Shoulder { r_vu, moment_nm, moment_slope: zero, turn: zero }.squares(strength);
         std::array::from_fn(|joint| match shoulder.get(joint) {
             Some(square) => square.value.sqrt(),
@@ -177,7 +214,7 @@ pub fn joint_torques(
     JointTorques {
         operation_nm: about_axes(&exerting),
         gravity_nm: about_axes(&holding),
-        shoulder_v_nm: exerting[0] + holding[0],
+        moments_v_nm: std::array::from_fn(|joint| exerting[joint] + holding[joint]),
     }
 }
 
@@ -323,8 +360,7 @@ mod tests {
                 let q_rad = random_angles(human.arm(), &mut generator);
                 let printed = |factor: f64| {
                     let torques = torques(&human, 1.3, &q_rad, &wrench.scaled(factor), &NO_GRAVITY);
-                    Muscular::of(torques.activations(&q_rad, human.strength(), direction), MuscularMetric::Paper)
-                        .printed
+                    Muscular::of(torques.activations(&q_rad, human.strength(), direction), RESTING).printed
                 };
                 assert!((printed(1.0) / printed(3.0) - 9.0).abs() < 1e-12);
             }
@@ -333,14 +369,14 @@ mod tests {
 
     #[test]
     fn the_metric_by_hand() {
-        let muscular = Muscular::of([0.1, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0], MuscularMetric::Paper);
+        let muscular = Muscular::of([0.1, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0], RESTING);
         // 0.01 + 0.04 + 0.04 = 0.09
         assert!((muscular.printed - 1.0 / 0.09).abs() < 1e-14);
         assert!((muscular.regularised - 10.0).abs() < 1e-14);
-        let idle = Muscular::of([0.0; 7], MuscularMetric::Paper);
+        let idle = Muscular::of([0.0; 7], RESTING);
         assert_eq!((idle.printed, idle.regularised), (f64::INFINITY, 100.0));
         // A resting co-contraction of 5 % in seven terms.
-        let idle = Muscular::of([0.0; 7], MuscularMetric::Intrinsic);
+        let idle = Muscular::of([0.0; 7], CO_CONTRACTION);
         assert_eq!((idle.printed, idle.regularised), (f64::INFINITY, 1.0 / 0.0175));
     }
 
@@ -348,7 +384,7 @@ mod tests {
     fn the_direction_picks_the_strength() {
         // Elbow flexion (28.9 N m at 0) and extension (38.5 N m): lowering 2 N m of a load of 5 N m.
         let strength = Strength::new(Sex::Male, 50.0);
-        let mut torques = JointTorques { operation_nm: [0.0; 7], gravity_nm: [0.0; 7], shoulder_v_nm: NO_GRAVITY };
+        let mut torques = JointTorques { operation_nm: [0.0; 7], gravity_nm: [0.0; 7], moments_v_nm: [NO_GRAVITY; 3] };
         (torques.operation_nm[3], torques.gravity_nm[3]) = (-2.0, 5.0);
         let elbow = |torques: &JointTorques, direction| torques.activations(&[0.0; 7], &strength, direction)[3];
         assert!((elbow(&torques, StrengthDirection::Paper) - 3.0 / 38.5230).abs() < 1e-15);

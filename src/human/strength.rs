@@ -149,8 +149,13 @@ impl Curve {
     }
 }
 
+/// The mean over all joints and senses of a woman's strength relative to a man's.
+pub(super) fn mean_female_ratio() -> f64 {
+    TABLE.row.iter().map(|row| row.female_ratio).sum::<f64>() / TABLE.row.len() as f64
+}
+
 /// Ratio of the strength at a percentile to the median.
-fn percentile_factor(percentile: f64) -> f64 {
+pub(super) fn percentile_factor(percentile: f64) -> f64 {
     (1.0 + COEFFICIENT_OF_VARIATION * normal_quantile(percentile / 100.0)).max(WEAKEST)
 }
 

@@ -56,6 +56,7 @@ impl Judgement {
             confirmation: self.confirmation.clone(),
             reason: self.reason.clone(),
             notes: Vec::new(),
+            muscles: None,
             versions,
             seed,
             fingerprint: self.fingerprint.clone(),

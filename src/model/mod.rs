@@ -9,6 +9,7 @@ pub mod frames;
 pub mod grasp;
 pub mod load;
 pub mod measures;
+pub mod muscle_work;
 mod omitted;
 pub mod operation;
 mod person;

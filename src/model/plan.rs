@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     frames::{Pose, PoseForm, pose},
+    muscle_work::MuscleWork,
     omitted::is_default,
     operation::Operation,
     scenario::{Hand, Limits, Person, PlannerKind, Scenario, Sex},
@@ -16,7 +17,7 @@ use super::{
 
 pub use super::board::PlacedObject;
 
-/// A grasp of a board by a robot's arms. `human`, `comfort`, `stability`, `clearance`,
+/// A grasp of a board by a robot's arms. `human`, `comfort`, `muscles`, `stability`, `clearance`,
 /// `planner`, `scenario` and `benchdog` are optional.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -39,6 +40,9 @@ pub struct Plan {
     /// The comfort of this posture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub comfort: Option<Comfort>,
+    /// What the muscles of the person's working arm do, whatever metric the planners maximise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub muscles: Option<MuscleWork>,
     /// The predicted stability.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,

@@ -211,6 +211,8 @@ pub enum MuscularMetric {
     Intrinsic,
     /// As printed in the paper: torques about the axes of three shoulder angles.
     Paper,
+    /// The effort of the arm's muscles: the sum of the squares of their activations.
+    Muscles,
 }
 
 /// How comfort is defined.

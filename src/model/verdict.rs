@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::muscle_work::MuscleWork;
+
 /// The result of a scenario or plan. The first limit that was exceeded determines it (`docs/method.md#88-verdict`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -96,6 +98,9 @@ pub struct Verdict {
     /// Assumptions of the simulation that this plan strains, such as that of a rigid board. They do not influence the verdict.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// What the muscles of the person's working arm do. Absent without a person. They do not influence the verdict.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub muscles: Option<MuscleWork>,
     /// Versions of Benchdog and of the engines that the verdict depends on.
     pub versions: BTreeMap<String, String>,
     /// Seed of the planner.

@@ -42,7 +42,9 @@ pub fn assemble_placed(
     let figures = problem.human.posture_figures(&candidate.work.q_h_rad, &problem.normal_t, free_share);
     let posture = HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad);
     let comfort = comfort::weighted(*comfort, &scenario.comfort);
-    let comfort = scored(&problem.human, &candidate.work.q_h_rad, &operation.wrench_w(&x_wo), comfort);
+    let wrench_w = operation.wrench_w(&x_wo);
+    let comfort = scored(&problem.human, &candidate.work.q_h_rad, &wrench_w, comfort);
+    let muscles = problem.human.muscle_work(&candidate.work.q_h_rad, &x_wb, &wrench_w);
     let (stability, clearance) = evaluator.predict(&arms, &object, &operation)?;
     Some(Plan {
         format: FORMAT,
@@ -53,6 +55,7 @@ pub fn assemble_placed(
         arms,
         human: Some(HumanPosture { posture: Some(figures), ..posture }),
         comfort: Some(comfort),
+        muscles,
         stability: Some(stability),
         clearance,
         planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations }),

@@ -89,6 +89,10 @@ fn verify_comfort(
         figures.push(("comfort.average.muscular_regularised", stated.muscular_regularised, muscular_regularised));
         figures.push(("comfort.average.peripersonal_m", stated.peripersonal_m, peripersonal_m));
     }
+    if let (Some(stated), Some(found)) = (&plan.muscles, checked.muscles()) {
+        figures.push(("muscles.effort", stated.effort, found.effort));
+        figures.push(("muscles.largest_activation", stated.largest_activation, found.largest_activation));
+    }
     for (key, stated, computed) in figures {
         let scale = stated.abs().max(computed.abs()).max(1.0);
         if !agrees(stated, computed, FIGURE_TOLERANCE * scale) {

@@ -130,10 +130,10 @@ mod tests {
     use nalgebra::Isometry3;
 
     use super::*;
-    use crate::{human::Muscular, model::scenario::MuscularMetric};
+    use crate::human::Muscular;
 
     fn curve() -> Curve {
-        let of = |activation| Muscular::of([activation; 7], MuscularMetric::Paper);
+        let of = |activation| Muscular::of([activation; 7], 0.01);
         let span = Span { worst: of(0.5), best: of(0.1) };
         let mut points = [CurvePoint { angle_rad: 0.0, free: Some(span), fixed: Some(span) }; POINTS];
         points[3] = CurvePoint { angle_rad: std::f64::consts::FRAC_PI_2, free: Some(span), fixed: None };

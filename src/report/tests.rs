@@ -35,6 +35,7 @@ fn holding() -> Verdict {
         confirmation: None,
         reason: None,
         notes: Vec::new(),
+        muscles: None,
         versions: BTreeMap::from([("benchdog".into(), "0.1.0".into())]),
         seed: 1,
         fingerprint: "00ff".into(),

@@ -143,6 +143,9 @@ fn raw(text: &mut String, reproduction: &Reproduction, metric: MuscularMetric) {
         MuscularMetric::Paper => {
             "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of `1 / ||alpha||^2`.\n"
         }
+        MuscularMetric::Muscles => {
+            "\n## Raw values\n\nMuscular comfort is that of the muscles, `1 / (sum a^2 + 0.02)`; `printed` is the median of the paper's metric.\n"
+        }
         MuscularMetric::Intrinsic => {
             "\n## Raw values\n\nMuscular comfort is the intrinsic one, `1 / (||alpha||^2 + 0.0175)`; `printed` is the median of the paper's metric.\n"
         }

@@ -73,7 +73,9 @@ pub fn fill_in(
         None => "the most that the gripper gives",
     };
     notes.extend(left_out(&file, "grip_force_n", |input| input.grip_force_n.is_none(), of_grip));
-    let PlanFile { format, name, robot, operation, object, human, comfort, stability, clearance, planner, .. } = file;
+    let PlanFile {
+        format, name, robot, operation, object, human, comfort, muscles, stability, clearance, planner, ..
+    } = file;
     let ObjectInput { size_m, plate, mass_kg, com_m, .. } = object;
     let object = PlacedObject { size_m, plate, mass_kg, com_m, x_wo };
     let (scenario, benchdog) = (own, file.benchdog);
@@ -86,6 +88,7 @@ pub fn fill_in(
         arms,
         human,
         comfort,
+        muscles,
         stability,
         clearance,
         planner,

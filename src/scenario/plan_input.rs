@@ -10,6 +10,7 @@ use serde::{
 
 use crate::model::{
     frames::{Pose, PoseForm, optional_pose},
+    muscle_work::MuscleWork,
     operation::Operation,
     plan::{Clearance, Comfort, HumanPosture, PlannerRecord, Stability},
     plate::Plate,
@@ -40,6 +41,9 @@ pub struct PlanFile {
     /// The comfort of this posture.
     #[serde(default)]
     pub comfort: Option<Comfort>,
+    /// What the muscles of the person's working arm do.
+    #[serde(default)]
+    pub muscles: Option<MuscleWork>,
     /// The predicted stability.
     #[serde(default)]
     pub stability: Option<Stability>,

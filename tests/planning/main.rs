@@ -12,6 +12,7 @@ mod clearance;
 mod comfort;
 mod infeasible;
 mod many_arms;
+mod muscles;
 mod natural;
 mod planner;
 mod plans;

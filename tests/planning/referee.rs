@@ -73,7 +73,33 @@ fn the_moments_about_the_shoulder_are_the_referees() {
     for row in rows() {
         let torques = human(row.task).joint_torques(&row.q_rad, &Pose::identity(), &Wrench::from_force(row.force_b_n));
         // The file has six decimals.
-        assert!((torques.shoulder_v_nm - row.shoulder_nm).norm() < 5e-6, "{torques:?} {:?}", row.shoulder_nm);
+        assert!((torques.shoulder_v_nm() - row.shoulder_nm).norm() < 5e-6, "{torques:?} {:?}", row.shoulder_nm);
+    }
+}
+
+/// The effort of the muscles in a posture.
+fn muscle_effort(row: &Row) -> f64 {
+    let program = human(row.task).muscle_program(&row.q_rad, &Pose::identity(), &Wrench::from_force(row.force_b_n));
+    program.solve().unwrap().effort
+}
+
+#[test]
+fn the_effort_of_the_muscles_is_the_referees() {
+    let rows = rows();
+    // The musculoskeletal model itself has corners where a muscle begins to wrap around a bone; ours are polynomials.
+    for (is_natural, at_least) in [(true, 0.985), (false, 0.97)] {
+        let rows: Vec<_> = rows.iter().filter(|row| row.is_natural == is_natural).collect();
+        let [ours, theirs] =
+            [muscle_effort, |row: &Row| row.effort].map(|of| rows.iter().map(|row| of(row)).collect::<Vec<_>>());
+        let mut off: Vec<_> = ours.iter().zip(&theirs).map(|(ours, theirs)| (ours / theirs - 1.0).abs()).collect();
+        off.sort_by(f64::total_cmp);
+        let (median, ninth) = (off[off.len() / 2], off[off.len() * 9 / 10]);
+        let correlation = spearman(&ours, &theirs);
+        println!(
+            "natural: {is_natural}, {} postures: median error {median:.4}, nine tenths below {ninth:.3}, Spearman {correlation:.4}",
+            rows.len()
+        );
+        assert!(median < 0.06 && correlation >= at_least, "natural {is_natural}: {median} {correlation}");
     }
 }
 
