@@ -1,7 +1,8 @@
 //! The cost of one evaluation of the person; a plan needs millions.
 //!
 //! Targets on one core of a common machine: a full evaluation (torques, activations, 64 x 56 distances) 6 us, its muscular
-//! part 0.6 us by the metrics of joint strengths and 15 us by the muscles (30 us with gradient), the line of sight 5 us, the arm's inverse kinematics at one swivel 0.5 us.
+//! part 0.6 us by the metrics of joint strengths and 15 us by the muscles (30 us with gradient), the line of sight 5 us, the
+//! arm's inverse kinematics at one swivel 0.5 us.
 
 use std::{hint::black_box, path::Path};
 

@@ -38,7 +38,7 @@ R_MV = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 MAP_DEGREE, SHOULDER_DEGREE, ELBOW_DEGREE, WRIST_DEGREE = 5, 8, 7, 5
 # Ranges of the four angles beyond the shoulder, rad: those of docs/method.md#41-arm-kinematics.
 BEYOND_RAD = np.radians([[0, 145], [-90, 90], [-70, 75], [-20, 40]])
-# Longest moment arm of a muscle of the shoulder, m; what is longer in a difference of lengths is a jump.
+# No moment arm is longer, m; what is longer in a difference of lengths is a jump.
 JUMP_M = 0.15
 # Shares of error in a length (m) and in its derivatives (m/rad) in the fit of the shoulder.
 LENGTH_WEIGHT = 0.3
@@ -336,8 +336,8 @@ def write(arguments, myo, shoulder, beyond):
     beyond_powers = np.array(sorted(beyond_powers - {(0, 0, 0, 0)}, key=lambda e: (sum(e), e)))
     shoulder_powers = exponents(4, SHOULDER_DEGREE, homogeneous=True)
     quats = quaternions(r_vu)
-    values, slopes = monomials(quats, shoulder_powers)
-    rates = by_rotation(quats, slopes)
+    values, component_slopes = monomials(quats, shoulder_powers)
+    rates = by_rotation(quats, component_slopes)
     columns = np.vstack([LENGTH_WEIGHT * values, *rates])
     p_reference = np.array([[1.2, 0.0, 0.0, 0.0]])
     used_shoulder = np.abs(shoulder_slopes).max((0, 2)) > 1e-6
@@ -374,16 +374,18 @@ def write(arguments, myo, shoulder, beyond):
             errors.append(np.sqrt((error**2).sum(0).mean()))
             lines.append(f"shoulder_mm = {numbers(1e3 * c)}")
         if used_beyond[i]:
-            powers = beyond_powers
-            c = fit_beyond(p, beyond_m[:, i] - beyond_m[:, i].mean(), beyond_slopes[:, i], np.vstack([powers, [0, 0, 0, 0]]))[:-1]
-            v, s = monomials(p, powers)
-            errors.append(np.sqrt(sum(((s[k] @ c - beyond_slopes[:, i, k]) ** 2) for k in range(4)).mean()))
+            powers, kept = beyond_powers, np.abs(beyond_slopes[:, i]).max(1) < JUMP_M
+            lengths, slopes = beyond_m[kept, i], beyond_slopes[kept, i]
+            with_constant = np.vstack([powers, [0, 0, 0, 0]])
+            c = fit_beyond(p[kept], lengths - lengths.mean(), slopes, with_constant)[:-1]
+            v, s = monomials(p[kept], powers)
+            errors.append(np.sqrt(sum((s[k] @ c - slopes[:, k]) ** 2 for k in range(4)).mean()))
             lines.append(f"beyond_mm = {numbers(1e3 * c)}")
             if used_shoulder[i]:
                 # The shoulder's samples were taken at one posture of the elbow.
                 constant = -(monomials(p_reference, powers)[0] @ c)[0]
             else:
-                constant = (beyond_m[:, i] - v @ c).mean()
+                constant = (lengths - v @ c).mean()
         lines.append(f"constant_mm = {1e3 * (constant - myo.slack_m[i]):.6g}")
         lines.append(f"arm_error_mm = {1e3 * max(errors):.2g}")
         print(f"{name:9s} force {myo.force_n[i]:7.1f} N, error of the moment arm {1e3 * max(errors):.2f} mm")
