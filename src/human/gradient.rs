@@ -95,32 +95,44 @@ pub(super) fn muscular_gradient(
         frames,
         wrench_b: load.wrench_b,
     };
-    if settings.muscular == MuscularMetric::Muscles {
-        return point.gradient_of_muscles(&torques, q_rad, &ability.muscles);
-    }
-    let (strength, muscular) = (&ability.strength, torques.muscular(q_rad, &point.frames.r_bu, ability, settings));
-    let of_joint = |joint: usize, sense: Sense| {
-        let (total_nm, activation) = (torques.total_nm()[joint], muscular.activations[joint]);
-        point.activation_slopes(joint, q_rad[joint], total_nm, activation, strength, sense)
-    };
-    let activations: [[f64; 7]; 7] = match settings.muscular {
-        MuscularMetric::Paper | MuscularMetric::Muscles => {
-            let senses = torques.senses(q_rad, strength, settings.direction);
-            std::array::from_fn(|joint| of_joint(joint, senses[joint]))
+    let joints = |muscular: &Muscular| JointActivations { torques, q_rad: *q_rad, activations: muscular.activations };
+    let muscular = || torques.muscular(q_rad, &point.frames.r_bu, ability, settings);
+    match settings.muscular {
+        MuscularMetric::Paper => {
+            let (strength, muscular) = (&ability.strength, muscular());
+            let (senses, of) = (torques.senses(q_rad, strength, settings.direction), joints(&muscular));
+            let slopes = std::array::from_fn(|joint| point.activation_slopes(joint, &of, strength, senses[joint]));
+            MuscularGradient::of_activations(muscular, slopes)
         }
         MuscularMetric::Intrinsic => {
-            let shoulder = point.shoulder_slopes(&torques, strength);
-            std::array::from_fn(|row| match shoulder.get(row) {
+            let (strength, muscular) = (&ability.strength, muscular());
+            let (shoulder, of) = (point.shoulder_slopes(&torques, strength), joints(&muscular));
+            let slopes = std::array::from_fn(|row| match shoulder.get(row) {
                 Some(slopes) => *slopes,
-                None => of_joint(row, torques.own_sense(row)),
-            })
+                None => point.activation_slopes(row, &of, strength, torques.own_sense(row)),
+            });
+            MuscularGradient::of_activations(muscular, slopes)
         }
-    };
-    let regularised = std::array::from_fn(|j| {
-        let effort_slope: f64 = (0..7).map(|i| 2.0 * muscular.activations[i] * activations[i][j]).sum();
-        -muscular.regularised.powi(2) * effort_slope
-    });
-    MuscularGradient { muscular, regularised, activations }
+        MuscularMetric::Muscles => point.gradient_of_muscles(&torques, q_rad, &ability.muscles),
+    }
+}
+
+impl MuscularGradient {
+    /// The gradient of `1 / (||alpha||^2 + eps)` from that of the activations.
+    fn of_activations(muscular: Muscular, activations: [[f64; 7]; 7]) -> Self {
+        let regularised = std::array::from_fn(|j| {
+            let effort_slope: f64 = (0..7).map(|i| 2.0 * muscular.activations[i] * activations[i][j]).sum();
+            -muscular.regularised.powi(2) * effort_slope
+        });
+        Self { muscular, regularised, activations }
+    }
+}
+
+/// The joints' torques and activations in a posture.
+struct JointActivations {
+    torques: JointTorques,
+    q_rad: ArmAngles,
+    activations: [f64; 7],
 }
 
 /// A posture under a load.
@@ -133,15 +145,8 @@ struct Point<'a> {
 
 impl Point<'_> {
     /// Derivatives of a joint's activation `|tau| / tau_max(q)` by all joints, 1/rad.
-    fn activation_slopes(
-        &self,
-        i: usize,
-        q_rad: f64,
-        total_nm: f64,
-        activation: f64,
-        strength: &Strength,
-        sense: Sense,
-    ) -> [f64; 7] {
+    fn activation_slopes(&self, i: usize, of: &JointActivations, strength: &Strength, sense: Sense) -> [f64; 7] {
+        let (q_rad, total_nm, activation) = (of.q_rad[i], of.torques.total_nm()[i], of.activations[i]);
         let limit_nm = strength.torque_nm(i, q_rad, sense);
         let strength_slope = strength.slope_nm_rad(i, q_rad, sense);
         let Self { frames, p_bt_m, weights, wrench_b } = self;

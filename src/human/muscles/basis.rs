@@ -124,8 +124,8 @@ mod tests {
                 let slope = |part: usize| (forth[k][part] - back[k][part]) / (2.0 * step);
                 // Third derivatives are below 400: an error of 1e-8.
                 assert!((rows[k][1 + variable] - slope(0)).abs() < 1e-8);
-                for other in 0..VARIABLES {
-                    assert!((hessians[k][other][variable] - slope(1 + other)).abs() < 1e-7);
+                for (other, row) in hessians[k].iter().enumerate() {
+                    assert!((row[variable] - slope(1 + other)).abs() < 1e-7);
                 }
             }
         }
