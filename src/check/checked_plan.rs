@@ -216,8 +216,9 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
     // Wrong angles or a wrong grasp put the gripper elsewhere: one fault, one flaw.
     let is_comparable = flaws.len() == before;
     let gripper = &robot.arms[index].gripper;
-    let (name, found_n, max_n) = (hold.name.clone(), hold.grip_force_n, gripper.max_force_n);
-    if !(found_n > 0.0 && found_n <= max_n) {
+    let (name, found_n) = (hold.name.clone(), hold.grip_force_n);
+    let max_n = gripper.holding.pads().map(|pads| pads.max_force_n);
+    if !max_n.map_or(found_n == 0.0, |max_n| found_n > 0.0 && found_n <= max_n) {
         flaws.push(Flaw::GripForce { arm, name: name.clone(), found_n, max_n });
     }
     let (thickness_m, opening_m) = (plan.object.size_m[2], gripper.opening_m);

@@ -141,8 +141,8 @@ pub enum Flaw {
         name: String,
         /// The force, N.
         found_n: f64,
-        /// The gripper's largest force, N.
-        max_n: f64,
+        /// The gripper's largest force, N; `None` for a gripper with measured wrench limits.
+        max_n: Option<f64>,
     },
     /// A board that the gripper does not close on.
     Thickness {
@@ -420,13 +420,13 @@ impl Flaw {
             Self::Joints { name, expected, .. } => format!("the joints of the {name} arm: {}", expected.join(", ")),
             Self::AngleCount { expected, .. } => format!("{expected} angles in rad"),
             Self::Angle { name, limits_rad: [low, high], .. } => format!("{low} to {high} rad, the limits of {name}"),
-            Self::GripForce { name, found_n, max_n, .. } => {
-                if *found_n > 0.0 {
-                    format!("at most {max_n} N, what the {name} gripper gives")
-                } else {
-                    "a positive number (N)".into()
-                }
+            Self::GripForce { name, max_n: None, .. } => {
+                format!("no grip force: the {name} gripper has measured wrench limits")
             }
+            Self::GripForce { name, found_n, max_n: Some(max_n), .. } if *found_n > 0.0 => {
+                format!("at most {max_n} N, what the {name} gripper gives")
+            }
+            Self::GripForce { .. } => "a positive number (N)".into(),
             Self::FingersAcross { .. } => format!("fingers that close across the thickness, within {GIVEN}"),
             Self::Hand { tolerance, .. } => {
                 format!("x_wo x_og to equal the arm's forward kinematics within {tolerance}")

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     collision::CollisionModel,
     report::file,
-    robot::{Chain, InverseKinematics, Robot, RobotError},
+    robot::{Chain, Holding, InverseKinematics, MeasuredGrip, Robot, RobotError},
     setup::{Overlaps, middle, positions},
 };
 
@@ -64,13 +64,19 @@ fn arm_line(robot: &Robot, index: usize) -> String {
     let [width_mm, height_mm] = gripper.fingers[0].pad.size_m.map(|m| m * 1e3);
     let chain = Chain::new(robot, index, 0.0);
     let solver = InverseKinematics::for_chain(&chain).name();
+    let holds = match &gripper.holding {
+        Holding::Pads(pads) => format!("pads {width_mm:.1} x {height_mm:.1} mm, {} N", pads.max_force_n),
+        Holding::Measured(MeasuredGrip { limits, stiffness }) => {
+            let grip = if stiffness.is_some() { "elastic" } else { "rigid" };
+            format!("jaws {width_mm:.1} x {height_mm:.1} mm, a {grip} grip within a measured {limits}")
+        }
+    };
     format!(
         "ok     arm {}: {} joints, reach {:.2} m, {solver} inverse kinematics; gripper opens {narrow_mm:.1} to {wide_mm:.1} mm, \
-         pads {width_mm:.1} x {height_mm:.1} mm, {} N",
+         {holds}",
         arm.name,
         arm.joints.len(),
         chain.reach_m(),
-        gripper.max_force_n
     )
 }
 

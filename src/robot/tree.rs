@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
-use super::geometry::{PlacedShape, Visual};
+use super::{
+    geometry::{PlacedShape, Visual},
+    holding::Holding,
+};
 use crate::model::{frames::Pose, plan::ArmHold};
 
 /// A robot: a tree of links, its arms, and the data of the description.
@@ -152,14 +155,8 @@ pub struct Gripper {
     pub fingers: [Finger; 2],
     /// Gap between the pads when closed and when open, m: the range of thicknesses that it can hold.
     pub opening_m: [f64; 2],
-    /// Maximum force of each finger, N.
-    pub max_force_n: f64,
-    /// Force of each finger where a scenario has none, N.
-    pub grip_force_n: Option<f64>,
-    /// Coulomb friction coefficient of its pads and a board where a scenario has none.
-    pub friction: Option<f64>,
-    /// Stiffness of one pad along its normal, N/m; `None` for rigid pads (docs/method.md#612-pad-compliance).
-    pub pad_stiffness_n_m: Option<f64>,
+    /// With what it holds the board.
+    pub holding: Holding,
     /// The mechanism that moves the fingers, if it is not one prismatic joint each.
     pub linkage: Option<Linkage>,
 }
@@ -234,6 +231,11 @@ impl Gripper {
         let y_g_in_o = x_og.rotation * Vector3::y();
         let finger_is_up = (finger == 0) == (y_g_in_o.z > 0.0);
         if finger_is_up { "upper" } else { "lower" }
+    }
+
+    /// The force that closes each finger of this gripper in a plan, N: that of the scenario, 0 for a measured gripper.
+    pub fn grip_force_n(&self, of_scenario_n: f64) -> f64 {
+        self.holding.pads().map_or(0.0, |_| of_scenario_n)
     }
 
     /// The grasp point in G: the centre between the pads, m.

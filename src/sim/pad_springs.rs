@@ -49,8 +49,7 @@ impl PadLayer {
     pub fn of(robot: &Robot, checked: &CheckedArm<'_>, object: &PlacedObject, conditions: &Conditions) -> Option<Self> {
         let CheckedArm { index, chain, hold, .. } = checked;
         let hand = HandModel::new(&robot.arms[*index], chain, hold, object, conditions.friction).ok()?;
-        let x_od = hand.between_pads();
-        let stiffness = hand.pad_stiffness(&x_od)?.diagonal();
+        let (x_od, stiffness) = hand.springs()?;
         Some(Self {
             x_gd: hold.x_og.inverse() * x_od,
             x_wd: object.x_wo * x_od,

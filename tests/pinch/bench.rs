@@ -10,7 +10,7 @@ use benchdog::{
         trace::Sample,
         wrench::Wrench,
     },
-    robot::{Arm, Finger, Gripper, Joint, JointKind, Link, Pad, Robot, RobotOptions},
+    robot::{Arm, Finger, Gripper, Holding, Joint, JointKind, Link, Pad, PadGrip, Robot, RobotOptions},
     sim::{Conditions, SimScene, blank_sample},
 };
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
@@ -90,10 +90,12 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
             palm_link: 1,
             fingers: [finger("left", 2, 1.0), finger("right", 3, -1.0)],
             opening_m: [-0.0037, 0.038],
-            max_force_n: 100.0,
-            grip_force_n: None,
-            friction: None,
-            pad_stiffness_n_m: None,
+            holding: Holding::Pads(PadGrip {
+                max_force_n: 100.0,
+                grip_force_n: None,
+                friction: None,
+                pad_stiffness_n_m: None,
+            }),
             linkage: None,
         },
     };

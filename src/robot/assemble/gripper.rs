@@ -1,7 +1,5 @@
 //! Grippers: frame, pads, fingers, opening.
 
-use std::ops::RangeInclusive;
-
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use toml::Spanned;
 
@@ -12,6 +10,7 @@ use crate::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
         faces::{mean_y, nearest_face},
         geometry::{PlacedShape, Shape, Visual, VisualGeometry},
+        holding::Holding,
         tree::{Finger, Gripper, JointKind, Linkage, Pad},
     },
 };
@@ -21,12 +20,6 @@ const AXIS_TOLERANCE: f64 = 1e-5;
 
 /// Tolerance of a gripper's opening relative to the finger joints' limits, m: published gaps are rounded to 0.1 mm.
 const OPENING_TOLERANCE_M: f64 = 1e-4;
-
-/// Stiffness of a pad, N/m, from softer than a foam cushion to stiffer than a steel block of its size.
-const PAD_STIFFNESS_N_M: RangeInclusive<f64> = 1e4..=1e9;
-
-/// The largest friction coefficient: soft rubber on a rough board has less than 2.
-const MOST_FRICTION: f64 = 5.0;
 
 /// Thickness, m, and mass, kg, of a jaw of a clamp: a steel plate of the size of a hand's pad.
 const JAW_THICKNESS_M: f64 = 0.010;
@@ -40,12 +33,9 @@ struct Hand {
     /// Poses of all links with every joint at rest.
     x_wl: Vec<Pose>,
     opening_m: [f64; 2],
-    max_force_n: f64,
-    grip_force_n: Option<f64>,
-    friction: Option<f64>,
     pad_size_m: [f64; 2],
     pad_centre_m: [f64; 2],
-    pad_stiffness_n_m: Option<f64>,
+    holding: Holding,
 }
 
 impl Hand {
@@ -59,10 +49,7 @@ impl Hand {
             palm_link: self.palm_link,
             fingers,
             opening_m: self.opening_m,
-            max_force_n: self.max_force_n,
-            grip_force_n: self.grip_force_n,
-            friction: self.friction,
-            pad_stiffness_n_m: self.pad_stiffness_n_m,
+            holding: self.holding.clone(),
             linkage,
         }
     }
@@ -74,11 +61,9 @@ impl Assembler<'_> {
         self.carriers = self.robot.carriers();
         let given_frame = self.link("frame_link", &entry.frame_link);
         let palm = entry.palm_link.as_ref().map_or(Some(given_frame), |name| self.link("palm_link", name).map(Some));
-        self.positive("max_force_n", &entry.max_force_n, &[*entry.max_force_n.get_ref()]);
+        let holding = self.holding(entry);
         self.positive("pad_size_m", &entry.pad_size_m, &entry.pad_size_m.get_ref().0);
         let pad_centre_m = self.finite("pad_centre_m", &entry.pad_centre_m, "m");
-        let pad_stiffness_n_m = self.pad_stiffness(entry);
-        let (grip_force_n, friction) = self.grip_defaults(entry);
         let (given_frame, palm_link) = (given_frame?, palm??);
         if self.carriers[palm_link] != self.carriers[given_frame] {
             let (key, at) = entry.palm_link.as_ref().map(|palm| (palm.get_ref().clone(), palm.span()))?;
@@ -92,12 +77,9 @@ impl Assembler<'_> {
             palm_link,
             x_wl: self.robot.link_poses(&self.robot.positions(&[])),
             opening_m: entry.opening_m.get_ref().0,
-            max_force_n: *entry.max_force_n.get_ref(),
-            grip_force_n,
-            friction,
             pad_size_m: entry.pad_size_m.get_ref().0,
             pad_centre_m: pad_centre_m?,
-            pad_stiffness_n_m,
+            holding: holding?,
         };
         if entry.kind == GripperKind::Clamp {
             return self.clamp(arm, &hand, entry);
@@ -252,32 +234,6 @@ impl Assembler<'_> {
         };
         let fingers = [finger(first, pad_links[0]), finger(second, pad_links[1])];
         Some(hand.gripper(fingers, Some(linkage)))
-    }
-
-    /// Grip force and friction for scenarios that have none.
-    fn grip_defaults(&mut self, entry: &GripperEntry) -> (Option<f64>, Option<f64>) {
-        let most_n = *entry.max_force_n.get_ref();
-        if let Some(force) = &entry.grip_force_n {
-            let force_n = *force.get_ref();
-            let expected = format!("more than 0 and at most max_force_n, {most_n} N");
-            self.check(force_n > 0.0 && force_n <= most_n, force.span(), "grip_force_n", force_n, &expected);
-        }
-        if let Some(friction) = &entry.friction {
-            let found = *friction.get_ref();
-            self.check((0.0..=MOST_FRICTION).contains(&found), friction.span(), "friction", found, "0 to 5");
-        }
-        let value = |given: &Option<Spanned<f64>>| given.as_ref().map(|given| *given.get_ref());
-        (value(&entry.grip_force_n), value(&entry.friction))
-    }
-
-    /// The stiffness of a pad, if the description has one.
-    fn pad_stiffness(&mut self, entry: &GripperEntry) -> Option<f64> {
-        let given = entry.pad_stiffness_n_m.as_ref()?;
-        let stiffness_n_m = *given.get_ref();
-        let expected = "10000 to 1000000000 N/m, or no such key for rigid pads";
-        let met = PAD_STIFFNESS_N_M.contains(&stiffness_n_m);
-        self.check(met, given.span(), "pad_stiffness_n_m", stiffness_n_m, expected)?;
-        Some(stiffness_n_m)
     }
 
     /// Checks the opening against the gaps that the joints allow.

@@ -2,6 +2,7 @@
 
 mod arms;
 mod gripper;
+mod holding;
 mod lists;
 
 use std::{collections::BTreeMap, fmt, ops::Range, sync::Arc};
