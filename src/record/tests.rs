@@ -155,6 +155,7 @@ fn trace(robot: &Robot, plan: &Plan) -> Trace {
         effort_nm: vec![50.0, 100.0, 50.0, 50.0, 15.0, 15.0, 15.0],
         pads: vec!["upper".into(), "lower".into()],
         grip_force_n: hold.grip_force_n,
+        wrench_limits: None,
     };
     Trace {
         arms: plan.arms.iter().map(arm).collect(),
@@ -194,6 +195,7 @@ fn sample(robot: &Robot, plan: &Plan, step: usize) -> Sample {
                 UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * hold.x_og.rotation,
             ),
             pads: vec![pad(1.0), pad(-1.0)],
+            grip_wrench_g: None,
         }
     };
     Sample {
@@ -230,6 +232,7 @@ fn measures(trace: &Trace) -> Measures {
                 name: name.into(),
                 slip_mm: of(&|s| 0.3 * s.load_factor),
                 slip_deg: of(&|s| turn_rad.to_degrees() * s.load_factor),
+                grip_ratio: Vec::new(),
             })
             .collect(),
         sag_mm: of(&|_| 0.25),

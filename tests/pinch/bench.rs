@@ -189,8 +189,9 @@ impl Bench {
 
     pub fn new(robot: &Robot, plan: &Plan, friction: f64) -> Self {
         let settings = SimulationSettings { timestep_s: TIMESTEP_S, ..SimulationSettings::default() };
-        let scene = SimScene::new(&crate::common::checked(robot, plan), &Conditions::new(friction, settings)).unwrap();
-        Self { scene, sample: blank_sample(plan) }
+        let checked = crate::common::checked(robot, plan);
+        let scene = SimScene::new(&checked, &Conditions::new(friction, settings)).unwrap();
+        Self { scene, sample: blank_sample(&checked) }
     }
 
     /// Steps for `duration_s` while the load changes linearly from one multiple of the wrench to another.

@@ -182,7 +182,11 @@ fn messages_about_measured_limits_name_line_key_found_and_expected() {
         ),
         (changed("ellipsoid", "ball"), 0, "unknown variant `ball`, expected `box` or `ellipsoid`".into()),
         (changed("-60.0, 300", "-60.0, 10, 300"), 0, "invalid length 3, expected an array of length 2".into()),
-        (changed("[-60.0, 300]", "\"much\""), 0, "invalid type: string \"much\", expected a number for both directions, or [low, high]".into()),
+        (
+            changed("[-60.0, 300]", "\"much\""),
+            0,
+            "invalid type: string \"much\", expected a number for both directions, or [low, high]".into(),
+        ),
         (changed(", 10.0]", "]"), 0, "invalid length 2, expected an array of length 3".into()),
         (
             format!("{MEASURED}\nhold_stiffness_n_m = [1e5, 1e5, 1e5]"),
