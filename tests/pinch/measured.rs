@@ -6,7 +6,7 @@ use benchdog::{
     judge::failing_load,
     model::{
         plan::Plan,
-        trace::Trace,
+        trace::{Phase, Sample, Trace},
         verdict::{CheckKind, VerdictKind},
         wrench::Wrench,
         wrench_limits::{LimitShape, WrenchLimits},
@@ -80,7 +80,7 @@ fn limits_reached_at(plan: &Plan, shape: LimitShape, load_factor: f64) -> Wrench
 
 #[test]
 fn deflections_and_wrenches_of_measured_grippers_are_predicted() {
-    let stiffness = Some(Vector6::new(4e4, 6e4, 5e4, 100.0, 150.0, 80.0));
+    let stiffness = Some(Vector6::new(4e4, 6e4, 5e4, 500.0, 750.0, 400.0));
     for (number, plan) in ten_plans().into_iter().enumerate() {
         let stiffness = stiffness.filter(|_| number % 2 == 1);
         let robot = with_limits(MeasuredGrip { limits: huge(), stiffness }, &[0, 1]);
@@ -94,20 +94,22 @@ fn deflections_and_wrenches_of_measured_grippers_are_predicted() {
         println!("| {} | {:.4} | {moved_mm:.4} | {:+.2} % |", plan.name, response.deflection_mm(), 100.0 * off);
         // The arms still swing a little at the end of the hold; the engine's joint gives way by less than a micrometre.
         assert!(off.abs() < 0.01, "{}: {off}", plan.name);
+        // What the load adds: of the weight hands on elastic grips carry other shares, since the feed-forward compensates the
+        // arms' displacement and not the grips'.
+        let (_, at_rest) = predicted(&robot, &plan, 0.0);
+        let settled = trace.samples.iter().rfind(|sample| sample.phase == Phase::Settle).unwrap();
         let last = trace.samples.last().unwrap();
-        for ((hand, wrench), arm) in hold.hands.iter().zip(&response.equilibrium.hand_wrenches).zip(&last.arms) {
-            let expected = hand.measured().unwrap().in_g(&hand.wrench_about_grasp_point(wrench)).to_vector();
-            let found = arm.grip_wrench_g.unwrap().to_vector();
+        for (arm, hand) in hold.hands.iter().enumerate() {
+            let predicted = |of: &CompliantResponse| {
+                hand.measured().unwrap().in_g(&hand.wrench_about_grasp_point(&of.equilibrium.hand_wrenches[arm]))
+            };
+            let simulated = |sample: &Sample| sample.arms[arm].grip_wrench_g.unwrap();
+            let expected = predicted(&response).to_vector() - predicted(&at_rest).to_vector();
+            let found = simulated(last).to_vector() - simulated(settled).to_vector();
             let apart = found - expected;
             let (force_n, moment_nm) = (apart.fixed_rows::<3>(0).norm(), apart.fixed_rows::<3>(3).norm());
-            // The statics leave out that the load acts where the tool point has moved to.
-            let lever_nm = plan.operation.wrench_o.force_n.norm() * 0.5 * moved_mm * 1e-3;
-            assert!(
-                force_n < 0.1 && moment_nm < 0.02 + 1.5 * lever_nm,
-                "{} {}: {found} {expected}",
-                plan.name,
-                hand.name
-            );
+            // 1 % of the load, and that force at the lever of the tool; the statics leave out that the load moves.
+            assert!(force_n < 0.15 && moment_nm < 0.03, "{} {}: {found} {expected}", plan.name, hand.name);
         }
         // Joined hands do not slide, and no pad is there to open.
         let value = |kind| judgement.checks.iter().find(|check| check.name == kind).map(|check| check.value);
