@@ -1,5 +1,6 @@
 //! Synthetic traces: each limit crossed alone, met exactly, and together with others.
 
+mod measured;
 mod mechanics;
 
 use nalgebra::{Isometry3, Vector3};
