@@ -378,6 +378,24 @@ fn the_stored_run_is_read_back_bit_by_bit() {
 }
 
 #[test]
+fn a_measured_gripper_is_read_back_with_its_limits_and_where_it_let_go() {
+    let mut example = example();
+    let trace = &mut example.trace;
+    trace.arms[1].pads.clear();
+    let most = Wrench::from([100.0, 100.0, 100.0, 10.0, 10.0, 10.0]);
+    trace.arms[1].wrench_limits = Some(WrenchLimits::symmetric(LimitShape::Ellipsoid, most));
+    for (index, sample) in trace.samples.iter_mut().enumerate() {
+        sample.arms[1].pads.clear();
+        let wrench_g = Wrench::from([index as f64 / 3.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        sample.arms[1].grip_wrench_g = (index < 100).then_some(wrench_g);
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.rrd");
+    fs::write(&path, encode(&example.input()).unwrap()).unwrap();
+    assert_eq!(read_run(&path).unwrap().trace, example.trace);
+}
+
+#[test]
 fn a_run_without_a_person_is_read_back_without_one() {
     let mut example = example();
     example.trace.samples.iter_mut().for_each(|sample| sample.person_distance_m = None);
