@@ -45,7 +45,7 @@ fn visit_constants(trace: &Trace, visit: &mut impl FnMut(f64)) {
     for arm in &trace.arms {
         visit_all(&arm.effort_nm, visit);
         visit(arm.grip_force_n);
-        for limits in &arm.wrench_limits {
+        if let Some(limits) = &arm.wrench_limits {
             visit_wrench(&limits.low, visit);
             visit_wrench(&limits.high, visit);
         }

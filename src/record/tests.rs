@@ -25,6 +25,7 @@ use crate::{
         trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
         verdict::{Check, CheckKind, Failure, Verdict, VerdictKind},
         wrench::Wrench,
+        wrench_limits::{LimitShape, WrenchLimits},
     },
     robot::{Chain, InverseKinematics, Robot},
 };

@@ -226,6 +226,11 @@ impl Gripper {
         gap_m / 2.0 - self.fingers[finger].pad.offset_m
     }
 
+    /// Joint positions of the fingers with the pads `gap_m` apart, m.
+    pub fn finger_positions_m(&self, gap_m: f64) -> [f64; 2] {
+        [0, 1].map(|k| self.fingers[k].joint_position_m(self.travel_for_gap_m(k, gap_m)))
+    }
+
     /// Name of a pad on a board: `upper` on the front face (+z_O), `lower` on the other.
     pub fn pad_name(&self, finger: usize, x_og: &Pose) -> &'static str {
         let y_g_in_o = x_og.rotation * Vector3::y();

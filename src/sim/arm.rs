@@ -10,7 +10,7 @@ use super::{
     conditions::Conditions,
     error::SimError,
     feed_forward::FeedForward,
-    gripper::{SimGripper, positions_at_gap_m},
+    gripper::SimGripper,
     hand::SimHand,
     hand_over::HandOver,
     joined_hand::JoinedHand,
@@ -83,7 +83,7 @@ impl SimArm {
         let links: Vec<_> = links.collect();
         let (arm_links, finger_links) = links.split_at(arm.joints.len());
         let mut hand = hand(world, robot, (number, checked), (&merged, &chain), object, conditions);
-        let finger_m = positions_at_gap_m(&arm.gripper, object.size_m[2]);
+        let finger_m = arm.gripper.finger_positions_m(object.size_m[2]);
 
         let mut positions = vec![0.0; chain.dofs];
         let placed = arm_links.iter().zip(&hold.q_rad).chain(finger_links.iter().zip(&finger_m));

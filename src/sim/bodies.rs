@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-use super::{gripper::positions_at_gap_m, world::inertial_mass_kg};
+use super::world::inertial_mass_kg;
 use crate::{
     model::{frames::Pose, plan::PlacedObject},
     robot::{Arm, Gripper, Holding, Link, Robot},
@@ -129,7 +129,7 @@ impl ArmBodies {
         let gripper = &arm.gripper;
         let mut at_rest = robot.positions(&[]);
         let mut moving = arm.joints.clone();
-        for (finger, position_m) in gripper.fingers.iter().zip(positions_at_gap_m(gripper, thickness_m)) {
+        for (finger, position_m) in gripper.fingers.iter().zip(gripper.finger_positions_m(thickness_m)) {
             match gripper.holding {
                 Holding::Pads(_) => moving.push(finger.joint),
                 Holding::Measured(_) => at_rest[finger.joint] = position_m,

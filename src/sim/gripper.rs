@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     model::frames::Pose,
-    robot::{Arm, Finger, Gripper, Robot},
+    robot::{Arm, Finger, Robot},
 };
 
 /// Damping of each finger, N s/m (assumed): a finger settles within milliseconds, much faster than an arm.
@@ -40,11 +40,6 @@ impl SimFinger {
     fn state(&self, multibody: &Multibody) -> JointState {
         JointState { position: self.place.position(multibody), velocity: self.place.velocity(multibody) }
     }
-}
-
-/// Joint positions of the fingers with the pads `gap_m` apart.
-pub(super) fn positions_at_gap_m(gripper: &Gripper, gap_m: f64) -> [f64; 2] {
-    [0, 1].map(|k| gripper.fingers[k].joint_position_m(gripper.travel_for_gap_m(k, gap_m)))
 }
 
 /// A gripper of the scene.

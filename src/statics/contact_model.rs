@@ -4,8 +4,9 @@
 use nalgebra::Vector3;
 
 use super::{
-    hand::{HandModel, PadModel},
+    hand::HandModel,
     hold::{Hold, MeasuredHold},
+    pad_model::PadModel,
 };
 use crate::model::wrench::Wrench;
 

@@ -4,8 +4,9 @@ use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vecto
 
 use super::{
     contact_model::{ContactModel, ContactModelError},
-    hand::{HandModel, PadModel},
+    hand::HandModel,
     hold::{Hold, MeasuredHold, PadPair},
+    pad_model::PadModel,
     patch::{clip_to_outline, clip_to_rectangle},
 };
 use crate::{

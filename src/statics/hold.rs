@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, UnitQuaternion, Vector6};
 
-use super::hand::PadModel;
+use super::pad_model::PadModel;
 use crate::model::{wrench::Wrench, wrench_limits::WrenchLimits};
 
 /// What a hand holds the board with.

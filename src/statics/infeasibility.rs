@@ -11,12 +11,7 @@
 
 use nalgebra::Vector3;
 
-use super::{
-    contact_model::ContactModel,
-    hand::{HandModel, PadModel},
-    hold::Hold,
-    twist::Twist,
-};
+use super::{contact_model::ContactModel, hand::HandModel, hold::Hold, pad_model::PadModel, twist::Twist};
 use crate::model::wrench::Wrench;
 
 /// Relative excess of demand over capacity above which a mechanism counts: rounding only.

@@ -6,17 +6,16 @@ use nalgebra::DVector;
 use super::{
     certificate::DualVector,
     contact_model::ContactModel,
-    hand::PadModel,
     hold::HandWrench,
-    sensitivity::{self, Sensitivity},
+    pad_model::PadModel,
+    sensitivity::{self, Sensitivity, limit_terms},
     solvers::{
         clarabel::RawSolution,
         cone_program::{ConeProgram, MAX_LOAD_FACTOR, wrench_of},
-        layout::{HoldLayout, LimitLayout, PadLayout},
+        layout::{HoldLayout, PadLayout},
         units::FORCE_UNIT_N,
     },
 };
-use crate::model::wrench_limits::COMPONENTS;
 
 /// Subtracted from a load factor that was found with reduced accuracy.
 const ALMOST_SOLVED_MARGIN: f64 = 1e-3;
@@ -171,17 +170,6 @@ fn binding(model: &ContactModel, program: &ConeProgram, raw: &RawSolution<'_>) -
     // A stable sort: equal terms stay in the order of hands, pads and joints.
     terms.sort_by(|left, right| right.0.total_cmp(&left.0));
     terms.into_iter().map(|(_, name)| name).collect()
-}
-
-/// `d lambda* / d ln(limit)` of measured limits: of each component of a box, of all limits of an ellipsoid together. The rows
-/// are divided by the limits, so the multipliers are the terms.
-pub(super) fn limit_terms(limits: &LimitLayout, raw: &RawSolution<'_>) -> impl Iterator<Item = (f64, &'static str)> {
-    let of_box = |component: usize| raw.z[limits.rows + component] + raw.z[limits.rows + 6 + component];
-    let terms = match &limits.shares {
-        Some(shares) => vec![(raw.z[shares.cone_rows], "wrench")],
-        None => COMPONENTS.into_iter().enumerate().map(|(component, name)| (of_box(component), name)).collect(),
-    };
-    terms.into_iter()
 }
 
 /// `d lambda* / d ln(limit)` of a pad's four limits.

@@ -8,8 +8,9 @@
 use nalgebra::{Matrix6, Vector6};
 
 use super::{
-    hand::{HandModel, PadModel},
+    hand::HandModel,
     hold::{Hold, PadPair},
+    pad_model::PadModel,
     welded::twist_map,
 };
 use crate::model::frames::Pose;

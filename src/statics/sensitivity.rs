@@ -9,14 +9,14 @@ use nalgebra::DVector;
 use super::{
     contact_model::ContactModel,
     hand::HandModel,
-    load_factor::limit_terms,
     solvers::{
         clarabel::RawSolution,
         cone_program::ConeProgram,
-        layout::{HandLayout, HoldLayout, PadLayout},
+        layout::{HandLayout, HoldLayout, LimitLayout, PadLayout},
         units::FORCE_UNIT_N,
     },
 };
+use crate::model::wrench_limits::COMPONENTS;
 
 /// Derivatives of the load factor lambda*. At a kink of lambda* they are between the derivatives of either side; at the
 /// cap of 100 all are 0.
@@ -62,6 +62,17 @@ pub(super) fn of(model: &ContactModel, program: &ConeProgram, raw: &RawSolution<
         }
     };
     Sensitivity { hands: model.hands.iter().zip(program.layout.hands()).map(of_hand).collect() }
+}
+
+/// `d lambda* / d ln(limit)` of measured limits: of each component of a box, of all limits of an ellipsoid together. The rows
+/// are divided by the limits, so the multipliers are the terms.
+pub(super) fn limit_terms(limits: &LimitLayout, raw: &RawSolution<'_>) -> impl Iterator<Item = (f64, &'static str)> {
+    let of_box = |component: usize| raw.z[limits.rows + component] + raw.z[limits.rows + 6 + component];
+    let terms = match &limits.shares {
+        Some(shares) => vec![(raw.z[shares.cone_rows], "wrench")],
+        None => COMPONENTS.into_iter().enumerate().map(|(component, name)| (of_box(component), name)).collect(),
+    };
+    terms.into_iter()
 }
 
 /// mu is the coefficient of the normal force in the first row of the friction cone: `fn z_0`.

@@ -55,7 +55,11 @@ fn a_gripper_beyond_its_limits_detaches() {
     let trace = letting_go(measured(&[0, 1]), 0, at, 50.1);
     assert_eq!(outcome(&trace), (VerdictKind::Detaches, Some(at)));
     let event = judge(&trace, &limits()).events.into_iter().find(|event| event.text.contains("lets go")).unwrap();
-    assert!(event.text.starts_with("left hand lets go: its wrench exceeds the measured limits times 1 at"), "{}", event.text);
+    assert!(
+        event.text.starts_with("left hand lets go: its wrench exceeds the measured limits times 1 at"),
+        "{}",
+        event.text
+    );
     // At its limit it holds; that it lets go all the same, at the next sample, is not the judge's business.
     assert_eq!(outcome(&letting_go(measured(&[0, 1]), 0, at, 50.0)).0, VerdictKind::Holds);
     // Both let go, one after the other: the first decides, and the board is lost.

@@ -7,7 +7,6 @@ use super::super::{
     bodies::{ArmBodies, MovingBody},
     conditions::Conditions,
     feed_forward::FeedForward,
-    gripper::positions_at_gap_m,
     pad_shape::{GraspingHand, PadLoading, PadPart, pad_parts},
     pad_springs::{PadLayer, PadSpring},
     world::drive_inertia_kg,
@@ -57,7 +56,7 @@ impl<'a> ExportedArm<'a> {
         let &CheckedArm { index, hold, .. } = checked_arm;
         let arm = &robot.arms[index];
         let gap_m = object.size_m[2];
-        let finger_m = positions_at_gap_m(&arm.gripper, gap_m);
+        let finger_m = arm.gripper.finger_positions_m(gap_m);
         let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
         let layer = PadLayer::of(robot, checked_arm, object, conditions);
         let bodies = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd), gap_m);

@@ -37,8 +37,9 @@ use crate::{
     model::wrench::Wrench,
     statics::{
         contact_model::ContactModel,
-        hand::{HandModel, PadModel},
+        hand::HandModel,
         hold::{HandWrench, MeasuredHold},
+        pad_model::PadModel,
     },
 };
 
