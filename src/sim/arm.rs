@@ -179,7 +179,7 @@ fn hand(
     let grip_scale = conditions.uncertainty.grip_force_scale;
     if let Holding::Measured(measured) = &arm.gripper.holding {
         let limits = measured.limits.scaled(grip_scale);
-        return SimHand::Joined(JoinedHand::new(arm, merged, chain, limits, object.size_m[2]));
+        return SimHand::Joined(Box::new(JoinedHand::new(arm, merged, chain, limits, object.size_m[2])));
     }
     let grasping = GraspingHand { arm, bodies: merged, x_og: hold.x_og };
     let loading = PadLoading::new(&grasping, object, hold.grip_force_n * grip_scale, contact_softness_s2(world));

@@ -15,7 +15,7 @@ pub(super) enum SimHand {
     /// Two coupled fingers with pads.
     Fingers(Box<SimGripper>),
     /// A measured gripper.
-    Joined(JoinedHand),
+    Joined(Box<JoinedHand>),
 }
 
 impl SimHand {

@@ -94,7 +94,7 @@ impl JoinedHand {
 /// The wrench of a joint on its second body in the last substep, about the joint and in its axes.
 fn wrench_on_board(world: &PhysicsWorld, joint: ImpulseJointHandle) -> Option<Wrench> {
     // The impulses are those on the first body.
-    let [fx, fy, fz, mx, my, mz] = world.impulse_joints.get(joint)?.impulses.into();
+    let [fx, fy, fz, mx, my, mz] = world.impulse_joints.get(joint)?.impulses;
     let per_s = -1.0 / substep_s(world);
     let force_n = Vector3::new(fx, fy, fz) * per_s;
     Some(Wrench::new(force_n, Vector3::new(mx, my, mz) * (per_s * MOMENT_PER_IMPULSE)))
