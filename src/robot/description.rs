@@ -114,13 +114,18 @@ pub(super) struct GripperEntry {
     pub frame_xyz_m: Option<Spanned<Exactly<f64, 3>>>,
     pub frame_rpy_deg: Option<Spanned<Exactly<f64, 3>>>,
     pub palm_link: Option<Spanned<String>>,
-    pub opening_m: Spanned<Exactly<f64, 2>>,
+    /// Of two jaws.
+    pub opening_m: Option<Spanned<Exactly<f64, 2>>>,
     /// Of pads: the force of each finger, N.
     pub max_force_n: Option<Spanned<f64>>,
     pub grip_force_n: Option<Spanned<f64>>,
     pub friction: Option<Spanned<f64>>,
-    pub pad_size_m: Spanned<Exactly<f64, 2>>,
-    pub pad_centre_m: Spanned<Exactly<f64, 2>>,
+    /// Of two jaws.
+    pub pad_size_m: Option<Spanned<Exactly<f64, 2>>>,
+    pub pad_centre_m: Option<Spanned<Exactly<f64, 2>>>,
+    /// Of a suction cup.
+    pub cup_diameter_m: Option<Spanned<f64>>,
+    pub cup_height_m: Option<Spanned<f64>>,
     pub pad_stiffness_n_m: Option<Spanned<f64>>,
     /// What the gripper holds as a whole, in place of friction and force of its pads.
     pub wrench_limits: Option<Spanned<LimitsEntry>>,
@@ -139,6 +144,8 @@ pub(super) enum GripperKind {
     Fingers,
     /// Two jaws that the URDF does not have.
     Clamp,
+    /// A suction cup.
+    Suction,
 }
 
 /// Measured limits of the wrench on the board about the grasp point in G axes.

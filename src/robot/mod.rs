@@ -28,6 +28,6 @@ pub use load::BUILTIN;
 pub use mesh::{DrawnForm, DrawnPart, MeshPart};
 pub use packages::Packages;
 pub use tree::{
-    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Linkage, Mimic, Pad, Robot, RobotOptions,
+    Arm, ArmState, BodyPoint, Cup, Finger, Gripper, Joint, JointKind, Link, Linkage, Mimic, Pad, Robot, RobotOptions,
     SearchBox,
 };

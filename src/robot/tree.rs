@@ -144,21 +144,32 @@ pub struct Arm {
     pub gripper: Gripper,
 }
 
-/// A parallel gripper: two coupled fingers that close on each other along y_G.
+/// A parallel gripper, two coupled fingers that close on each other along y_G, or a suction cup.
 #[derive(Clone, Debug)]
 pub struct Gripper {
-    /// The link whose frame is G: z out of the gripper, fingers opening along y.
+    /// The link whose frame is G: z out of the gripper, fingers opening along y; of a cup its origin is the centre of the lip.
     pub frame_link: usize,
     /// The parent link of the finger joints.
     pub palm_link: usize,
-    /// The finger on the +y_G side, then the one on the -y_G side.
-    pub fingers: [Finger; 2],
-    /// Gap between the pads when closed and when open, m: the range of thicknesses that it can hold.
+    /// The finger on the +y_G side, then the one on the -y_G side; none of a suction cup.
+    pub fingers: Vec<Finger>,
+    /// The suction cup; `None` of a gripper with fingers.
+    pub cup: Option<Cup>,
+    /// Gap between the pads when closed and when open, m: the range of thicknesses that it can hold. A cup holds any.
     pub opening_m: [f64; 2],
     /// With what it holds the board.
     pub holding: Holding,
     /// The mechanism that moves the fingers, if it is not one prismatic joint each.
     pub linkage: Option<Linkage>,
+}
+
+/// A suction cup, whose lip lies flat on a face of the board: z_G points into the board, the origin of G is on the face.
+#[derive(Clone, Copy, Debug)]
+pub struct Cup {
+    /// The link of the cup: all of it may touch the board.
+    pub link: usize,
+    /// Radius of the lip, m.
+    pub radius_m: f64,
 }
 
 /// The mechanism of a gripper's fingers (docs/method.md#26-linkage-grippers).
@@ -221,14 +232,14 @@ pub struct Pad {
 
 impl Gripper {
     /// Travel of a finger, from its closed limit, at which the gap between the pads is `gap_m`:
-    /// the pad's face is then `gap_m / 2` from the plane y_G = 0.
+    /// the pad's face is then `gap_m / 2` from the plane y_G = 0. 0 for a finger that a suction cup does not have.
     pub fn travel_for_gap_m(&self, finger: usize, gap_m: f64) -> f64 {
-        gap_m / 2.0 - self.fingers[finger].pad.offset_m
+        self.fingers.get(finger).map_or(0.0, |finger| gap_m / 2.0 - finger.pad.offset_m)
     }
 
-    /// Joint positions of the fingers with the pads `gap_m` apart, m.
+    /// Joint positions of the fingers with the pads `gap_m` apart, m; zeros of a suction cup.
     pub fn finger_positions_m(&self, gap_m: f64) -> [f64; 2] {
-        [0, 1].map(|k| self.fingers[k].joint_position_m(self.travel_for_gap_m(k, gap_m)))
+        [0, 1].map(|k| self.fingers.get(k).map_or(0.0, |of| of.joint_position_m(self.travel_for_gap_m(k, gap_m))))
     }
 
     /// Name of a pad on a board: `upper` on the front face (+z_O), `lower` on the other.
@@ -243,9 +254,9 @@ impl Gripper {
         self.holding.pads().map_or(0.0, |_| of_scenario_n)
     }
 
-    /// The grasp point in G: the centre between the pads, m.
+    /// The grasp point in G: the centre between the pads, or of a cup's lip, m.
     pub fn grasp_point_g(&self) -> Vector3<f64> {
-        let [x, z] = self.fingers[0].pad.centre_m;
+        let [x, z] = self.fingers.first().map_or([0.0; 2], |finger| finger.pad.centre_m);
         Vector3::new(x, 0.0, z)
     }
 }

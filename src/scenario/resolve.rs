@@ -50,6 +50,11 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     let robot = load_robot(&file.robot.description, folder, &options, file.object.thickness_m())
         .map_err(|e| check.robot("robot.description", e))?;
     grip_keys(&check, &file.grip, &robot)?;
+    if let Some(arm) = robot.arms.iter().find(|arm| arm.gripper.cup.is_some()) {
+        let expected = "the path of a plan: planners know grasps of edges alone";
+        let found = format!("none for a robot whose {} arm has a suction cup", arm.name);
+        check.that(file.planner.plan.is_some(), "planner.plan", found, expected)?;
+    }
     let object = object_section::board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
     let scenario = Scenario {

@@ -88,7 +88,8 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
         gripper: Gripper {
             frame_link: 1,
             palm_link: 1,
-            fingers: [finger("left", 2, 1.0), finger("right", 3, -1.0)],
+            fingers: vec![finger("left", 2, 1.0), finger("right", 3, -1.0)],
+            cup: None,
             opening_m: [-0.0037, 0.038],
             holding: Holding::Pads(PadGrip {
                 max_force_n: 100.0,

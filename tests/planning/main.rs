@@ -15,3 +15,4 @@ mod many_arms;
 mod natural;
 mod planner;
 mod plans;
+mod suction;
