@@ -31,7 +31,7 @@ fn flaws(change: impl Fn(&mut Plan)) -> Vec<Flaw> {
     let (mut plan, robot) = load();
     change(&mut plan);
     let checked = CheckedPlan::new(&robot, &plan, &Person::default(), &default_tool(plan.operation.kind));
-    let all = checked.err().map(|flaws| flaws.all().to_vec()).unwrap_or_default();
+    let all: Vec<Flaw> = checked.err().map(|flaws| flaws.iter().cloned().collect()).unwrap_or_default();
     all.into_iter().filter(|flaw| !matches!(flaw, Flaw::Hand { .. })).collect()
 }
 
