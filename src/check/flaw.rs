@@ -442,13 +442,7 @@ impl Flaw {
             Self::Joints { name, expected, .. } => format!("the joints of the {name} arm: {}", expected.join(", ")),
             Self::AngleCount { expected, .. } => format!("{expected} angles in rad"),
             Self::Angle { name, limits_rad: [low, high], .. } => format!("{low} to {high} rad, the limits of {name}"),
-            Self::GripForce { name, max_n: None, .. } => {
-                format!("no grip force: the {name} gripper has measured wrench limits")
-            }
-            Self::GripForce { name, found_n, max_n: Some(max_n), .. } if *found_n > 0.0 => {
-                format!("at most {max_n} N, what the {name} gripper gives")
-            }
-            Self::GripForce { .. } => "a positive number (N)".into(),
+            Self::GripForce { name, found_n, max_n, .. } => expected_grip(name, *found_n, *max_n),
             Self::FingersAcross { .. } => format!("fingers that close across the thickness, within {GIVEN}"),
             Self::CupOffFace { .. } => {
                 format!("the origin of G on a face and z_G along its normal into the board, within {GIVEN}")
@@ -524,6 +518,15 @@ impl fmt::Display for Flaw {
 pub struct Flaws {
     first: Flaw,
     others: Vec<Flaw>,
+}
+
+/// What a grip force should have been, of a gripper that gives so much, or that has measured wrench limits.
+fn expected_grip(name: &str, found_n: f64, max_n: Option<f64>) -> String {
+    match max_n {
+        None => format!("no grip force: the {name} gripper has measured wrench limits"),
+        Some(max_n) if found_n > 0.0 => format!("at most {max_n} N, what the {name} gripper gives"),
+        Some(_) => "a positive number (N)".into(),
+    }
 }
 
 impl Flaws {

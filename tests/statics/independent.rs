@@ -53,11 +53,8 @@ fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
     }
     for (number, hand) in hold.hands.iter().enumerate() {
         let [first, second] = [variables[2 * number], variables[2 * number + 1]];
-        problem.add_constraint(
-            [(first[2], 1.0), (second[2], 1.0)],
-            ComparisonOp::Eq,
-            2.0 * hand.pad_pair().unwrap().grip_force_n,
-        );
+        let both_n = 2.0 * hand.pad_pair().unwrap().grip_force_n;
+        problem.add_constraint([(first[2], 1.0), (second[2], 1.0)], ComparisonOp::Eq, both_n);
         let maps = [0, 1].map(|pad| hand.jacobian_o.transpose() * pad_wrench(&hand.pads()[pad], &hand.grasp_point_o));
         for joint in 0..hand.dof() {
             let terms: Vec<_> = (0..6)
