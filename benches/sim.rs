@@ -36,7 +36,7 @@ fn sim(criterion: &mut Criterion) {
     for (name, plan) in [("two arms", &two_arms), ("one arm", &one_arm)] {
         let checked = checked(&robot, plan);
         let mut scene = SimScene::new(&checked, &conditions).expect("the repository's plans are holds");
-        let mut sample = blank_sample(plan);
+        let mut sample = blank_sample(&checked);
         criterion.bench_function(&format!("100 steps/{name}"), |bencher| {
             bencher.iter(|| {
                 for _ in 0..100 {

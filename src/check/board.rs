@@ -1,5 +1,7 @@
 //! The check of a plan's board and operation, and of the pads on a plate.
 
+use std::f64::consts::{PI, TAU};
+
 use super::{
     bounds,
     flaw::Flaw,
@@ -12,8 +14,11 @@ use crate::{
         plan::{PlacedObject, Plan},
         plate::Plate,
     },
-    robot::Robot,
+    robot::{Cup, Robot},
 };
+
+/// Sides of the polygon that stands for the lip of a suction cup.
+const LIP_SIDES: u32 = 32;
 
 /// Largest difference of a plate's stated size from that of its outline, m: rounding of written numbers.
 const SAME_SIZE_M: f64 = 1e-6;
@@ -97,8 +102,38 @@ fn check_shape(object: &PlacedObject, flaws: &mut Vec<Flaw>) {
     }
 }
 
+/// The lip of a suction cup: air must not leak in, so all of it is on the material, of a box too.
+fn check_cup(cup: &Cup, plan: &Plan, arm: usize, flaws: &mut Vec<Flaw>) {
+    let object = &plan.object;
+    let plate = object.plate.as_ref();
+    if check_plate(plate).is_some() || !object.size_m.iter().all(|&side_m| is_board_side(side_m)) {
+        return;
+    }
+    let centre = plan.arms[arm].x_og.translation.vector;
+    // A polygon around the lip.
+    let reach_m = cup.radius_m / (PI / f64::from(LIP_SIDES)).cos();
+    let corner = |k: u32| {
+        let (sin, cos) = libm::sincos(TAU * f64::from(k) / f64::from(LIP_SIDES));
+        [centre.x + reach_m * cos, centre.y + reach_m * sin]
+    };
+    let lip_m: Vec<_> = (0..LIP_SIDES).map(corner).collect();
+    let least_m = match plate {
+        Some(plate) => plate.patch_margins_m(&lip_m).into_iter().fold(f64::INFINITY, f64::min),
+        None => {
+            let [half_x_m, half_y_m] = [object.size_m[0] / 2.0, object.size_m[1] / 2.0];
+            f64::min(half_x_m - centre.x.abs(), half_y_m - centre.y.abs()) - cup.radius_m
+        }
+    };
+    if least_m < -GIVEN.position_m {
+        flaws.push(Flaw::CupOffBoard { arm, off_m: -least_m });
+    }
+}
+
 /// The pads of an arm on a plate. Of a box pads may overhang: statics and simulation know which part of them touches.
 pub(super) fn check_pads(robot: &Robot, index: usize, plan: &Plan, arm: usize, flaws: &mut Vec<Flaw>) {
+    if let Some(cup) = &robot.arms[index].gripper.cup {
+        return check_cup(cup, plan, arm, flaws);
+    }
     let Some(plate) = plan.object.plate.as_ref().filter(|plate| plate.check().is_ok()) else { return };
     let hold = &plan.arms[arm];
     let off_m = robot.arms[index].gripper.fingers.iter().map(|finger| {

@@ -212,12 +212,17 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
         flaws.push(Flaw::ArmTwice { arm, found: hold.name.clone() });
     }
     check_joints(robot, index, arm, hold, flaws);
-    flaws.extend(fingers_across(arm, &hold.x_og));
+    let cup = robot.arms[index].gripper.cup;
+    flaws.extend(match cup {
+        Some(_) => cup_on_face(arm, &hold.x_og, plan.object.size_m[2]),
+        None => fingers_across(arm, &hold.x_og),
+    });
     // Wrong angles or a wrong grasp put the gripper elsewhere: one fault, one flaw.
     let is_comparable = flaws.len() == before;
     let gripper = &robot.arms[index].gripper;
-    let (name, found_n, max_n) = (hold.name.clone(), hold.grip_force_n, gripper.max_force_n);
-    if !(found_n > 0.0 && found_n <= max_n) {
+    let (name, found_n) = (hold.name.clone(), hold.grip_force_n);
+    let max_n = gripper.holding.pads().map(|pads| pads.max_force_n);
+    if !max_n.map_or(found_n == 0.0, |max_n| found_n > 0.0 && found_n <= max_n) {
         flaws.push(Flaw::GripForce { arm, name: name.clone(), found_n, max_n });
     }
     let (thickness_m, opening_m) = (plan.object.size_m[2], gripper.opening_m);
@@ -243,6 +248,15 @@ fn check_arm<'a>(robot: &Robot, plan: &'a Plan, arm: usize, flaws: &mut Vec<Flaw
 pub fn fingers_across(arm: usize, x_og: &Pose) -> Option<Flaw> {
     let [off_m, off_rad] = [x_og.translation.vector.z.abs(), (x_og.rotation * Vector3::y()).z.abs().min(1.0).acos()];
     (!GIVEN.allows([off_m, off_rad])).then_some(Flaw::FingersAcross { arm, off_m, off_rad })
+}
+
+/// The flaw of a suction grasp whose lip does not lie flat on a face: the origin of G off the face, or z_G off the normal into the
+/// board.
+fn cup_on_face(arm: usize, x_og: &Pose, thickness_m: f64) -> Option<Flaw> {
+    let z_g = (x_og.rotation * Vector3::z()).z;
+    let off_m = (x_og.translation.vector.z + z_g.signum() * thickness_m / 2.0).abs();
+    let off_rad = z_g.abs().min(1.0).acos();
+    (!GIVEN.allows([off_m, off_rad])).then_some(Flaw::CupOffFace { arm, off_m, off_rad })
 }
 
 fn check_joints(robot: &Robot, index: usize, arm: usize, hold: &ArmHold, flaws: &mut Vec<Flaw>) {

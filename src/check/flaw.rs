@@ -141,8 +141,8 @@ pub enum Flaw {
         name: String,
         /// The force, N.
         found_n: f64,
-        /// The gripper's largest force, N.
-        max_n: f64,
+        /// The gripper's largest force, N; `None` for a gripper with measured wrench limits.
+        max_n: Option<f64>,
     },
     /// A board that the gripper does not close on.
     Thickness {
@@ -161,6 +161,22 @@ pub enum Flaw {
         off_m: f64,
         /// Angle between the finger axis and the board's normal, rad.
         off_rad: f64,
+    },
+    /// A suction cup whose lip does not lie flat on a face of the board.
+    CupOffFace {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// Distance of the lip's centre from the face, m.
+        off_m: f64,
+        /// Angle between z_G and the normal into the board, rad.
+        off_rad: f64,
+    },
+    /// A suction cup whose lip reaches over the edge of the board or over a hole.
+    CupOffBoard {
+        /// Index in the plan's `arms`.
+        arm: usize,
+        /// How far, m.
+        off_m: f64,
     },
     /// Joint angles that put the gripper elsewhere than X_WO X_OG.
     Hand {
@@ -305,9 +321,11 @@ impl Flaw {
             Self::AngleCount { arm, .. } => format!("arms[{arm}].q_rad"),
             Self::Angle { arm, joint, .. } => format!("arms[{arm}].q_rad[{joint}]"),
             Self::GripForce { arm, .. } => format!("arms[{arm}].grip_force_n"),
-            Self::FingersAcross { arm, .. } | Self::Hand { arm, .. } | Self::PadOffPlate { arm, .. } => {
-                format!("arms[{arm}].x_og")
-            }
+            Self::FingersAcross { arm, .. }
+            | Self::CupOffFace { arm, .. }
+            | Self::CupOffBoard { arm, .. }
+            | Self::Hand { arm, .. }
+            | Self::PadOffPlate { arm, .. } => format!("arms[{arm}].x_og"),
             Self::Person(_) => "human".into(),
             Self::PersonPose { .. } | Self::Standing { .. } => "human.x_wb".into(),
             Self::PersonAngle { joint, .. } => format!("human.q_rad[{joint}]"),
@@ -368,6 +386,10 @@ impl Flaw {
             Self::FingersAcross { off_m, off_rad, .. } => {
                 format!("fingers {} off the board's middle plane", GIVEN.deviation([*off_m, *off_rad]))
             }
+            Self::CupOffFace { off_m, off_rad, .. } => {
+                format!("a suction cup {} off a face of the board", GIVEN.deviation([*off_m, *off_rad]))
+            }
+            Self::CupOffBoard { off_m, .. } => format!("a suction cup {:.1} mm off the material", off_m * 1e3),
             Self::Hand { off_m, off_rad, tolerance, .. } => {
                 format!("the gripper {} from where q_rad puts it", tolerance.deviation([*off_m, *off_rad]))
             }
@@ -420,14 +442,12 @@ impl Flaw {
             Self::Joints { name, expected, .. } => format!("the joints of the {name} arm: {}", expected.join(", ")),
             Self::AngleCount { expected, .. } => format!("{expected} angles in rad"),
             Self::Angle { name, limits_rad: [low, high], .. } => format!("{low} to {high} rad, the limits of {name}"),
-            Self::GripForce { name, found_n, max_n, .. } => {
-                if *found_n > 0.0 {
-                    format!("at most {max_n} N, what the {name} gripper gives")
-                } else {
-                    "a positive number (N)".into()
-                }
-            }
+            Self::GripForce { name, found_n, max_n, .. } => expected_grip(name, *found_n, *max_n),
             Self::FingersAcross { .. } => format!("fingers that close across the thickness, within {GIVEN}"),
+            Self::CupOffFace { .. } => {
+                format!("the origin of G on a face and z_G along its normal into the board, within {GIVEN}")
+            }
+            Self::CupOffBoard { .. } => "a lip inside the outline and off the convex hulls of the holes".into(),
             Self::Hand { tolerance, .. } => {
                 format!("x_wo x_og to equal the arm's forward kinematics within {tolerance}")
             }
@@ -498,6 +518,15 @@ impl fmt::Display for Flaw {
 pub struct Flaws {
     first: Flaw,
     others: Vec<Flaw>,
+}
+
+/// What a grip force should have been, of a gripper that gives so much, or that has measured wrench limits.
+fn expected_grip(name: &str, found_n: f64, max_n: Option<f64>) -> String {
+    match max_n {
+        None => format!("no grip force: the {name} gripper has measured wrench limits"),
+        Some(max_n) if found_n > 0.0 => format!("at most {max_n} N, what the {name} gripper gives"),
+        Some(_) => "a positive number (N)".into(),
+    }
 }
 
 impl Flaws {

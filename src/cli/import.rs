@@ -170,7 +170,7 @@ fn plan_of(
             joints: arm.joints.clone(),
             q_rad,
             x_og: hold.x_og,
-            grip_force_n: scenario.grip.force_n,
+            grip_force_n: robot.arms[hold.arm].gripper.grip_force_n(scenario.grip.force_n),
         }
     };
     Plan {

@@ -116,7 +116,7 @@ fn cannot_carry_the_weight(checked: &CheckedPlan<'_>, scenario: &Scenario) -> bo
     let Uncertainty { friction_scale, grip_force_scale, .. } = scenario.uncertainty;
     let Ok(mut model) = ContactModel::of_plan(checked, scenario.grip.friction * friction_scale) else { return false };
     for hand in &mut model.hands {
-        hand.grip_force_n *= grip_force_scale;
+        hand.scale_grip(grip_force_scale);
     }
     match StabilityWorkspace::new().friction_load_factor(&model) {
         Ok(LoadFactorOutcome::GravityInfeasible { certificate }) => {

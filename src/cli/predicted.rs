@@ -16,6 +16,8 @@ const LEAST_GAIN: f64 = 5e-4;
 
 /// The step of the grip force for which a gain is stated, N.
 const GRIP_STEP_N: f64 = 1.0;
+/// The step of measured wrench limits, per cent.
+const LIMITS_STEP_PERCENT: f64 = 1.0;
 /// The step of the friction coefficient.
 const FRICTION_STEP: f64 = 0.01;
 /// The step of a torque limit, N m.
@@ -120,6 +122,7 @@ fn gains(model: &ContactModel, best_case: &LoadFactor) -> Vec<Gain> {
 fn gains_of_hand(hand: &HandModel, by: &HandSensitivity) -> Vec<Gain> {
     let gain = |change: String, load_factor: f64| Gain { hand: hand.name.clone(), change, load_factor };
     let mut gains = vec![
+        gain(format!("measured limits +{LIMITS_STEP_PERCENT} %"), by.per_measured_limits * LIMITS_STEP_PERCENT / 100.0),
         gain(format!("grip force +{GRIP_STEP_N} N"), by.per_grip_force_n * GRIP_STEP_N),
         gain(format!("pad friction +{FRICTION_STEP}"), by.per_friction.iter().sum::<f64>() * FRICTION_STEP),
     ];

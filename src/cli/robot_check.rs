@@ -10,7 +10,7 @@ use super::{
 use crate::{
     collision::CollisionModel,
     report::file,
-    robot::{Chain, InverseKinematics, Robot, RobotError},
+    robot::{Chain, Finger, Gripper, Holding, InverseKinematics, MeasuredGrip, Robot, RobotError},
     setup::{Overlaps, middle, positions},
 };
 
@@ -60,18 +60,40 @@ pub fn check(description: &Path, args: &DoctorArgs) -> Result<Exit, CliError> {
 fn arm_line(robot: &Robot, index: usize) -> String {
     let arm = &robot.arms[index];
     let gripper = &arm.gripper;
-    let [narrow_mm, wide_mm] = gripper.opening_m.map(|m| m * 1e3);
-    let [width_mm, height_mm] = gripper.fingers[0].pad.size_m.map(|m| m * 1e3);
     let chain = Chain::new(robot, index, 0.0);
     let solver = InverseKinematics::for_chain(&chain).name();
     format!(
-        "ok     arm {}: {} joints, reach {:.2} m, {solver} inverse kinematics; gripper opens {narrow_mm:.1} to {wide_mm:.1} mm, \
-         pads {width_mm:.1} x {height_mm:.1} mm, {} N",
+        "ok     arm {}: {} joints, reach {:.2} m, {solver} inverse kinematics; {}, {}",
         arm.name,
         arm.joints.len(),
         chain.reach_m(),
-        gripper.max_force_n
+        shape_of(gripper),
+        holds(gripper),
     )
+}
+
+/// What a gripper looks like.
+fn shape_of(gripper: &Gripper) -> String {
+    let [narrow_mm, wide_mm] = gripper.opening_m.map(|m| m * 1e3);
+    match (&gripper.cup, gripper.fingers.first()) {
+        (Some(cup), _) => format!("suction cup of {:.1} mm", 2e3 * cup.radius_m),
+        (None, Some(Finger { pad, .. })) => {
+            let [width_mm, height_mm] = pad.size_m.map(|m| m * 1e3);
+            format!("gripper opens {narrow_mm:.1} to {wide_mm:.1} mm, pads {width_mm:.1} x {height_mm:.1} mm")
+        }
+        (None, None) => "no gripper".to_owned(),
+    }
+}
+
+/// What a gripper holds.
+fn holds(gripper: &Gripper) -> String {
+    match &gripper.holding {
+        Holding::Pads(pads) => format!("{} N", pads.max_force_n),
+        Holding::Measured(MeasuredGrip { limits, stiffness }) => {
+            let grip = if stiffness.is_some() { "elastic" } else { "rigid" };
+            format!("{grip} within a measured {limits}")
+        }
+    }
 }
 
 /// How often links meet in random postures: shapes that are too large leave no posture to a planner.

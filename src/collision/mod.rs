@@ -353,9 +353,10 @@ fn person(links: &[PlacedLink<'_>], board: &Placed<'_>, part: &PersonPart) -> Op
     })
 }
 
-/// The links that move with a gripper's fingers.
+/// The links that move with a gripper's fingers, or its suction cup: they may touch the board.
 fn fingers(robot: &Robot, gripper: &crate::robot::Gripper) -> Vec<usize> {
     let mut fingers: Vec<usize> = gripper.fingers.iter().map(|finger| robot.joints[finger.joint].child_link).collect();
+    fingers.extend(gripper.cup.map(|cup| cup.link));
     for joint in &robot.joints {
         if fingers.contains(&joint.parent_link) && !fingers.contains(&joint.child_link) {
             fingers.push(joint.child_link);

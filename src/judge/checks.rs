@@ -17,6 +17,9 @@ const OPEN_SHARE: f64 = 0.05;
 /// Limit of the time that a pad is open, ms (docs/method.md#86-contact).
 const OPEN_LIMIT_MS: f64 = 30.0;
 
+/// Limit of the ratio of a measured gripper's wrench to its limits.
+const GRIP_WRENCH_LIMIT: f64 = 1.0;
+
 /// Limit of the time without any contact, ms (docs/method.md#86-contact).
 const CONTACT_LOST_LIMIT_MS: f64 = 0.0;
 
@@ -31,9 +34,10 @@ pub(super) const DROP_MM: f64 = 50.0;
 
 /// The order of checks that are crossed at the same sample; the first one determines the verdict: loss of the board,
 /// then the contacts, then consequences.
-const PRECEDENCE: [CheckKind; 11] = [
+const PRECEDENCE: [CheckKind; 12] = [
     CheckKind::Drop,
     CheckKind::ContactLost,
+    CheckKind::GripWrench,
     CheckKind::PadOpen,
     CheckKind::Slip,
     CheckKind::SlipRotation,
@@ -100,9 +104,13 @@ pub(super) fn findings(
         board(CheckKind::Deflection, limits.deflection_mm, &measures.deflection_mm),
     ];
     findings.extend(if is_complete { creep(trace, judged, limits.creep_mm_s) } else { None });
+    findings.push(sampled(CheckKind::TorqueRatio, limits.torque_ratio, measures.joints.iter().map(joint).collect()));
+    let measured = measures.hands.iter().filter(|hand| !hand.grip_ratio.is_empty());
+    let grip = |hand: &HandMeasures| Series::new(format!("{} hand", hand.name), &hand.grip_ratio[..count]);
+    // Neither of a hand with pads nor of a measured one is there what only the other has.
+    findings.extend(some(measured.map(grip).collect(), CheckKind::GripWrench, GRIP_WRENCH_LIMIT));
+    findings.extend(some(pad_open_series(trace, judged), CheckKind::PadOpen, OPEN_LIMIT_MS));
     findings.extend([
-        sampled(CheckKind::TorqueRatio, limits.torque_ratio, measures.joints.iter().map(joint).collect()),
-        sampled(CheckKind::PadOpen, OPEN_LIMIT_MS, pad_open_series(trace, judged)),
         sampled(CheckKind::ContactLost, CONTACT_LOST_LIMIT_MS, vec![contact_lost_series(judged)]),
         hand(CheckKind::Drop, DROP_MM, |hand| &hand.slip_mm),
     ]);
@@ -136,7 +144,7 @@ fn pad_open_series(trace: &Trace, judged: &[Sample]) -> Vec<Series> {
         .collect()
 }
 
-/// The time without contact of any pad at each sample, ms.
+/// The time without contact of any hand at each sample, ms.
 fn contact_lost_series(judged: &[Sample]) -> Series {
     Series { what: String::new(), values: duration_ms(judged, |sample| !sample.has_contact()) }
 }
@@ -184,6 +192,11 @@ fn duration_ms(judged: &[Sample], condition: impl Fn(&Sample) -> bool) -> Vec<f6
         (lasted_s * 1e6_f64).round() / 1e3
     };
     judged.iter().enumerate().map(lasted).collect()
+}
+
+/// The check of a limit on the largest of several series; `None` without a series.
+fn some(series: Vec<Series>, kind: CheckKind, limit: f64) -> Option<Finding> {
+    (!series.is_empty()).then(|| sampled(kind, limit, series))
 }
 
 /// The check of a limit on the largest of several series.

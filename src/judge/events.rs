@@ -78,8 +78,9 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
         CheckKind::Deflection => "the tool tip deflects by more than",
         CheckKind::Creep => "creeps faster than",
         CheckKind::TorqueRatio => "needs more than its torque limit times",
+        CheckKind::GripWrench => "lets go: its wrench exceeds the measured limits times",
         CheckKind::PadOpen => "has been open for more than",
-        CheckKind::ContactLost => "no pad has touched the board for more than",
+        CheckKind::ContactLost => "no hand has touched the board for more than",
         CheckKind::Drop => "has dropped the board: it slid by more than",
         CheckKind::PersonOverlap => "overlap by more than",
         CheckKind::Clearance => "are closer to each other than",
@@ -90,7 +91,7 @@ fn crossing_event(judged: &[Sample], finding: &Finding) -> Option<Event> {
         | CheckKind::Chatter => "the simulation violates the laws of mechanics by more than",
     };
     let unit = match finding.check.name {
-        CheckKind::TorqueRatio => String::new(),
+        CheckKind::TorqueRatio | CheckKind::GripWrench => String::new(),
         _ => format!(" {}", finding.check.unit),
     };
     let what = if crossing.what.is_empty() { String::new() } else { format!("{} ", crossing.what) };

@@ -10,7 +10,7 @@ use crate::model::{
 
 /// SHA-256 of the trace's numbers, in lowercase hexadecimal: the little-endian bits of every f64 in the order of the
 /// fields, the phase as a number (0 to 3), the person's distance if the plan has a person, the robot's clearance if it
-/// was measured, and the tool point if it has moved. Names are not part of it, nor are the self-checks, which follow from the rest. Equal fingerprints mean
+/// was measured, the limits and the wrench of a measured gripper while it holds, and the tool point if it has moved. Names are not part of it, nor are the self-checks, which follow from the rest. Equal fingerprints mean
 /// simulations that agree bit for bit.
 #[must_use]
 pub fn fingerprint(trace: &Trace) -> String {
@@ -45,6 +45,10 @@ fn visit_constants(trace: &Trace, visit: &mut impl FnMut(f64)) {
     for arm in &trace.arms {
         visit_all(&arm.effort_nm, visit);
         visit(arm.grip_force_n);
+        if let Some(limits) = &arm.wrench_limits {
+            visit_wrench(&limits.low, visit);
+            visit_wrench(&limits.high, visit);
+        }
     }
 }
 
@@ -71,6 +75,7 @@ fn visit_arm(arm: &ArmSample, visit: &mut impl FnMut(f64)) {
         visit_wrench(&pad.wrench_w, visit);
         visit_all(pad.p_wp_m.as_slice(), visit);
     }
+    arm.grip_wrench_g.iter().for_each(|wrench_g| visit_wrench(wrench_g, visit));
 }
 
 fn visit_pose(pose: &Pose, visit: &mut impl FnMut(f64)) {

@@ -15,6 +15,7 @@ use crate::model::{
 /// - sag: `|X_WO(t) p_OT - X_WO(0) p_OT|` up to the end of settling, T the tool point there;
 /// - deflection: `|X_WO(t) p_OT - X_WO(settled) p_OT|` from then on, T the tool point at that time;
 /// - torque ratio of a joint: `|tau_demanded| / tau_max`;
+/// - grip ratio of a measured gripper: that of its wrench to the limits;
 /// - clearance: the distance of the robot from itself and from the board.
 pub(super) fn measures(trace: &Trace, samples: &[Sample], settled: usize) -> Measures {
     let moved_mm = |sample: &Sample, since: &Sample, p_ot_m: Vector3<f64>| {
@@ -53,8 +54,16 @@ fn hand_measures(trace: &Trace, samples: &[Sample], arm: usize) -> HandMeasures 
             .iter()
             .map(|sample| 1e3 * (x_oc(sample).translation.vector - start.translation.vector).norm())
             .collect(),
+        grip_ratio: grip_ratio(trace, samples, arm),
         slip_deg: samples.iter().map(|sample| start.rotation.angle_to(&x_oc(sample).rotation).to_degrees()).collect(),
     }
+}
+
+/// The ratio of the wrench of a measured gripper to its limits; empty for a hand with pads.
+fn grip_ratio(trace: &Trace, samples: &[Sample], arm: usize) -> Vec<f64> {
+    let Some(limits) = &trace.arms[arm].wrench_limits else { return Vec::new() };
+    let wrenches = samples.iter().map(|sample| sample.arms[arm].grip_wrench_g);
+    wrenches.map(|wrench_g| wrench_g.map_or(0.0, |wrench_g| limits.ratio(&wrench_g))).collect()
 }
 
 fn joint_measures<'a>(trace: &'a Trace, samples: &'a [Sample], arm: usize) -> impl Iterator<Item = JointMeasures> + 'a {

@@ -33,7 +33,7 @@ use crate::model::{
 /// Judged are the samples from the hand-over of the board (docs/method.md#81-reference-states) to the end of the load, or to
 /// the sample at which the board is lost: what follows tells nothing about the hold. A value equal to its limit passes. The
 /// earliest crossing determines the verdict; of several at the same sample the loss of the board comes first, then the
-/// contacts (pad, slip, rotation), then the clearance, torque, sag, deflection, the person and creep.
+/// contacts (measured gripper, pad, slip, rotation), then the clearance, torque, sag, deflection, the person and creep.
 ///
 /// A trace that breaks down is judged up to its last valid sample. If a limit was crossed before, it determines the
 /// verdict. Otherwise there is no verdict, as the effect of the rest of the load is unknown.
@@ -143,6 +143,7 @@ fn malformed(trace: &Trace) -> Option<String> {
             && sample.arms.iter().zip(&trace.arms).all(|(found, arm)| {
                 found.torque_demanded_nm.len() == arm.joints.len()
                     && found.pads.len() == arm.pads.len()
+                    && (arm.wrench_limits.is_some() || found.grip_wrench_g.is_none())
                     && arm.effort_nm.len() == arm.joints.len()
             })
     };
@@ -158,6 +159,10 @@ fn no_verdict_reason(trace: &Trace, judged: &[Sample], ends_because: Option<&str
         return Some("found a limit or a tool point that is not finite".to_owned());
     }
     let lacks_torque = |arm: &ArmTrace| arm.effort_nm.iter().any(|&effort_nm| effort_nm <= 0.0);
+    let unlimited = |arm: &&ArmTrace| arm.wrench_limits.is_some_and(|limits| !limits.is_valid());
+    if let Some(arm) = trace.arms.iter().find(unlimited) {
+        return Some(format!("found wrench limits of the {} gripper that do not enclose 0", arm.name));
+    }
     if let Some(arm) = trace.arms.iter().find(|arm| lacks_torque(arm)) {
         return Some(format!("found a joint of the {} arm without torque, expected positive limits", arm.name));
     }

@@ -24,7 +24,7 @@ const COUPLING_LIMIT_MM: f64 = 1.0;
 /// still swings.
 const FORCE_LIMIT_N: f64 = 1.0;
 
-/// Limit of the fast oscillation of a pad's normal force, as a share of the grip force. Typical: 0.003; 0.02 for hands that
+/// Limit of the fast oscillation of a pad's normal force, as a share of the grip force, and of a measured gripper's ratio. Typical: 0.003; 0.02 for hands that
 /// slide. Pads that ring reach 0.2 to 1.
 const CHATTER_LIMIT: f64 = 0.1;
 
@@ -68,16 +68,14 @@ fn created_j(samples: &[Sample]) -> f64 {
 
 /// The largest fast oscillation of a pad's normal force N over the grip force: the root mean square over 50 ms of
 /// `(N(t - h) - 2 N(t) + N(t + h)) / 4`, with h the time step or 2 ms. An oscillation of amplitude a and period 2 h gives
-/// a; one that is ten times as slow, 0.02 a. 0 if fewer samples are known.
+/// a; one that is ten times as slow, 0.02 a. Of a measured gripper it is that of the ratio of its wrench to the limits, while it
+/// holds. 0 if fewer samples are known.
 fn chatter(trace: &Trace, samples: &[Sample]) -> f64 {
     let [first, second, ..] = samples else { return 0.0 };
     let steps = |time_s: f64| (time_s / (second.time_s - first.time_s)).round() as usize;
     let lags = [1, steps(CHATTER_LAG_S).max(1)];
-    let pads = trace.arms.iter().enumerate().flat_map(|(arm, of)| (0..of.pads.len()).map(move |pad| (arm, pad)));
     let mut largest = 0.0;
-    for (arm, pad) in pads {
-        let share = |sample: &Sample| sample.arms[arm].pads[pad].normal_force_n / trace.arms[arm].grip_force_n;
-        let shares: Vec<f64> = samples.iter().map(share).collect();
+    for shares in shares_of_hands(trace, samples) {
         for lag in lags {
             let bends: Vec<f64> = (lag..shares.len().saturating_sub(lag))
                 .map(|at| (shares[at - lag] - 2.0 * shares[at] + shares[at + lag]) / 4.0)
@@ -88,6 +86,24 @@ fn chatter(trace: &Trace, samples: &[Sample]) -> f64 {
         }
     }
     largest
+}
+
+/// What may oscillate: of each pad its normal force over the grip force, of each measured gripper the ratio of its wrench to the
+/// limits up to where it lets go.
+fn shares_of_hands(trace: &Trace, samples: &[Sample]) -> Vec<Vec<f64>> {
+    let mut shares: Vec<Vec<f64>> = Vec::new();
+    for (arm, constants) in trace.arms.iter().enumerate() {
+        let of_pad = |pad: usize| {
+            let share = |sample: &Sample| sample.arms[arm].pads[pad].normal_force_n / constants.grip_force_n;
+            samples.iter().map(share).collect()
+        };
+        shares.extend((0..constants.pads.len()).map(of_pad));
+        shares.extend(constants.wrench_limits.map(|limits| {
+            let held = samples.iter().map_while(|sample| sample.arms[arm].grip_wrench_g);
+            held.map(|wrench_g| limits.ratio(&wrench_g)).collect()
+        }));
+    }
+    shares
 }
 
 /// Why the simulation is invalid by these checks; `None` if it is valid.

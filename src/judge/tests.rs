@@ -1,5 +1,6 @@
 //! Synthetic traces: each limit crossed alone, met exactly, and together with others.
 
+mod measured;
 mod mechanics;
 
 use nalgebra::{Isometry3, Vector3};
@@ -55,6 +56,7 @@ fn still() -> Trace {
         effort_nm: vec![50.0, 15.0],
         pads: vec!["upper".into(), "lower".into()],
         grip_force_n: GRIP_N,
+        wrench_limits: None,
     };
     let pad = PadSample { normal_force_n: GRIP_N, wrench_w: Wrench::default(), p_wp_m: Vector3::zeros() };
     let arm_sample = ArmSample {
@@ -64,6 +66,7 @@ fn still() -> Trace {
         torque_applied_nm: vec![10.0, -6.0],
         x_oc: crooked(),
         pads: vec![pad; 2],
+        grip_wrench_g: None,
     };
     let sample = |index: usize| Sample {
         time_s: index as f64 * STEP_S,

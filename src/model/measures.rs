@@ -33,6 +33,8 @@ pub struct HandMeasures {
     pub slip_mm: Vec<f64>,
     /// Rotation relative to the board, degrees.
     pub slip_deg: Vec<f64>,
+    /// Ratio of the wrench of a measured gripper to its limits, 0 once it has let go; empty for a hand with pads.
+    pub grip_ratio: Vec<f64>,
 }
 
 /// Torque ratio of one joint.

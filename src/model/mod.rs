@@ -22,6 +22,7 @@ pub mod tool_part;
 pub mod trace;
 pub mod verdict;
 pub mod wrench;
+pub mod wrench_limits;
 
 /// The file format: the only `format` number that this version writes and reads.
 pub const FORMAT: u32 = 1;

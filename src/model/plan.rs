@@ -74,7 +74,8 @@ pub struct ArmHold {
     #[serde(with = "pose")]
     #[schemars(with = "PoseForm")]
     pub x_og: Pose,
-    /// The force that closes each finger, N.
+    /// The force that closes each finger, N; 0, which files leave out, for a gripper with measured wrench limits.
+    #[serde(default, skip_serializing_if = "is_default")]
     pub grip_force_n: f64,
 }
 

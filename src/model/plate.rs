@@ -187,7 +187,7 @@ impl Plate {
     /// How far a convex, counter-clockwise patch is inside each side of the outline and away from the convex hull of each hole,
     /// m; negative where it is not.
     #[must_use]
-    pub fn patch_margins_m(&self, patch: &[Point; 4]) -> Vec<f64> {
+    pub fn patch_margins_m(&self, patch: &[Point]) -> Vec<f64> {
         let inside = |side: &OutlineSide| patch.iter().map(|&p| side.depth_m(p)).fold(f64::INFINITY, f64::min);
         let of_sides = self.sides().iter().map(inside);
         of_sides.chain(self.0.hole_hulls_m.iter().map(|hull| separation_m(patch, hull))).collect()

@@ -16,6 +16,7 @@ use super::{
     operation::{Operation, OperationKind},
     plate::Plate,
     verdict::VerdictKind,
+    wrench_limits::WrenchLimits,
 };
 
 pub use super::person::{Hand, Person, PostureKind, PostureLimits, Sex, ShoulderKind, StandingPlace};
@@ -88,8 +89,11 @@ pub struct ArmParameters {
     pub damping_nm_s_rad: Vec<f64>,
     /// Torque limit of each joint, N m.
     pub effort_nm: Vec<f64>,
-    /// The pads of the arm's gripper.
+    /// The pads of the arm's gripper, or the faces of its jaws if it was measured.
     pub pads: Vec<PadParameters>,
+    /// Measured limits of what the gripper holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrench_limits: Option<WrenchLimits>,
 }
 
 /// Parameters of one pad of a gripper.

@@ -1,7 +1,7 @@
 //! The trace of a simulation: the state after every step. It is all that the judge and the recording receive from the
 //! simulation.
 
-use super::{frames::Pose, wrench::Wrench};
+use super::{frames::Pose, wrench::Wrench, wrench_limits::WrenchLimits};
 
 /// A phase of the simulation (`docs/method.md#74-phases`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -71,10 +71,12 @@ pub struct ArmTrace {
     pub joints: Vec<String>,
     /// The torque limit of each joint, N m.
     pub effort_nm: Vec<f64>,
-    /// The pads, in the order of the samples.
+    /// The pads, in the order of the samples; none of a measured gripper.
     pub pads: Vec<String>,
-    /// The force that closes each finger, N.
+    /// The force that closes each finger, N; 0 of a measured gripper.
     pub grip_force_n: f64,
+    /// The measured limits of the gripper's wrench; `None` if it has pads.
+    pub wrench_limits: Option<WrenchLimits>,
 }
 
 /// The state after one step.
@@ -111,7 +113,7 @@ pub struct Sample {
 pub struct StepCheck {
     /// Deepest penetration of a pad that touches the board, m.
     pub penetration_m: f64,
-    /// Residual of the board's momentum balance: `|m dv/dt - (pads + tool + weight)|`, N. The pads' forces are those of the
+    /// Residual of the board's momentum balance: `|m dv/dt - (hands + tool + weight)|`, N. The hands' forces are those of the
     /// last substep, so the residual is meaningful only while forces change slowly.
     pub force_residual_n: f64,
     /// Difference between the travels of two coupled fingers, m.
@@ -123,10 +125,12 @@ pub struct StepCheck {
 }
 
 impl Sample {
-    /// True if at least one pad presses on the board.
+    /// True if at least one pad presses on the board, or a measured gripper holds it.
     #[must_use]
     pub fn has_contact(&self) -> bool {
-        self.arms.iter().flat_map(|arm| &arm.pads).any(|pad| pad.normal_force_n > 0.0)
+        let holds =
+            |arm: &ArmSample| arm.grip_wrench_g.is_some() || arm.pads.iter().any(|pad| pad.normal_force_n > 0.0);
+        self.arms.iter().any(holds)
     }
 }
 
@@ -145,6 +149,9 @@ pub struct ArmSample {
     pub x_oc: Pose,
     /// One entry per pad.
     pub pads: Vec<PadSample>,
+    /// Wrench of a measured gripper on the board about the grasp point in G axes. It lets go in the step in which the wrench
+    /// leaves the limits; `None` after it, and for pads.
+    pub grip_wrench_g: Option<Wrench>,
 }
 
 /// The state of one pad after one step.

@@ -19,6 +19,8 @@ pub enum VerdictKind {
     Pivots,
     /// A pad lost its normal force.
     Opens,
+    /// The wrench of a measured gripper exceeded its limits, and it let go.
+    Detaches,
     /// The board fell.
     Drops,
     /// The demanded torque of a joint exceeded its limit.
@@ -47,6 +49,7 @@ impl VerdictKind {
             Self::Slips => "slips",
             Self::Pivots => "pivots",
             Self::Opens => "opens",
+            Self::Detaches => "detaches",
             Self::Drops => "drops",
             Self::Saturates => "saturates",
             Self::Deflects => "deflects",
@@ -133,9 +136,11 @@ pub enum CheckKind {
     Creep,
     /// Largest demanded joint torque divided by its limit.
     TorqueRatio,
+    /// Largest ratio of a measured gripper's wrench to its limits.
+    GripWrench,
     /// Longest time that a pad had almost no normal force, ms.
     PadOpen,
-    /// Longest time without contact of any pad with the board, ms.
+    /// Longest time without contact of any hand with the board, ms.
     ContactLost,
     /// Largest slip, mm; beyond the limit the board counts as dropped.
     Drop,
@@ -152,7 +157,8 @@ pub enum CheckKind {
     ForceResidual,
     /// Self-check: largest difference between the travels of coupled fingers, mm.
     CouplingDrift,
-    /// Self-check: largest fast oscillation of a pad's normal force, divided by the grip force.
+    /// Self-check: largest fast oscillation of a pad's normal force, divided by the grip force, or of a measured gripper's ratio
+    /// of its wrench to its limits.
     Chatter,
 }
 
@@ -166,6 +172,7 @@ impl CheckKind {
             Self::Deflection => "deflection",
             Self::Creep => "creep",
             Self::TorqueRatio => "torque_ratio",
+            Self::GripWrench => "grip_wrench",
             Self::PadOpen => "pad_open",
             Self::ContactLost => "contact_lost",
             Self::Drop => "drop",
@@ -192,7 +199,7 @@ impl CheckKind {
             | Self::CouplingDrift => "mm",
             Self::SlipRotation => "deg",
             Self::Creep => "mm/s",
-            Self::TorqueRatio | Self::Chatter => "1",
+            Self::TorqueRatio | Self::GripWrench | Self::Chatter => "1",
             Self::PadOpen | Self::ContactLost => "ms",
             Self::EnergyCreated => "J",
             Self::ForceResidual => "N",
@@ -221,6 +228,7 @@ impl CheckKind {
             Self::Deflection => VerdictKind::Deflects,
             Self::Creep => VerdictKind::Creeps,
             Self::TorqueRatio => VerdictKind::Saturates,
+            Self::GripWrench => VerdictKind::Detaches,
             Self::PadOpen => VerdictKind::Opens,
             Self::ContactLost | Self::Drop => VerdictKind::Drops,
             Self::PersonOverlap => VerdictKind::Touches,

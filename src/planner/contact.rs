@@ -19,7 +19,7 @@ pub fn plan_arms(problem: &Problem<'_>, candidate: &Candidate) -> Vec<ArmHold> {
         joints: arm.joints.clone(),
         q_rad: own.q_rad.clone(),
         x_og: own.grasp.x_og(&problem.robot.board),
-        grip_force_n: scenario.grip.force_n,
+        grip_force_n: problem.robot.robot.arms[arm.index].gripper.grip_force_n(scenario.grip.force_n),
     })
     .collect()
 }
@@ -50,8 +50,9 @@ pub fn contact_model_with(
         .into_iter()
         .zip(&problem.robot.arms)
         .map(|(own, arm)| {
-            let own = ArmHold { grip_force_n: grip.force_n, ..own };
-            HandModel::new(&problem.robot.robot.arms[arm.index], &arm.chain, &own, &object, grip.friction)
+            let of_robot = &problem.robot.robot.arms[arm.index];
+            let own = ArmHold { grip_force_n: of_robot.gripper.grip_force_n(grip.force_n), ..own };
+            HandModel::new(of_robot, &arm.chain, &own, &object, grip.friction)
         })
         .collect();
     let operation = problem.scenario.operation.rolled(candidate.work.roll_rad);

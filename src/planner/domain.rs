@@ -13,7 +13,7 @@ use crate::{
         frames::Pose,
         grasp::{EdgeGrasp, pad_corners_m},
     },
-    robot::{Chain, Gripper, SearchBox},
+    robot::{Chain, Finger, Gripper, SearchBox},
 };
 
 /// Depth of the gripper's origin inside the edge, m, of a gripper whose palm allows it (docs/method.md#25-edge-grasps).
@@ -114,7 +114,8 @@ pub fn uniform(random: &mut impl Rng, low: f64, high: f64) -> f64 {
 /// The edges of a board that the search grasps: all four of a box, of a plate those at least as long as the narrowest pad of the
 /// grippers is wide.
 pub fn graspable_edges<'g>(board: &BoardShape, grippers: impl Iterator<Item = &'g Gripper>) -> Vec<Edge> {
-    let narrowest_m = grippers.map(|gripper| gripper.fingers[0].pad.size_m[0]).fold(f64::INFINITY, f64::min);
+    let fingers = grippers.filter_map(|gripper| gripper.fingers.first());
+    let narrowest_m = fingers.map(|finger| finger.pad.size_m[0]).fold(f64::INFINITY, f64::min);
     let is_long = |edge: &Edge| {
         let [low_m, high_m] = board.edge(*edge).along_m;
         board.plate.is_none() || high_m - low_m >= narrowest_m
@@ -152,7 +153,9 @@ pub fn pads_on_board(gripper: &Gripper, grasp: &EdgeGrasp, board: &BoardShape) -
 /// Distance of the pads' outermost corner inside each edge of the board, m, negative outside: of a box +x_O, -x_O, +y_O, -y_O;
 /// of a plate its edges in order, then what the pads keep from the convex hull of each hole beyond [`PAD_TO_HOLE_M`].
 pub fn pad_margins_m(gripper: &Gripper, grasp: &EdgeGrasp, board: &BoardShape) -> Vec<f64> {
-    let corners_m = pad_corners_m(&grasp.x_og(board), gripper.fingers[0].pad.size_m, gripper.fingers[0].pad.centre_m);
+    // A suction cup has no pads, and so no margin.
+    let Some(Finger { pad, .. }) = gripper.fingers.first() else { return vec![f64::NEG_INFINITY] };
+    let corners_m = pad_corners_m(&grasp.x_og(board), pad.size_m, pad.centre_m);
     if let Some(plate) = &board.plate {
         let mut margins_m = plate.patch_margins_m(&corners_m);
         margins_m.iter_mut().skip(plate.sides().len()).for_each(|margin_m| *margin_m -= PAD_TO_HOLE_M);

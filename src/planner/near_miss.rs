@@ -103,8 +103,8 @@ impl Solver<'_> {
     /// The smallest grip force, up to the largest of every gripper, with which one of the grasps is stable enough.
     fn grip_force(&mut self, misses: &[Miss]) -> Option<Remedy> {
         let Grip { force_n: now, .. } = self.problem.scenario.grip;
-        let arms = self.problem.robot.robot.arms.iter();
-        let most_n = arms.map(|arm| arm.gripper.max_force_n).fold(f64::INFINITY, f64::min);
+        let pads = self.problem.robot.robot.arms.iter().filter_map(|arm| arm.gripper.holding.pads());
+        let most_n = pads.map(|pads| pads.max_force_n).reduce(f64::min)?;
         self.least(misses, [now, most_n], GRIP_STEP_N, |grip, force_n| Grip { force_n, ..grip })
     }
 

@@ -130,6 +130,7 @@ fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
         CheckKind::Deflection => vec![&measures.deflection_mm],
         CheckKind::TorqueRatio => measures.joints.iter().map(|joint| joint.torque_ratio.as_slice()).collect(),
         CheckKind::Clearance => vec![&measures.clearance_mm],
+        CheckKind::GripWrench => measures.hands.iter().map(|hand| hand.grip_ratio.as_slice()).collect(),
         CheckKind::Creep
         | CheckKind::PadOpen
         | CheckKind::ContactLost

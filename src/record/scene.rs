@@ -48,6 +48,7 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     for (arm, &robot_arm) in arms.iter().enumerate() {
         log_pads(messages, input, &frames, arm, robot_arm)?;
     }
+    log_grips(messages, input, &frames, &arms)?;
     log_load(messages, &frames)
 }
 
@@ -139,6 +140,32 @@ fn log_pads(
 
         let forces = samples().map(|sample| (sample.p_wp_m, sample.wrench_w.force_n));
         let path = entity(&["scene", "forces", &names.name, name]);
+        let style =
+            Arrows3D::update_fields().with_colors([palette::hand(arm)]).with_radii([0.006]).with_show_labels(false);
+        log_forces(messages, &path, &frames.times_s, forces, &style)?;
+    }
+    Ok(())
+}
+
+/// Logs the forces of measured grippers on the board at their grasp points, without length once they have let go.
+fn log_grips(
+    messages: &mut Messages,
+    input: &RecordingInput,
+    frames: &Frames,
+    arms: &[usize],
+) -> Result<(), RecordError> {
+    for (arm, &robot_arm) in arms.iter().enumerate() {
+        let constants = &input.trace.arms[arm];
+        if constants.wrench_limits.is_none() {
+            continue;
+        }
+        let gripper = &input.robot.arms[robot_arm].gripper;
+        let forces = frames.samples.iter().zip(&frames.x_wl).map(|(sample, x_wl)| {
+            let x_wg = x_wl[gripper.frame_link];
+            let force_g_n = sample.arms[arm].grip_wrench_g.unwrap_or_default().force_n;
+            ((x_wg * Point3::from(gripper.grasp_point_g())).coords, x_wg.rotation * force_g_n)
+        });
+        let path = entity(&["scene", "forces", &constants.name, "gripper"]);
         let style =
             Arrows3D::update_fields().with_colors([palette::hand(arm)]).with_radii([0.006]).with_show_labels(false);
         log_forces(messages, &path, &frames.times_s, forces, &style)?;

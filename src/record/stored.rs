@@ -24,6 +24,7 @@ use crate::model::{
     scenario::Scenario,
     trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
     wrench::Wrench,
+    wrench_limits::WrenchLimits,
 };
 
 /// The folder of the columns.
@@ -37,6 +38,9 @@ const PERSON_DISTANCE: &str = "person_distance_m";
 
 /// The column of the robot's distance from itself and the board; older recordings do not have it.
 const ROBOT_CLEARANCE: &str = "robot_clearance_m";
+
+/// The column of a measured gripper's wrench; its rows are empty after it has let go.
+const GRIP_WRENCH: &str = "grip_wrench_g";
 
 /// A phase is stored as its index; later versions append.
 const PHASES: [Phase; 5] = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Grip];
@@ -62,6 +66,8 @@ struct ArmConstants {
     effort_nm: Vec<f64>,
     pads: Vec<String>,
     grip_force_n: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    wrench_limits: Option<WrenchLimits>,
 }
 
 /// Stores trace, scenario and plan. The durations of the search are left out of the plan, so equal runs give equal files.
@@ -98,7 +104,7 @@ fn log_trace(messages: &mut Messages, trace: &Trace) -> Result<(), RecordError> 
         of(ROBOT_CLEARANCE, |sample| sample.robot_clearance_m.into_iter().collect()),
     ];
     messages.log_columns(&entity(&[TRACE, "board"]), &times_s, board)?;
-    for (arm, ArmTrace { name, pads, .. }) in trace.arms.iter().enumerate() {
+    for (arm, ArmTrace { name, pads, wrench_limits, .. }) in trace.arms.iter().enumerate() {
         let of = |name, row: fn(&ArmSample) -> Vec<f64>| column(name, samples.iter().map(|s| row(&s.arms[arm])));
         let columns = [
             of("q_rad", |arm| arm.q_rad.clone()),
@@ -107,6 +113,8 @@ fn log_trace(messages: &mut Messages, trace: &Trace) -> Result<(), RecordError> 
             of("torque_applied_nm", |arm| arm.torque_applied_nm.clone()),
             of("x_oc", |arm| pose(&arm.x_oc)),
         ];
+        let wrenches = of(GRIP_WRENCH, |arm| arm.grip_wrench_g.iter().flat_map(wrench).collect());
+        let columns = columns.into_iter().chain(wrench_limits.map(|_| wrenches));
         messages.log_columns(&entity(&[TRACE, "arms", name]), &times_s, columns)?;
         for (pad, pad_name) in pads.iter().enumerate() {
             let of = |name, row: fn(&PadSample) -> Vec<f64>| {
@@ -125,8 +133,8 @@ fn log_trace(messages: &mut Messages, trace: &Trace) -> Result<(), RecordError> 
 
 fn constants(trace: &Trace) -> Constants {
     let arm = |arm: &ArmTrace| {
-        let ArmTrace { name, joints, effort_nm, pads, grip_force_n } = arm.clone();
-        ArmConstants { name, joints, effort_nm, pads, grip_force_n }
+        let ArmTrace { name, joints, effort_nm, pads, grip_force_n, wrench_limits } = arm.clone();
+        ArmConstants { name, joints, effort_nm, pads, grip_force_n, wrench_limits }
     };
     Constants {
         arms: trace.arms.iter().map(arm).collect(),
@@ -208,8 +216,8 @@ pub(super) fn trace(chunks: &[Chunk]) -> Result<Trace, String> {
 }
 
 fn arm_trace(arm: ArmConstants) -> ArmTrace {
-    let ArmConstants { name, joints, effort_nm, pads, grip_force_n } = arm;
-    ArmTrace { name, joints, effort_nm, pads, grip_force_n }
+    let ArmConstants { name, joints, effort_nm, pads, grip_force_n, wrench_limits } = arm;
+    ArmTrace { name, joints, effort_nm, pads, grip_force_n, wrench_limits }
 }
 
 /// The samples of one arm.
@@ -232,6 +240,13 @@ fn arm_series(chunks: &[Chunk], arm: &ArmTrace, count: usize) -> Result<std::vec
             torque_applied_nm: columns.row("torque_applied_nm", index)?.to_vec(),
             x_oc: pose_of(columns.numbers("x_oc", index)?),
             pads: pads.iter().map(|columns| pad(columns, index)).collect::<Result<_, _>>()?,
+            grip_wrench_g: match (&arm.wrench_limits, columns.row(GRIP_WRENCH, index)) {
+                (None, _) => None,
+                (Some(_), row) => match row? {
+                    [] => None,
+                    _ => Some(wrench_of(columns.numbers(GRIP_WRENCH, index)?)),
+                },
+            },
         })
     };
     Ok((0..count).map(sample).collect::<Result<Vec<_>, _>>()?.into_iter())

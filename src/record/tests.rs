@@ -25,6 +25,7 @@ use crate::{
         trace::{ArmSample, ArmTrace, PadSample, PersonTouch, Phase, Sample, StepCheck, Trace},
         verdict::{Check, CheckKind, Failure, Verdict, VerdictKind},
         wrench::Wrench,
+        wrench_limits::{LimitShape, WrenchLimits},
     },
     robot::{Chain, InverseKinematics, Robot},
 };
@@ -156,6 +157,7 @@ fn trace(robot: &Robot, plan: &Plan) -> Trace {
         effort_nm: vec![50.0, 100.0, 50.0, 50.0, 15.0, 15.0, 15.0],
         pads: vec!["upper".into(), "lower".into()],
         grip_force_n: hold.grip_force_n,
+        wrench_limits: None,
     };
     Trace {
         arms: plan.arms.iter().map(arm).collect(),
@@ -195,6 +197,7 @@ fn sample(robot: &Robot, plan: &Plan, step: usize) -> Sample {
                 UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * hold.x_og.rotation,
             ),
             pads: vec![pad(1.0), pad(-1.0)],
+            grip_wrench_g: None,
         }
     };
     Sample {
@@ -231,6 +234,7 @@ fn measures(trace: &Trace) -> Measures {
                 name: name.into(),
                 slip_mm: of(&|s| 0.3 * s.load_factor),
                 slip_deg: of(&|s| turn_rad.to_degrees() * s.load_factor),
+                grip_ratio: Vec::new(),
             })
             .collect(),
         sag_mm: of(&|_| 0.25),
@@ -374,6 +378,24 @@ fn the_stored_run_is_read_back_bit_by_bit() {
     // Equality of numbers: stored as they are.
     assert_eq!(run.trace, example.trace);
     assert_eq!((run.plan, run.scenario, run.verdict), (example.plan, example.scenario, example.verdict));
+}
+
+#[test]
+fn a_measured_gripper_is_read_back_with_its_limits_and_where_it_let_go() {
+    let mut example = example();
+    let trace = &mut example.trace;
+    trace.arms[1].pads.clear();
+    let most = Wrench::from([100.0, 100.0, 100.0, 10.0, 10.0, 10.0]);
+    trace.arms[1].wrench_limits = Some(WrenchLimits::symmetric(LimitShape::Ellipsoid, most));
+    for (index, sample) in trace.samples.iter_mut().enumerate() {
+        sample.arms[1].pads.clear();
+        let wrench_g = Wrench::from([index as f64 / 3.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        sample.arms[1].grip_wrench_g = (index < 100).then_some(wrench_g);
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.rrd");
+    fs::write(&path, encode(&example.input()).unwrap()).unwrap();
+    assert_eq!(read_run(&path).unwrap().trace, example.trace);
 }
 
 #[test]

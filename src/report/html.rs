@@ -180,6 +180,8 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
         let hands = measures.hands.iter().zip(HANDS.into_iter().cycle());
         hands.map(|(hand, class)| Line { name: &hand.name, class, values: series(hand) }).collect::<Vec<_>>()
     };
+    // Only of measured grippers.
+    let measured = hands(|hand| &hand.grip_ratio).into_iter().filter(|line| !line.values.is_empty()).collect();
     let sag = Line { name: "tool point", class: "board", values: &measures.sag_mm };
     let deflection = Line { name: "tool point", class: "board", values: &measures.deflection_mm };
     let clearance = Line { name: "least distance", class: "board", values: &measures.clearance_mm };
@@ -189,6 +191,7 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
     let plots = [
         ("slip of the hands on the board, mm", Some(CheckKind::Slip), hands(|hand| &hand.slip_mm)),
         ("rotation of the hands on the board, deg", Some(CheckKind::SlipRotation), hands(|hand| &hand.slip_deg)),
+        ("wrench of the grippers / measured limits", Some(CheckKind::GripWrench), measured),
         ("sag of the tool point, mm", Some(CheckKind::Sag), vec![sag]),
         ("deflection of the tool point, mm", Some(CheckKind::Deflection), vec![deflection]),
         ("joint torque / limit, most loaded joints", Some(CheckKind::TorqueRatio), joints.collect()),

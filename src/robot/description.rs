@@ -114,13 +114,24 @@ pub(super) struct GripperEntry {
     pub frame_xyz_m: Option<Spanned<Exactly<f64, 3>>>,
     pub frame_rpy_deg: Option<Spanned<Exactly<f64, 3>>>,
     pub palm_link: Option<Spanned<String>>,
-    pub opening_m: Spanned<Exactly<f64, 2>>,
-    pub max_force_n: Spanned<f64>,
+    /// Of two jaws.
+    pub opening_m: Option<Spanned<Exactly<f64, 2>>>,
+    /// Of pads: the force of each finger, N.
+    pub max_force_n: Option<Spanned<f64>>,
     pub grip_force_n: Option<Spanned<f64>>,
     pub friction: Option<Spanned<f64>>,
-    pub pad_size_m: Spanned<Exactly<f64, 2>>,
-    pub pad_centre_m: Spanned<Exactly<f64, 2>>,
+    /// Of two jaws.
+    pub pad_size_m: Option<Spanned<Exactly<f64, 2>>>,
+    pub pad_centre_m: Option<Spanned<Exactly<f64, 2>>>,
+    /// Of a suction cup.
+    pub cup_diameter_m: Option<Spanned<f64>>,
+    pub cup_height_m: Option<Spanned<f64>>,
     pub pad_stiffness_n_m: Option<Spanned<f64>>,
+    /// What the gripper holds as a whole, in place of friction and force of its pads.
+    pub wrench_limits: Option<Spanned<LimitsEntry>>,
+    /// Stiffness along and about the axes of G through the grasp point.
+    pub hold_stiffness_n_m: Option<Spanned<Exactly<f64, 3>>>,
+    pub hold_stiffness_nm_rad: Option<Spanned<Exactly<f64, 3>>>,
     pub fingers: Option<Spanned<Exactly<FingerEntry, 2>>>,
 }
 
@@ -133,6 +144,56 @@ pub(super) enum GripperKind {
     Fingers,
     /// Two jaws that the URDF does not have.
     Clamp,
+    /// A suction cup.
+    Suction,
+}
+
+/// Measured limits of the wrench on the board about the grasp point in G axes.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LimitsEntry {
+    pub shape: ShapeEntry,
+    pub force_n: Spanned<Exactly<LimitEntry, 3>>,
+    pub moment_nm: Spanned<Exactly<LimitEntry, 3>>,
+}
+
+/// How the limits act together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum ShapeEntry {
+    Box,
+    Ellipsoid,
+}
+
+/// The limits of one component, the lower one first: a number for both directions, or `[low, high]`.
+pub(super) struct LimitEntry(pub [f64; 2]);
+
+impl<'de> Deserialize<'de> for LimitEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(LimitVisitor)
+    }
+}
+
+struct LimitVisitor;
+
+impl<'de> Visitor<'de> for LimitVisitor {
+    type Value = LimitEntry;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number for both directions, or [low, high]")
+    }
+
+    fn visit_f64<E>(self, most: f64) -> Result<LimitEntry, E> {
+        Ok(LimitEntry([-most, most]))
+    }
+
+    fn visit_i64<E>(self, most: i64) -> Result<LimitEntry, E> {
+        Ok(LimitEntry([-most as f64, most as f64]))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, sequence: A) -> Result<LimitEntry, A::Error> {
+        ExactlyVisitor(PhantomData).visit_seq(sequence).map(|Exactly(limits)| LimitEntry(limits))
+    }
 }
 
 /// A finger entry.

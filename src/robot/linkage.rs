@@ -252,7 +252,7 @@ impl Robot {
             if let Some(linkage) = &gripper.linkage {
                 let [narrow_m, wide_m] = gripper.opening_m;
                 let fingers = linkage.hold_at(&mut robot, &gripper, gap_m.clamp(narrow_m, wide_m));
-                robot.arms[arm].gripper.fingers = fingers;
+                robot.arms[arm].gripper.fingers = fingers.into();
             }
         }
         robot.description.clone_from(&self.description);

@@ -10,6 +10,7 @@ mod description;
 mod faces;
 mod faults;
 mod geometry;
+mod holding;
 pub mod inverse;
 mod linkage;
 mod load;
@@ -21,11 +22,12 @@ mod urdf;
 pub use chain::Chain;
 pub use faults::{Fault, Faults, RobotError};
 pub use geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry};
+pub use holding::{Holding, MeasuredGrip, PadGrip};
 pub use inverse::{InverseKinematics, Solution};
 pub use load::BUILTIN;
 pub use mesh::{DrawnForm, DrawnPart, MeshPart};
 pub use packages::Packages;
 pub use tree::{
-    Arm, ArmState, BodyPoint, Finger, Gripper, Joint, JointKind, Link, Linkage, Mimic, Pad, Robot, RobotOptions,
+    Arm, ArmState, BodyPoint, Cup, Finger, Gripper, Joint, JointKind, Link, Linkage, Mimic, Pad, Robot, RobotOptions,
     SearchBox,
 };

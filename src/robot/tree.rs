@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
-use super::geometry::{PlacedShape, Visual};
+use super::{
+    geometry::{PlacedShape, Visual},
+    holding::Holding,
+};
 use crate::model::{frames::Pose, plan::ArmHold};
 
 /// A robot: a tree of links, its arms, and the data of the description.
@@ -141,27 +144,32 @@ pub struct Arm {
     pub gripper: Gripper,
 }
 
-/// A parallel gripper: two coupled fingers that close on each other along y_G.
+/// A parallel gripper, two coupled fingers that close on each other along y_G, or a suction cup.
 #[derive(Clone, Debug)]
 pub struct Gripper {
-    /// The link whose frame is G: z out of the gripper, fingers opening along y.
+    /// The link whose frame is G: z out of the gripper, fingers opening along y; of a cup its origin is the centre of the lip.
     pub frame_link: usize,
     /// The parent link of the finger joints.
     pub palm_link: usize,
-    /// The finger on the +y_G side, then the one on the -y_G side.
-    pub fingers: [Finger; 2],
-    /// Gap between the pads when closed and when open, m: the range of thicknesses that it can hold.
+    /// The finger on the +y_G side, then the one on the -y_G side; none of a suction cup.
+    pub fingers: Vec<Finger>,
+    /// The suction cup; `None` of a gripper with fingers.
+    pub cup: Option<Cup>,
+    /// Gap between the pads when closed and when open, m: the range of thicknesses that it can hold. A cup holds any.
     pub opening_m: [f64; 2],
-    /// Maximum force of each finger, N.
-    pub max_force_n: f64,
-    /// Force of each finger where a scenario has none, N.
-    pub grip_force_n: Option<f64>,
-    /// Coulomb friction coefficient of its pads and a board where a scenario has none.
-    pub friction: Option<f64>,
-    /// Stiffness of one pad along its normal, N/m; `None` for rigid pads (docs/method.md#612-pad-compliance).
-    pub pad_stiffness_n_m: Option<f64>,
+    /// With what it holds the board.
+    pub holding: Holding,
     /// The mechanism that moves the fingers, if it is not one prismatic joint each.
     pub linkage: Option<Linkage>,
+}
+
+/// A suction cup, whose lip lies flat on a face of the board: z_G points into the board, the origin of G is on the face.
+#[derive(Clone, Copy, Debug)]
+pub struct Cup {
+    /// The link of the cup: all of it may touch the board.
+    pub link: usize,
+    /// Radius of the lip, m.
+    pub radius_m: f64,
 }
 
 /// The mechanism of a gripper's fingers (docs/method.md#26-linkage-grippers).
@@ -224,9 +232,14 @@ pub struct Pad {
 
 impl Gripper {
     /// Travel of a finger, from its closed limit, at which the gap between the pads is `gap_m`:
-    /// the pad's face is then `gap_m / 2` from the plane y_G = 0.
+    /// the pad's face is then `gap_m / 2` from the plane y_G = 0. 0 for a finger that a suction cup does not have.
     pub fn travel_for_gap_m(&self, finger: usize, gap_m: f64) -> f64 {
-        gap_m / 2.0 - self.fingers[finger].pad.offset_m
+        self.fingers.get(finger).map_or(0.0, |finger| gap_m / 2.0 - finger.pad.offset_m)
+    }
+
+    /// Joint positions of the fingers with the pads `gap_m` apart, m; zeros of a suction cup.
+    pub fn finger_positions_m(&self, gap_m: f64) -> [f64; 2] {
+        [0, 1].map(|k| self.fingers.get(k).map_or(0.0, |of| of.joint_position_m(self.travel_for_gap_m(k, gap_m))))
     }
 
     /// Name of a pad on a board: `upper` on the front face (+z_O), `lower` on the other.
@@ -236,9 +249,14 @@ impl Gripper {
         if finger_is_up { "upper" } else { "lower" }
     }
 
-    /// The grasp point in G: the centre between the pads, m.
+    /// The force that closes each finger of this gripper in a plan, N: that of the scenario, 0 for a measured gripper.
+    pub fn grip_force_n(&self, of_scenario_n: f64) -> f64 {
+        self.holding.pads().map_or(0.0, |_| of_scenario_n)
+    }
+
+    /// The grasp point in G: the centre between the pads, or of a cup's lip, m.
     pub fn grasp_point_g(&self) -> Vector3<f64> {
-        let [x, z] = self.fingers[0].pad.centre_m;
+        let [x, z] = self.fingers.first().map_or([0.0; 2], |finger| finger.pad.centre_m);
         Vector3::new(x, 0.0, z)
     }
 }

@@ -169,7 +169,7 @@ impl<'a> Checker<'a> {
     ) -> Result<(), InputError> {
         self.positive(key, force_n, bounds::MOST_FORCE_N, "N")?;
         for arm in arms {
-            let most_n = arm.gripper.max_force_n;
+            let Some(most_n) = arm.gripper.holding.pads().map(|pads| pads.max_force_n) else { continue };
             let expected = format!("at most {most_n} N, what the {} gripper gives", arm.name);
             self.that(force_n <= most_n, key, force_n.to_string(), &expected)?;
         }

@@ -72,7 +72,9 @@ pub fn fill_in(
         Some(_) => "the scenario's grip.force_n",
         None => "the most that the gripper gives",
     };
-    notes.extend(left_out(&file, "grip_force_n", |input| input.grip_force_n.is_none(), of_grip));
+    let has_pads = |arm: &str| robot.arms.iter().any(|of| of.name == arm && of.gripper.holding.pads().is_some());
+    let lacks_force = |input: &ArmInput| input.grip_force_n.is_none() && has_pads(&input.name);
+    notes.extend(left_out(&file, "grip_force_n", lacks_force, of_grip));
     let PlanFile {
         format, name, robot, operation, object, human, comfort, muscles, stability, clearance, planner, ..
     } = file;
@@ -305,5 +307,6 @@ fn left_out(file: &PlanFile, key: &str, lacks: impl Fn(&ArmInput) -> bool, origi
 
 /// The grip force of an arm whose file has none, N.
 fn default_grip_force_n(robot: &Robot, arm: usize, scenario: Option<&Scenario>) -> f64 {
-    scenario.map_or(robot.arms[arm].gripper.max_force_n, |scenario| scenario.grip.force_n)
+    let pads = robot.arms[arm].gripper.holding.pads();
+    pads.map_or(0.0, |pads| scenario.map_or(pads.max_force_n, |scenario| scenario.grip.force_n))
 }

@@ -32,7 +32,7 @@ use crate::{
         },
         wrench::Wrench,
     },
-    robot::{Gripper, Robot, RobotOptions},
+    robot::{PadGrip, Robot, RobotOptions},
 };
 
 /// The resolved scenario of a file, and its robot.
@@ -49,6 +49,12 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     };
     let robot = load_robot(&file.robot.description, folder, &options, file.object.thickness_m())
         .map_err(|e| check.robot("robot.description", e))?;
+    grip_keys(&check, &file.grip, &robot)?;
+    if let Some(arm) = robot.arms.iter().find(|arm| arm.gripper.cup.is_some()) {
+        let expected = "the path of a plan: planners know grasps of edges alone";
+        let found = format!("none for a robot whose {} arm has a suction cup", arm.name);
+        check.that(file.planner.plan.is_some(), "planner.plan", found, expected)?;
+    }
     let object = object_section::board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
     let scenario = Scenario {
@@ -266,14 +272,24 @@ fn free_operation(check: &Checker<'_>, section: &OperationSection) -> Result<Ope
 /// Grip force and friction of a file, else of the robot's grippers.
 fn grip_with_defaults(section: &GripSection, robot: &Robot) -> Grip {
     let usual = Grip::default();
-    let least = |of: fn(&Gripper) -> Option<f64>, usual: f64| {
-        let given = robot.arms.iter().filter_map(|arm| of(&arm.gripper));
+    let least = |of: fn(&PadGrip) -> Option<f64>, usual: f64| {
+        let given = robot.arms.iter().filter_map(|arm| arm.gripper.holding.pads().and_then(of));
         given.min_by(f64::total_cmp).unwrap_or(usual)
     };
     Grip {
-        force_n: section.force_n.unwrap_or_else(|| least(|gripper| gripper.grip_force_n, usual.force_n)),
-        friction: section.friction.unwrap_or_else(|| least(|gripper| gripper.friction, usual.friction)),
+        force_n: section.force_n.unwrap_or_else(|| least(|pads| pads.grip_force_n, usual.force_n)),
+        friction: section.friction.unwrap_or_else(|| least(|pads| pads.friction, usual.friction)),
     }
+}
+
+/// Requires that some gripper has pads if the file has figures of them.
+fn grip_keys(check: &Checker<'_>, section: &GripSection, robot: &Robot) -> Result<(), InputError> {
+    if robot.arms.iter().any(|arm| arm.gripper.holding.pads().is_some()) {
+        return Ok(());
+    }
+    let belongs_to = "pads, and every gripper of this robot has measured wrench limits";
+    check.absent("grip.force_n", section.force_n.is_some(), belongs_to)?;
+    check.absent("grip.friction", section.friction.is_some(), belongs_to)
 }
 
 fn grip(check: &Checker<'_>, grip: &Grip, robot: &Robot) -> Result<(), InputError> {
@@ -404,7 +420,9 @@ pub fn check_plan_matches(path: &Path, text: &str, scenario: &Scenario, plan: &P
     let found = format!("a plan for {}", describe(found, tip.as_slice()));
     check.that(same_operation, "planner.plan", found, &describe(expected, meant.as_slice()))?;
     let force_n = scenario.grip.force_n;
-    let other = plan.arms.iter().find(|hold| (hold.grip_force_n - force_n).abs() > SAME_TOLERANCE);
+    // A measured gripper has no grip force, which the check of the plan sees to.
+    let other =
+        plan.arms.iter().find(|hold| hold.grip_force_n != 0.0 && (hold.grip_force_n - force_n).abs() > SAME_TOLERANCE);
     let found = other.map_or(force_n, |hold| hold.grip_force_n);
     let expected = format!("{force_n} N, the scenario's grip.force_n");
     check.that(other.is_none(), "planner.plan", format!("a plan that grips with {found} N"), &expected)

@@ -57,6 +57,7 @@ pub fn robot_parameters(robot: &Robot) -> RobotParameters {
                     centre_m: finger.pad.centre_m,
                 })
                 .collect(),
+            wrench_limits: arm.gripper.holding.measured().map(|measured| measured.limits),
         })
         .collect();
     RobotParameters {

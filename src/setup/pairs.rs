@@ -82,7 +82,8 @@ pub fn positions(robot: &Robot, q_rad: &[Vec<f64>], open: f64) -> Vec<f64> {
     let states = robot.arms.iter().enumerate().zip(q_rad).map(|((arm, of), q_rad)| ArmState {
         arm,
         q_rad,
-        finger_travel_m: [0, 1].map(|finger| open * of.gripper.fingers[finger].max_travel_m),
+        finger_travel_m: [0, 1]
+            .map(|finger| of.gripper.fingers.get(finger).map_or(0.0, |finger| open * finger.max_travel_m)),
     });
     robot.positions(&states.collect::<Vec<_>>())
 }
@@ -171,7 +172,8 @@ pub(super) fn adjacent(robot: &Robot) -> BTreeSet<[usize; 2]> {
     let carried =
         |joint: usize| (0..robot.links.len()).filter(|&link| carriers[link] == Some(joint)).collect::<Vec<_>>();
     for arm in &robot.arms {
-        let [first, second] = arm.gripper.fingers.each_ref().map(|finger| carried(finger.joint));
+        let [first, second] = arm.gripper.fingers.as_slice() else { continue };
+        let [first, second] = [first, second].map(|finger| carried(finger.joint));
         pairs.extend(first.iter().flat_map(|&a| second.iter().map(move |&b| [a.min(b), a.max(b)])));
     }
     pairs

@@ -11,7 +11,9 @@ use super::{
     error::SimError,
     feed_forward::FeedForward,
     gripper::SimGripper,
+    hand::SimHand,
     hand_over::HandOver,
+    joined_hand::JoinedHand,
     pad::PadContact,
     pad_shape::{GraspingHand, PadLoading},
     pad_springs::{PadLayer, PadSprings},
@@ -24,7 +26,7 @@ use crate::{
         plan::{ArmHold, PlacedObject},
         trace::ArmSample,
     },
-    robot::{Arm, Robot},
+    robot::{Arm, Holding, Robot},
 };
 
 /// A joint with its servo and the rest angle of its spring in this step.
@@ -45,14 +47,23 @@ pub(super) struct SimArm {
     joints: Vec<DrivenJoint>,
     /// All moving bodies.
     bodies: Vec<RigidBodyHandle>,
-    /// The gripper.
-    pub gripper: SimGripper,
-    /// Its elastic pads.
+    /// The hand.
+    pub hand: SimHand,
+    /// Its elastic pads, or an elastic grip.
     pad_springs: Option<PadSprings>,
 }
 
+/// The board of a scene.
+#[derive(Clone, Copy)]
+pub(super) struct PlacedBoard<'a> {
+    /// The board of the plan.
+    pub object: &'a PlacedObject,
+    /// Its body in the engine.
+    pub body: RigidBodyHandle,
+}
+
 impl SimArm {
-    /// Builds an arm at rest at `hold.q_rad` with its pads on the object's faces.
+    /// Builds an arm at rest at `hold.q_rad` with its hand on the board.
     ///
     /// # Errors
     /// [`SimError::Massless`] if a moving body has no mass.
@@ -61,41 +72,41 @@ impl SimArm {
         robot: &Robot,
         (number, checked): (usize, &CheckedArm<'_>),
         feed_forward: FeedForward,
-        object: &PlacedObject,
+        board: PlacedBoard<'_>,
         conditions: &Conditions,
     ) -> Result<Self, SimError> {
-        let &CheckedArm { index, hold, .. } = checked;
-        let arm = &robot.arms[index];
-        let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
+        let (arm, hold, object) = (&robot.arms[checked.index], checked.hold, board.object);
         let layer = PadLayer::of(robot, checked, object, conditions);
-        let merged = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd));
+        let merged = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd), object.size_m[2]);
         let chain = BodyChain::insert(world, robot, &merged.bodies)?;
-        let place = |joint: usize| chain.links[merged.body_of_joint[joint]];
-        let arm_joints: Vec<_> = (0..arm.joints.len()).map(place).collect();
-        let fingers = [place(arm.joints.len()), place(arm.joints.len() + 1)];
-        let hand = GraspingHand { arm, bodies: &merged, x_og: hold.x_og };
-        let loading = PadLoading::new(&hand, object, grip_force_n, contact_softness_s2(world));
-        let contact =
-            PadContact { friction: conditions.real_friction(), loading, collider: collider_of(object, number) };
-        let mut gripper = SimGripper::new(world, robot, arm, &merged, &chain, contact);
-        let finger_m = gripper.positions_at_gap_m(&arm.gripper, object.size_m[2]);
+        let links = merged.body_of_joint.iter().map(|&body| chain.links[body]);
+        let links: Vec<_> = links.collect();
+        let (arm_links, finger_links) = links.split_at(arm.joints.len());
+        let mut hand = hand(world, robot, (number, checked), (&merged, &chain), object, conditions);
+        let finger_m = arm.gripper.finger_positions_m(object.size_m[2]);
 
         let mut positions = vec![0.0; chain.dofs];
-        let placed = arm_joints.iter().chain(&fingers).zip(hold.q_rad.iter().chain(&finger_m));
+        let placed = arm_links.iter().zip(&hold.q_rad).chain(finger_links.iter().zip(&finger_m));
         placed.for_each(|(link, position)| positions[link.dof] = *position);
-        let multibody = fingers[0].joint;
+        let multibody = links.last().ok_or(SimError::Engine)?.joint;
         let engine = set_joint_positions(world, multibody, &positions)?;
-        gripper.close(engine, grip_force_n, finger_m, drive_inertia_kg(object));
+        if let SimHand::Fingers(fingers) = &mut hand {
+            let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
+            fingers.close(engine, grip_force_n, finger_m, drive_inertia_kg(object));
+        }
         let joint_stiffness_scale = conditions.uncertainty.joint_stiffness_scale;
-        let joints = driven_joints(arm, hold, &arm_joints, &feed_forward, joint_stiffness_scale);
+        let joints = driven_joints(arm, hold, arm_links, &feed_forward, joint_stiffness_scale);
         for DrivenJoint { place, servo, .. } in &joints {
             engine.damping_mut()[place.dof] = servo.damping_nm_s_rad;
         }
         let springs = layer.and_then(|layer| layer.springs(robot, arm, &merged, finger_m));
         let hand_place = merged.hand.map(|hand| chain.links[hand]);
         let pad_springs = hand_place.zip(springs).map(|(place, springs)| PadSprings::insert(engine, place, springs));
+        if let SimHand::Joined(joined) = &mut hand {
+            joined.join(world, board.body);
+        }
         let bodies = chain.links.iter().map(|link| link.body).collect();
-        Ok(Self { multibody, joints, bodies, gripper, pad_springs })
+        Ok(Self { multibody, joints, bodies, hand, pad_springs })
     }
 
     /// Sets the rest angle of every servo, and the forces of the fingers, from the state before a step.
@@ -108,8 +119,7 @@ impl SimArm {
             joint.rest_rad = joint.servo.rest_rad(q_rad, velocity_rad_s, timestep_s);
             joint.place.set_spring(multibody, joint.servo.stiffness_nm_rad, joint.rest_rad);
         }
-        self.gripper.push(multibody, hand_over.grip_share());
-        self.gripper.store_state(multibody);
+        self.hand.begin_step(multibody, hand_over.grip_share());
         if let Some(springs) = &mut self.pad_springs {
             springs.store_state(multibody);
         }
@@ -119,7 +129,7 @@ impl SimArm {
     pub fn energy_j(&self, world: &PhysicsWorld) -> f64 {
         let Some((multibody, _)) = world.multibody_joints.get(self.multibody) else { return f64::NAN };
         let bodies: f64 = self.bodies.iter().map(|&body| mechanical_energy_j(&world.bodies[body])).sum();
-        bodies + self.gripper.drive_energy_j(multibody)
+        bodies + self.hand.drive_energy_j(multibody)
     }
 
     /// Work of the servos, the finger drives and the elastic pads in the last step, J.
@@ -130,7 +140,7 @@ impl SimArm {
             let after = JointState { position: place.position(multibody), velocity: place.velocity(multibody) };
             drive_work_j(servo.stiffness_nm_rad, servo.damping_nm_s_rad, *rest_rad, [*before, after])
         });
-        let drives_j = servos.sum::<f64>() + self.gripper.work_j(multibody);
+        let drives_j = servos.sum::<f64>() + self.hand.work_j(multibody);
         self.pad_springs.as_ref().map_or(drives_j, |springs| drives_j + springs.work_j(multibody))
     }
 
@@ -149,10 +159,32 @@ impl SimArm {
             sample.torque_demanded_nm[k] = servo.demanded_nm(q_rad, velocity_rad_s);
             sample.torque_applied_nm[k] = servo.applied_nm(*rest_rad, q_rad, velocity_rad_s);
         }
-        for (travel_m, found_m) in sample.finger_m.iter_mut().zip(self.gripper.travel_m(multibody)) {
+        for (travel_m, found_m) in sample.finger_m.iter_mut().zip(self.hand.travel_m(multibody)) {
             *travel_m = found_m;
         }
     }
+}
+
+/// The hand of an arm: fingers with their pads, or a measured gripper, not yet joined to the board.
+fn hand(
+    world: &mut PhysicsWorld,
+    robot: &Robot,
+    (number, checked): (usize, &CheckedArm<'_>),
+    (merged, chain): (&ArmBodies, &BodyChain),
+    object: &PlacedObject,
+    conditions: &Conditions,
+) -> SimHand {
+    let &CheckedArm { index, hold, .. } = checked;
+    let arm = &robot.arms[index];
+    let grip_scale = conditions.uncertainty.grip_force_scale;
+    if let Holding::Measured(measured) = &arm.gripper.holding {
+        let limits = measured.limits.scaled(grip_scale);
+        return SimHand::Joined(Box::new(JoinedHand::new(arm, merged, chain, limits, object.size_m[2])));
+    }
+    let grasping = GraspingHand { arm, bodies: merged, x_og: hold.x_og };
+    let loading = PadLoading::new(&grasping, object, hold.grip_force_n * grip_scale, contact_softness_s2(world));
+    let contact = PadContact { friction: conditions.real_friction(), loading, collider: collider_of(object, number) };
+    SimHand::Fingers(Box::new(SimGripper::new(world, robot, arm, merged, chain, contact)))
 }
 
 /// Moves a chain, with its bodies and pads, from zero to these joint positions.

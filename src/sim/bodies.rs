@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 use super::world::inertial_mass_kg;
 use crate::{
     model::{frames::Pose, plan::PlacedObject},
-    robot::{Arm, Gripper, Link, Robot},
+    robot::{Arm, Gripper, Holding, Link, Robot},
 };
 
 /// A link that one joint of the arm or gripper moves, or the hand on its elastic pads, with all links fixed to it.
@@ -103,7 +103,7 @@ pub(super) struct LinkPlacement {
 pub(super) struct ArmBodies {
     /// Parents before children.
     pub bodies: Vec<MovingBody>,
-    /// The body of each joint of the arm, then of each finger.
+    /// The body of each joint of the arm, then of each finger that moves.
     pub body_of_joint: Vec<usize>,
     /// The hand, if it is a body of its own.
     pub hand: Option<usize>,
@@ -123,10 +123,18 @@ impl ArmBodies {
     /// frame D of the pads' springs, at `x_gd` in G ([`PadSprings`](super::pad_springs::PadSprings)). Every body needs a
     /// mass. So if the palm or what carries it has hardly any, as where both are one link, each gets half of their sum;
     /// no state of rest depends on it.
-    pub fn new(robot: &Robot, arm: &Arm, x_gd: Option<&Pose>) -> Self {
-        let moving: Vec<usize> =
-            arm.joints.iter().copied().chain(arm.gripper.fingers.iter().map(|finger| finger.joint)).collect();
-        let at_rest = robot.positions(&[]);
+    ///
+    /// The fingers of a measured gripper are part of the palm, at the gap of the board's thickness.
+    pub fn new(robot: &Robot, arm: &Arm, x_gd: Option<&Pose>, thickness_m: f64) -> Self {
+        let gripper = &arm.gripper;
+        let mut at_rest = robot.positions(&[]);
+        let mut moving = arm.joints.clone();
+        for (finger, position_m) in gripper.fingers.iter().zip(gripper.finger_positions_m(thickness_m)) {
+            match gripper.holding {
+                Holding::Pads(_) => moving.push(finger.joint),
+                Holding::Measured(_) => at_rest[finger.joint] = position_m,
+            }
+        }
         let mut merged =
             Self { bodies: Vec::new(), body_of_joint: vec![0; moving.len()], hand: None, placements: Vec::new() };
         for (index, link) in robot.links.iter().enumerate() {
@@ -231,8 +239,8 @@ mod tests {
             Vector3::new(0.01, 0.0, -0.02).into(),
             UnitQuaternion::from_euler_angles(0.3, -1.0, 0.2),
         );
-        let whole = ArmBodies::new(&robot, arm, None);
-        let mut split = ArmBodies::new(&robot, arm, Some(&x_gd));
+        let whole = ArmBodies::new(&robot, arm, None, 0.03);
+        let mut split = ArmBodies::new(&robot, arm, Some(&x_gd), 0.03);
         let hand = split.hand.unwrap();
         assert_eq!(split.bodies.len(), whole.bodies.len() + 1);
         assert_eq!(split.placements[arm.gripper.frame_link].body, Some(hand));

@@ -28,6 +28,14 @@ pub enum SimError {
         /// The link.
         link: String,
     },
+    /// A gripper whose hold on the board the MJCF export does not have.
+    #[error(
+        "found measured wrench limits of the {arm} gripper, expected grippers with pads: the MJCF export has no other"
+    )]
+    ExportMeasured {
+        /// The arm.
+        arm: String,
+    },
     /// The engine refused a part of the scene.
     #[error("failed to build the scene: the robot's joints do not form a tree")]
     Engine,

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     model::frames::Pose,
-    robot::{Arm, Finger, Gripper, Robot},
+    robot::{Arm, Finger, Robot},
 };
 
 /// Damping of each finger, N s/m (assumed): a finger settles within milliseconds, much faster than an arm.
@@ -94,11 +94,6 @@ impl SimGripper {
             hand: chain.body(placement.body),
             x_bc: placement.x_bl * Isometry3::from(arm.gripper.grasp_point_g()),
         }
-    }
-
-    /// Joint positions of the fingers with the pads `gap_m` apart.
-    pub fn positions_at_gap_m(&self, gripper: &Gripper, gap_m: f64) -> [f64; 2] {
-        [0, 1].map(|k| gripper.fingers[k].joint_position_m(gripper.travel_for_gap_m(k, gap_m)))
     }
 
     /// Couples the fingers at `positions_m`, so that both open by the same travel, and prepares the drives that push each

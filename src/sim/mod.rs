@@ -8,7 +8,8 @@
 //!   body. Each joint has a servo: an implicit spring and damper about the planned angle, the torque that holds the arm and
 //!   its share of the board fed forward, and the torque limit by moving the rest angle of the spring.
 //! - Grippers: two fingers, coupled to open equally, each pushed with a constant force that reacts on the palm. With
-//!   elastic pads the hand is on six springs (`pad_springs.rs`).
+//!   elastic pads the hand is on six springs (`pad_springs.rs`). A measured gripper is joined to the board until its wrench
+//!   leaves the limits (`joined_hand.rs`).
 //! - The board, a free body under gravity and the tool's wrench over time (`tool_load.rs`). Only pads and board
 //!   collide. Joint limits are not modelled: the planned angles are inside them, and servos deflect by milliradians.
 //! - The person of the plan stands still and is not part of the dynamics: the trace records their distance from robot
@@ -91,7 +92,9 @@ mod distance_monitor;
 mod error;
 mod feed_forward;
 mod gripper;
+mod hand;
 mod hand_over;
+mod joined_hand;
 mod mjcf;
 mod pad;
 mod pad_shape;
@@ -112,6 +115,7 @@ use tool_load::ToolLoad;
 use crate::{
     check::{CheckedArm, CheckedPlan},
     model::trace::{ArmTrace, Trace},
+    robot::Holding,
 };
 
 /// Time without any contact after which the board counts as lost, s: it has then fallen by 5 cm.
@@ -166,20 +170,25 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
 /// A trace with room for every sample, so that steps do not allocate.
 fn empty_trace(checked: &CheckedPlan<'_>, conditions: &Conditions, samples: usize) -> Trace {
     let plan = checked.plan();
+    let grip_scale = conditions.uncertainty.grip_force_scale;
     let arms = checked.arms().iter().map(|CheckedArm { index, hold, .. }| {
         let arm = &checked.robot().arms[*index];
         ArmTrace {
             name: hold.name.clone(),
             joints: hold.joints.clone(),
             effort_nm: arm.effort_nm.clone(),
-            pads: [0, 1].map(|finger| arm.gripper.pad_name(finger, &hold.x_og).to_owned()).to_vec(),
-            grip_force_n: hold.grip_force_n * conditions.uncertainty.grip_force_scale,
+            pads: match &arm.gripper.holding {
+                Holding::Pads(_) => [0, 1].map(|finger| arm.gripper.pad_name(finger, &hold.x_og).to_owned()).to_vec(),
+                Holding::Measured(_) => Vec::new(),
+            },
+            grip_force_n: hold.grip_force_n * grip_scale,
+            wrench_limits: arm.gripper.holding.measured().map(|measured| measured.limits.scaled(grip_scale)),
         }
     });
     Trace {
         arms: arms.collect(),
         p_ot_m: plan.operation.x_ot.translation.vector,
-        samples: vec![blank_sample(plan); samples],
+        samples: vec![blank_sample(checked); samples],
         broke_down: None,
         person_touch: None,
         robot_touch: None,

@@ -1,4 +1,5 @@
-//! Elastic pads: six springs between the arm and its hand (docs/method.md#612-pad-compliance).
+//! Elastic pads, or the elastic grip of a measured gripper: six springs between the arm and its hand
+//! (docs/method.md#612-pad-compliance, docs/method.md#613-measured-grippers).
 //!
 //! The pads of the engine are rigid but for its contacts. The compliance of real pads is put between the last body of the
 //! arm and the hand, which is statically the same, since the two pads of a hand act in parallel. The springs are those of
@@ -49,8 +50,7 @@ impl PadLayer {
     pub fn of(robot: &Robot, checked: &CheckedArm<'_>, object: &PlacedObject, conditions: &Conditions) -> Option<Self> {
         let CheckedArm { index, chain, hold, .. } = checked;
         let hand = HandModel::new(&robot.arms[*index], chain, hold, object, conditions.friction).ok()?;
-        let x_od = hand.between_pads();
-        let stiffness = hand.pad_stiffness(&x_od)?.diagonal();
+        let (x_od, stiffness) = hand.springs()?;
         Some(Self {
             x_gd: hold.x_og.inverse() * x_od,
             x_wd: object.x_wo * x_od,
@@ -68,7 +68,9 @@ impl PadLayer {
             let axis_j = robot.joints[arm.gripper.fingers[k].joint].axis_j.into_inner();
             finger(k).x_pj * Translation3::from(axis_j * finger_m[k])
         };
-        let carried = (0..2).fold(*hand, |sum, k| sum.with(&finger(k).mass, &x_df(k)));
+        // The fingers of a measured gripper are part of its hand.
+        let moving = bodies.body_of_joint.len() - arm.joints.len();
+        let carried = (0..moving).fold(*hand, |sum, k| sum.with(&finger(k).mass, &x_df(k)));
         let weight_n = self.x_wd.rotation.inverse() * (GRAVITY_W * carried.mass_kg);
         let moment_nm = carried.com_b.cross(&weight_n);
         let (board, x_do) = &self.board;

@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use rapier3d_f64::prelude::{PhysicsWorld, RigidBodyHandle};
 
 use super::{
-    arm::SimArm,
+    arm::{PlacedBoard, SimArm},
     balance::{Balance, mechanical_energy_j, weight_n},
     board::insert_board,
     conditions::Conditions,
@@ -14,14 +14,13 @@ use super::{
     hand_over::HandOver,
     pad::BoardHandles,
     tool_load::{ToolState, wrench_w},
-    world::new_world,
+    world::{new_world, sweep_for_joints},
 };
 use crate::{
-    check::CheckedPlan,
+    check::{CheckedArm, CheckedPlan},
     model::{
         frames::Pose,
         load::ForceFrame,
-        plan::Plan,
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },
@@ -67,6 +66,9 @@ impl SimScene {
         conditions.check()?;
         let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
         let mut world = new_world(conditions.settings.timestep_s, stiffness_scale);
+        if checked.arms().iter().any(|arm| checked.robot().arms[arm.index].gripper.holding.measured().is_some()) {
+            sweep_for_joints(&mut world);
+        }
         let boards = insert_board(&mut world, &plan.object, &plan.arms, conditions.real_friction());
         // A checked plan has an arm.
         let board = boards.first().ok_or(SimError::Engine)?.body;
@@ -74,7 +76,8 @@ impl SimScene {
         for (number, (arm, feed_forward)) in
             checked.arms().iter().zip(feed_forward(checked, conditions.friction)).enumerate()
         {
-            arms.push(SimArm::new(&mut world, checked.robot(), (number, arm), feed_forward, &plan.object, conditions)?);
+            let on = PlacedBoard { object: &plan.object, body: board };
+            arms.push(SimArm::new(&mut world, checked.robot(), (number, arm), feed_forward, on, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);
         let p_ot_m = plan.operation.x_ot.translation.vector;
@@ -110,6 +113,9 @@ impl SimScene {
         self.tool = tool;
         self.push_board();
         self.world.step();
+        for arm in &mut self.arms {
+            arm.hand.end_step(&mut self.world);
+        }
         let worked_j = self.arms.iter().map(|arm| arm.work_j(&self.world)).sum();
         let energy_j = energy_j(&self.world, &self.arms, self.board);
         self.balance.end_step(&self.world, energy_j, worked_j);
@@ -151,10 +157,8 @@ impl SimScene {
         sample.x_wo = self.x_wo();
         for ((arm, &board), sample_arm) in self.arms.iter().zip(&self.boards).zip(&mut sample.arms) {
             arm.observe_joints(&self.world, sample_arm);
-            sample_arm.x_oc = sample.x_wo.inverse() * arm.gripper.x_wc(&self.world);
-            for (pad, sample_pad) in arm.gripper.pads.iter().zip(&mut sample_arm.pads) {
-                *sample_pad = pad.observe(&self.world, board);
-            }
+            sample_arm.x_oc = sample.x_wo.inverse() * arm.hand.x_wc(&self.world);
+            arm.hand.observe(&self.world, board, sample_arm);
         }
         sample.self_check = self.self_check(&sample.arms);
     }
@@ -162,12 +166,14 @@ impl SimScene {
     /// The self-checks of the last step.
     fn self_check(&self, observed: &[ArmSample]) -> StepCheck {
         let pads = self.arms.iter().zip(&self.boards);
-        let pads = pads.flat_map(|(arm, &board)| arm.gripper.pads.iter().map(move |pad| (pad, board)));
-        let pads_w_n = observed.iter().flat_map(|arm| &arm.pads).map(|pad| pad.wrench_w.force_n).sum();
+        let pads = pads.flat_map(|(arm, &board)| arm.hand.pads().iter().map(move |pad| (pad, board)));
+        let pads_w_n: Vector3<f64> = observed.iter().flat_map(|arm| &arm.pads).map(|pad| pad.wrench_w.force_n).sum();
+        let joints = self.arms.iter().map(|arm| arm.hand.joint_force_w_n(&self.world));
+        let hands_w_n = joints.fold(pads_w_n, |sum, force_n| sum + force_n);
         let apart_m = |arm: &ArmSample| (arm.finger_m[0] - arm.finger_m[1]).abs();
         StepCheck {
             penetration_m: pads.map(|(pad, board)| pad.penetration_m(&self.world, board)).fold(0.0, f64::max),
-            force_residual_n: self.balance.force_residual_n(&self.world, &pads_w_n),
+            force_residual_n: self.balance.force_residual_n(&self.world, &hands_w_n),
             coupling_m: observed.iter().map(apart_m).fold(0.0, f64::max),
             contact_energy_j: self.balance.contact_energy_j,
         }
@@ -190,15 +196,20 @@ fn energy_j(world: &PhysicsWorld, arms: &[SimArm], board: RigidBodyHandle) -> f6
 
 /// A sample of the right shape, without observations.
 #[must_use]
-pub fn blank_sample(plan: &Plan) -> Sample {
+pub fn blank_sample(checked: &CheckedPlan<'_>) -> Sample {
+    let plan = checked.plan();
     let pad = PadSample { normal_force_n: 0.0, wrench_w: Wrench::default(), p_wp_m: Vector3::zeros() };
-    let arms = plan.arms.iter().map(|hold| ArmSample {
-        q_rad: hold.q_rad.clone(),
-        finger_m: vec![0.0; 2],
-        torque_demanded_nm: vec![0.0; hold.q_rad.len()],
-        torque_applied_nm: vec![0.0; hold.q_rad.len()],
-        x_oc: Isometry3::identity(),
-        pads: vec![pad; 2],
+    let arms = checked.arms().iter().map(|CheckedArm { index, hold, .. }| {
+        let has_pads = checked.robot().arms[*index].gripper.holding.pads().is_some();
+        ArmSample {
+            q_rad: hold.q_rad.clone(),
+            finger_m: vec![0.0; 2],
+            torque_demanded_nm: vec![0.0; hold.q_rad.len()],
+            torque_applied_nm: vec![0.0; hold.q_rad.len()],
+            x_oc: Isometry3::identity(),
+            pads: vec![pad; if has_pads { 2 } else { 0 }],
+            grip_wrench_g: (!has_pads).then(Wrench::default),
+        }
     });
     Sample {
         time_s: 0.0,

@@ -85,6 +85,16 @@ pub(super) fn new_world(timestep_s: f64, contact_stiffness_scale: f64) -> Physic
     }
 }
 
+/// Sweeps over all constraints of a scene in which hands are joined to the board, before and after positions change. The
+/// engine starts a joint of a multibody without the impulses of the last substep.
+const JOINT_SWEEPS: usize = 40;
+
+/// Gives a world enough sweeps for joints between arms and board.
+pub(super) fn sweep_for_joints(world: &mut PhysicsWorld) {
+    world.integration_parameters.num_internal_pgs_iterations = JOINT_SWEEPS;
+    world.integration_parameters.num_internal_stabilization_iterations = JOINT_SWEEPS;
+}
+
 /// Length of a substep, s.
 pub(super) fn substep_s(world: &PhysicsWorld) -> f64 {
     world.integration_parameters.dt / world.integration_parameters.num_solver_iterations as f64

@@ -28,7 +28,7 @@ impl StabilityWorkspace {
                 EquilibriumOutcome::NoEquilibrium | EquilibriumOutcome::Unknown { .. } => return Ok(None),
             },
         };
-        let hands = model.hands.iter().zip(&unloaded.pad_wrenches_p);
-        Ok(Some(hands.map(|(hand, pads)| hand.joint_torque_nm(pads) - &hand.gravity_torque_nm).collect()))
+        let hands = model.hands.iter().zip(&unloaded.hand_wrenches);
+        Ok(Some(hands.map(|(hand, wrench)| hand.joint_torque_nm(wrench) - &hand.gravity_torque_nm).collect()))
     }
 }

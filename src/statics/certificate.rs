@@ -3,7 +3,7 @@
 //!
 //! For any `z` in the dual cone and any feasible `x = (v, lambda)`, `z'(b - A x) >= 0`. With `r = q + A'z` and `q'x =
 //! -lambda` this is `lambda <= b'z - r'x`, and every variable is bounded: `fn <= 2 F`, the others by friction and the
-//! pad's size. So any `z` gives an upper bound, and an optimal one a tight bound.
+//! pad's size, those of a measured gripper by its limits. So any `z` gives an upper bound, and an optimal one a tight bound.
 
 use clarabel::solver::SupportedConeT;
 use nalgebra::Vector6;
@@ -11,12 +11,14 @@ use nalgebra::Vector6;
 use super::{
     contact_model::{ContactModel, ContactModelError},
     hand::HandModel,
+    hold::{Hold, MeasuredHold, PadPair},
     solvers::{
         cone_program::{ConeProgram, MAX_LOAD_FACTOR},
         layout::{Layout, ProgramKind},
         units::{FORCE_UNIT_N, wrench_units},
     },
 };
+use crate::model::{wrench::Wrench, wrench_limits::LimitShape};
 
 /// A dual vector of a load program, with or without torque limits, in the program's scaled rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,12 +107,22 @@ fn split_off<'a>(rest: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
 fn largest_variables(model: &ContactModel, program: &ConeProgram) -> Vec<f64> {
     let mut largest = Vec::with_capacity(program.q.len());
     for hand in &model.hands {
-        let normal = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-        for pad in &hand.pads {
-            let friction = pad.friction * normal;
-            largest.extend([friction, friction, normal, normal, normal, friction]);
+        match &hand.hold {
+            Hold::Pads(pair) => {
+                let normal = 2.0 * pair.grip_force_n / FORCE_UNIT_N;
+                for pad in &pair.pads {
+                    let friction = pad.friction * normal;
+                    largest.extend([friction, friction, normal, normal, normal, friction]);
+                }
+                largest.extend(largest_wrench(hand, pair).iter());
+            }
+            Hold::Measured(MeasuredHold { limits, .. }) => {
+                // In any axes a component is at most the length of the vector of the largest components.
+                let Wrench { force_n, moment_nm } = limits.largest();
+                largest.extend(scaled_bounds(force_n.norm(), moment_nm.norm()).iter());
+                largest.extend(vec![1.0; if limits.shape == LimitShape::Ellipsoid { 6 } else { 0 }]);
+            }
         }
-        largest.extend(largest_wrench(hand).iter());
     }
     largest.push(MAX_LOAD_FACTOR * program.load_scale);
     largest
@@ -118,15 +130,20 @@ fn largest_variables(model: &ContactModel, program: &ConeProgram) -> Vec<f64> {
 
 /// Bounds of the components of a hand's scaled wrench: each pad's force is at most `(1 + mu) 2 F`, its moment about the
 /// grasp point at most that times the distance, plus its own.
-fn largest_wrench(hand: &HandModel) -> Vector6<f64> {
+fn largest_wrench(hand: &HandModel, pair: &PadPair) -> Vector6<f64> {
     let (mut force_n, mut moment_nm) = (0.0, 0.0);
-    let normal_n = 2.0 * hand.grip_force_n;
-    for pad in &hand.pads {
+    let normal_n = 2.0 * pair.grip_force_n;
+    for pad in &pair.pads {
         let pad_force_n = normal_n * (1.0 + pad.friction);
         let [a, b] = pad.half_sides_m;
         let lever_m = (pad.x_op.translation.vector - hand.grasp_point_o).norm();
         force_n += pad_force_n;
         moment_nm += pad_force_n * lever_m + normal_n * (b + a + pad.friction * pad.torsion_radius_m());
     }
+    scaled_bounds(force_n, moment_nm)
+}
+
+/// Bounds of a scaled wrench whose force and moment are at most so large.
+fn scaled_bounds(force_n: f64, moment_nm: f64) -> Vector6<f64> {
     Vector6::new(force_n, force_n, force_n, moment_nm, moment_nm, moment_nm).component_div(&wrench_units())
 }

@@ -3,7 +3,11 @@
 
 use nalgebra::Vector3;
 
-use super::hand::{HandModel, PadModel};
+use super::{
+    hand::HandModel,
+    hold::{Hold, MeasuredHold},
+    pad_model::PadModel,
+};
 use crate::model::wrench::Wrench;
 
 /// The largest number of hands.
@@ -67,6 +71,9 @@ pub enum ContactModelError {
     /// `K_q + dg/dq` is not positive definite: the joints cannot hold the arm's own weight.
     #[error("{0} hand: the joints' springs are too soft for the arm's own weight")]
     TooSoft(String),
+    /// Measured limits that are not finite or do not enclose 0.
+    #[error("{0} gripper: found wrench limits that do not enclose 0, expected finite ones below and above it")]
+    Limits(String),
     /// No part of a pad lies on the board's face.
     #[error("{hand} {pad} pad: no part of it lies on the board")]
     PadOffBoard {
@@ -129,13 +136,31 @@ fn check_hand(hand: &HandModel) -> Result<(), ContactModelError> {
             Err(ContactModelError::Value { place: place(), what, found, expected: "more than 0" })
         }
     };
-    positive("grip force", hand.grip_force_n)?;
+    match &hand.hold {
+        Hold::Pads(pair) => positive("grip force", pair.grip_force_n)?,
+        Hold::Measured(measured) => check_measured(hand, measured)?,
+    }
     hand.effort_nm.iter().try_for_each(|&effort| positive("effort", effort))?;
     hand.stiffness_nm_rad.iter().try_for_each(|&stiffness| positive("stiffness", stiffness))?;
     if expected > 0 && hand.stiffness_factor().is_none() {
         return Err(ContactModelError::TooSoft(hand.name.clone()));
     }
-    hand.pads.iter().try_for_each(|pad| check_pad(hand, pad))
+    hand.pads().iter().try_for_each(|pad| check_pad(hand, pad))
+}
+
+fn check_measured(hand: &HandModel, measured: &MeasuredHold) -> Result<(), ContactModelError> {
+    let place = || format!("{} gripper", hand.name);
+    if !measured.rotation_og.coords.iter().all(|v| v.is_finite()) {
+        return Err(ContactModelError::NotFinite { place: place(), what: "rotation" });
+    }
+    if !measured.limits.is_valid() {
+        return Err(ContactModelError::Limits(hand.name.clone()));
+    }
+    let odd =
+        measured.stiffness.and_then(|of| of.into_iter().copied().find(|value| !(value.is_finite() && *value > 0.0)));
+    odd.map_or(Ok(()), |found| {
+        Err(ContactModelError::Value { place: place(), what: "stiffness", found, expected: "more than 0" })
+    })
 }
 
 fn check_pad(hand: &HandModel, pad: &PadModel) -> Result<(), ContactModelError> {

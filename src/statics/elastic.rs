@@ -1,4 +1,4 @@
-//! The equilibrium in closed form, for pads below their limits.
+//! The equilibrium in closed form, for pads below their limits and measured grippers, whose limits are checked afterwards.
 //!
 //! If every hand's wrench can be shared between its pads within their limits, the hands are as good as welded to the
 //! board, and the minimum of the complementary energy is that of the welded board. One way of sharing is tried, equal
@@ -8,7 +8,12 @@
 use nalgebra::Vector3;
 
 use super::{
-    contact_model::ContactModel, equilibrium::Equilibrium, hand::HandModel, twist::Twist, welded::WeldedStiffness,
+    contact_model::ContactModel,
+    equilibrium::Equilibrium,
+    hand::HandModel,
+    hold::{HandWrench, Hold, PadPair},
+    twist::Twist,
+    welded::WeldedStiffness,
 };
 use crate::model::wrench::Wrench;
 
@@ -19,18 +24,18 @@ const OPPOSITE_TOLERANCE: f64 = 1e-9;
 
 /// The equilibrium at a load factor if it is that of the welded board and one way of sharing the wrenches proves it.
 pub(super) fn equilibrium(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
-    let pads = shared(model, welded, load_factor)?;
-    model.hands.iter().zip(&pads).all(|(hand, pads)| is_within_limits(hand, pads)).then(|| {
+    let wrenches = shared(model, welded, load_factor)?;
+    model.hands.iter().zip(&wrenches).all(|(hand, wrench)| is_within_limits(hand, wrench)).then(|| {
         let board = board(model, welded, load_factor);
-        Equilibrium::of_pads(model, load_factor, pads, board)
+        Equilibrium::of_hands(model, load_factor, wrenches, board)
     })
 }
 
 /// The same for a contact model that differs slightly from one whose equilibrium is that of the welded board: its pads
 /// are within their limits too, up to first order.
 pub(super) fn first_order(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
-    let pads = shared(model, welded, load_factor)?;
-    Some(Equilibrium::of_pads(model, load_factor, pads, board(model, welded, load_factor)))
+    let wrenches = shared(model, welded, load_factor)?;
+    Some(Equilibrium::of_hands(model, load_factor, wrenches, board(model, welded, load_factor)))
 }
 
 fn board(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Twist {
@@ -41,16 +46,19 @@ fn outer(model: &ContactModel, load_factor: f64) -> Wrench {
     model.weight + model.load.scaled(load_factor)
 }
 
-/// The welded hands' wrenches, shared between their pads: each about the pad's centre in pad axes. `None` if a hand's
-/// pads are not opposite.
-fn shared(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Vec<[Wrench; 2]>> {
+/// The welded hands' wrenches, shared between their pads. `None` if a hand's pads are not opposite.
+fn shared(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Vec<HandWrench>> {
     let wrenches = welded.hand_wrenches(&outer(model, load_factor));
-    model.hands.iter().zip(&wrenches).map(|(hand, wrench)| shared_by_pads(hand, wrench)).collect()
+    let of_hand = |(hand, wrench): (&HandModel, &Wrench)| match &hand.hold {
+        Hold::Pads(pair) => shared_by_pads(hand, pair, wrench).map(HandWrench::Pads),
+        Hold::Measured(_) => Some(HandWrench::Measured(*wrench)),
+    };
+    model.hands.iter().zip(&wrenches).map(of_hand).collect()
 }
 
 /// A hand's wrench about its grasp point, shared between its pads: `fn_1 + fn_2 = 2 F`, tangential parts equal.
-fn shared_by_pads(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
-    let normals = hand.pads.each_ref().map(|pad| pad.x_op.rotation * Vector3::z());
+fn shared_by_pads(hand: &HandModel, pair: &PadPair, wrench: &Wrench) -> Option<[Wrench; 2]> {
+    let normals = pair.pads.each_ref().map(|pad| pad.x_op.rotation * Vector3::z());
     if (normals[0] + normals[1]).norm() > OPPOSITE_TOLERANCE {
         return None;
     }
@@ -58,20 +66,20 @@ fn shared_by_pads(hand: &HandModel, wrench: &Wrench) -> Option<[Wrench; 2]> {
     let tangential_n = wrench.force_n - normals[0] * across_n;
     let forces_n = [0, 1].map(|pad: usize| {
         let share = if pad == 0 { 0.5 } else { -0.5 };
-        tangential_n / 2.0 + normals[pad] * (hand.grip_force_n + share * across_n)
+        tangential_n / 2.0 + normals[pad] * (pair.grip_force_n + share * across_n)
     });
-    let levers = hand.pads.each_ref().map(|pad| pad.x_op.translation.vector - hand.grasp_point_o);
+    let levers = pair.pads.each_ref().map(|pad| pad.x_op.translation.vector - hand.grasp_point_o);
     let carried_nm = levers[0].cross(&forces_n[0]) + levers[1].cross(&forces_n[1]);
     let rest_nm = (wrench.moment_nm - carried_nm) / 2.0;
     Some([0, 1].map(|pad: usize| {
-        let to_pad = hand.pads[pad].x_op.rotation.inverse();
+        let to_pad = pair.pads[pad].x_op.rotation.inverse();
         Wrench::new(to_pad * forces_n[pad], to_pad * rest_nm)
     }))
 }
 
 /// True if each pad is below its limits by the margin of [`LIMIT_SHARE`].
-fn is_within_limits(hand: &HandModel, pads: &[Wrench; 2]) -> bool {
-    hand.pads.iter().zip(pads).all(|(pad, Wrench { force_n, moment_nm })| {
+fn is_within_limits(hand: &HandModel, wrench: &HandWrench) -> bool {
+    hand.pads().iter().zip(wrench.of_pads()).all(|(pad, Wrench { force_n, moment_nm })| {
         let [a, b] = pad.half_sides_m;
         let tangential_n = force_n.x.hypot(force_n.y).hypot(moment_nm.z / pad.torsion_radius_m());
         tangential_n <= LIMIT_SHARE * pad.friction * force_n.z

@@ -1,6 +1,7 @@
 //! The equilibrium of compliant, position-controlled arms (docs/method.md#68-compliant-equilibrium).
 //!
-//! The joints are springs about their commanded angles, the pads are rigid-plastic, or elastic-plastic if they have a
+//! A measured gripper has no limits here: like those of torque they are checked afterwards, since a gripper whose limits are
+//! exceeded lets go, where a pad slides. The joints are springs about their commanded angles, the pads are rigid-plastic, or elastic-plastic if they have a
 //! stiffness (`pad_layer.rs`), which adds `1/2 w_i' C_pads w_i` to the energy. Of all pad wrenches that balance
 //! the object within the pads' limits, the equilibrium minimises the complementary energy `sum_i 1/2 u_i' K_i^-1 u_i`,
 //! `u_i = J_i' w_i`, with `w_i` the hand's wrench on the object and `K_i = K_q + dg/dq`. The arms' gravity torque `g`
@@ -23,14 +24,14 @@ use nalgebra::{DVector, Vector3};
 
 use super::{
     contact_model::ContactModel,
+    hold::HandWrench,
     solvers::{
         clarabel::RawSolution,
-        cone_program::{ConeProgram, pad_wrenches},
+        cone_program::{ConeProgram, wrench_of},
         units::{DISPLACEMENT_UNIT_M, FORCE_UNIT_N, balance_twist},
     },
     twist::Twist,
 };
-use crate::model::wrench::Wrench;
 
 /// Forces and displacements at one load factor. Displacements are relative to where the commanded angles, with gravity
 /// of the arms compensated, put board and hands; only their changes are observable.
@@ -38,9 +39,8 @@ use crate::model::wrench::Wrench;
 pub struct Equilibrium {
     /// The multiple of the load.
     pub load_factor: f64,
-    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes. How a hand's wrench is shared
-    /// between its pads is not determined by the arms.
-    pub pad_wrenches_p: Vec<[Wrench; 2]>,
+    /// The wrench of each hand on the object. How it is shared between pads is not determined by the arms.
+    pub hand_wrenches: Vec<HandWrench>,
     /// Motor torques of each arm, N m.
     pub joint_torque_nm: Vec<DVector<f64>>,
     /// Displacement of each arm's joints, `-(K_q + dg/dq)^-1 J' w`, rad.
@@ -48,33 +48,33 @@ pub struct Equilibrium {
     /// Displacement of the board at O's origin.
     pub board: Twist,
     /// Displacement of the faces of each hand's pads at its grasp point, `-C w`. That of the palm is smaller by what the
-    /// pads yield, `-C_pads w`.
+    /// pads, or a measured gripper, yield, `-C_pads w`.
     pub hands: Vec<Twist>,
 }
 
 impl Equilibrium {
-    /// The equilibrium with these wrenches of the pads and this displacement of the board.
-    pub(super) fn of_pads(
+    /// The equilibrium with these wrenches of the hands and this displacement of the board.
+    pub(super) fn of_hands(
         model: &ContactModel,
         load_factor: f64,
-        pad_wrenches_p: Vec<[Wrench; 2]>,
+        hand_wrenches: Vec<HandWrench>,
         board: Twist,
     ) -> Self {
         let mut joint_torque_nm = Vec::with_capacity(model.hands.len());
         let mut hands = Vec::with_capacity(model.hands.len());
         let mut joint_displacement_rad = Vec::with_capacity(model.hands.len());
-        for (hand, pads) in model.hands.iter().zip(&pad_wrenches_p) {
-            let torque = hand.joint_torque_nm(pads);
+        for (hand, wrench) in model.hands.iter().zip(&hand_wrenches) {
+            let torque = hand.joint_torque_nm(wrench);
             let deflection_rad = hand.joint_deflection_rad(&(&torque - &hand.gravity_torque_nm));
             let mut moved = (&hand.jacobian_o * &deflection_rad).fixed_rows::<6>(0).into_owned();
-            if let Some(compliance) = hand.pad_compliance() {
-                moved += compliance * hand.wrench_about_grasp_point(pads).to_vector();
+            if let Some(compliance) = hand.hold_compliance() {
+                moved += compliance * hand.wrench_about_grasp_point(wrench).to_vector();
             }
             hands.push(Twist::from_vector(&-moved));
             joint_torque_nm.push(torque - &hand.gravity_stiffness_nm_rad * &deflection_rad);
             joint_displacement_rad.push(-deflection_rad);
         }
-        Self { load_factor, pad_wrenches_p, joint_torque_nm, joint_displacement_rad, board, hands }
+        Self { load_factor, hand_wrenches, joint_torque_nm, joint_displacement_rad, board, hands }
     }
 
     /// Displacement of the board relative to the faces of a hand's pads at the grasp point, `Ad d + C w`.
@@ -180,8 +180,7 @@ pub(super) fn interpret(
         status => return EquilibriumOutcome::Unknown { status: format!("{status:?}") },
     }
     let places = program.layout.hands();
-    let pad_wrenches_p: Vec<_> =
-        model.hands.iter().zip(places).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
+    let wrenches = model.hands.iter().zip(places).map(|(hand, place)| wrench_of(hand, place, raw.x)).collect();
     let board = balance_twist(raw.z, FORCE_UNIT_N * DISPLACEMENT_UNIT_M);
-    EquilibriumOutcome::Found(Equilibrium::of_pads(model, load_factor, pad_wrenches_p, board))
+    EquilibriumOutcome::Found(Equilibrium::of_hands(model, load_factor, wrenches, board))
 }

@@ -4,7 +4,9 @@ use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vecto
 
 use super::{
     contact_model::{ContactModel, ContactModelError},
-    hand::{HandModel, PadModel},
+    hand::HandModel,
+    hold::{Hold, MeasuredHold, PadPair},
+    pad_model::PadModel,
     patch::{clip_to_outline, clip_to_rectangle},
 };
 use crate::{
@@ -16,7 +18,7 @@ use crate::{
         plan::{ArmHold, PlacedObject},
         wrench::Wrench,
     },
-    robot::{Arm, Chain, Gripper},
+    robot::{Arm, Chain, Gripper, Holding, MeasuredGrip, PadGrip},
 };
 
 impl ContactModel {
@@ -60,14 +62,21 @@ impl HandModel {
         object: &PlacedObject,
         friction: f64,
     ) -> Result<Self, ContactModelError> {
-        let pads = [0, 1].map(|finger| pad_model(&arm.gripper, finger, hold, object, friction));
-        let [first, second] = pads;
+        let held_by = match &arm.gripper.holding {
+            Holding::Pads(pads) => {
+                let [first, second] =
+                    [0, 1].map(|finger| pad_model(&arm.gripper, pads, finger, hold, object, friction));
+                Hold::Pads(PadPair { pads: [first?, second?], grip_force_n: hold.grip_force_n })
+            }
+            Holding::Measured(MeasuredGrip { limits, stiffness }) => {
+                Hold::Measured(MeasuredHold { rotation_og: hold.x_og.rotation, limits: *limits, stiffness: *stiffness })
+            }
+        };
         let grasp_point_g = arm.gripper.grasp_point_g();
         Ok(Self {
             name: hold.name.clone(),
             joints: hold.joints.clone(),
-            pads: [first?, second?],
-            grip_force_n: hold.grip_force_n,
+            hold: held_by,
             grasp_point_o: (hold.x_og * nalgebra::Point3::from(grasp_point_g)).coords,
             jacobian_o: jacobian_o(chain, hold, object, &grasp_point_g),
             gravity_torque_nm: chain.gravity_torque_nm(&hold.q_rad),
@@ -96,6 +105,7 @@ fn jacobian_o(chain: &Chain, hold: &ArmHold, object: &PlacedObject, grasp_point_
 /// The pad of a finger on the board.
 fn pad_model(
     gripper: &Gripper,
+    pads: &PadGrip,
     finger: usize,
     hold: &ArmHold,
     object: &PlacedObject,
@@ -125,7 +135,7 @@ fn pad_model(
         x_op: Pose::from_parts(place_o.into(), rotation),
         half_sides_m,
         friction,
-        stiffness_n_m: gripper.pad_stiffness_n_m.map(|stiffness_n_m| stiffness_n_m * share),
+        stiffness_n_m: pads.pad_stiffness_n_m.map(|stiffness_n_m| stiffness_n_m * share),
     })
 }
 

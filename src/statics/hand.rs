@@ -1,45 +1,12 @@
-//! One hand of a grasp: two soft-finger pads at the end of a compliant arm.
+//! One hand of a grasp: two soft-finger pads, or a measured gripper, at the end of a compliant arm.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Matrix6, Matrix6xX, Vector3};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Matrix6xX, Vector3};
 
-use super::patch::mean_distance_from_centre_m;
-use crate::model::{frames::Pose, wrench::Wrench};
-
-/// One pad on the object: a soft finger with a rectangular patch (docs/method.md#62-pad-limits).
-///
-/// With `(ft1, ft2, fn)` the force and `(mt1, mt2, mn)` the moment on the object about the pad's centre in pad axes,
-/// half sides a and b and the torsion radius e: `|(ft1, ft2, mn / e)| <= mu fn` (friction and torsion), `|mt1| <= b
-/// fn`, `|mt2| <= a fn` (centre of pressure).
-#[derive(Clone, Debug, PartialEq)]
-pub struct PadModel {
-    /// Which of the hand's pads it is, such as `upper`.
-    pub name: String,
-    /// X_OP, P at the centre of the part of the pad that lies on the face; z_P points into the object.
-    pub x_op: Pose,
-    /// Half sides of that part along x_P and y_P, m.
-    pub half_sides_m: [f64; 2],
-    /// Coulomb friction coefficient between pad and object.
-    pub friction: f64,
-    /// Stiffness of that part along z_P, N/m; `None` if it is rigid (docs/method.md#612-pad-compliance).
-    pub stiffness_n_m: Option<f64>,
-}
-
-impl PadModel {
-    /// Torsion radius e of the patch, m: the mean distance of its points from its centre.
-    pub fn torsion_radius_m(&self) -> f64 {
-        mean_distance_from_centre_m(self.half_sides_m)
-    }
-
-    /// R_OP.
-    pub(super) fn rotation(&self) -> Matrix3<f64> {
-        self.x_op.rotation.to_rotation_matrix().into_inner()
-    }
-
-    /// A wrench on the object about O's origin in O axes, from the same wrench about the pad's centre in pad axes.
-    pub fn wrench_about_object(&self, wrench_p: &Wrench) -> Wrench {
-        wrench_p.moved(&self.x_op)
-    }
-}
+use super::{
+    hold::{HandWrench, Hold, MeasuredHold, PadPair},
+    pad_model::PadModel,
+};
+use crate::model::wrench::Wrench;
 
 /// One hand of a grasp; everything in O axes unless noted.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,11 +15,9 @@ pub struct HandModel {
     pub name: String,
     /// The names of the arm's n joints, from the base outward.
     pub joints: Vec<String>,
-    /// Its two pads.
-    pub pads: [PadModel; 2],
-    /// Force F that pushes each finger, N. The fingers are coupled, so the two normal forces add up to 2 F.
-    pub grip_force_n: f64,
-    /// The grasp point between the pads, in O, m. The hand's wrench is taken about it.
+    /// What it holds the board with.
+    pub hold: Hold,
+    /// The grasp point, between the pads, in O, m. The hand's wrench is taken about it.
     pub grasp_point_o: Vector3<f64>,
     /// Jacobian J of the grasp point, 6 x n, O axes: rows 0 to 2 its velocity (m/s), rows 3 to 5 the angular velocity
     /// (rad/s), for joint velocities in rad/s.
@@ -74,26 +39,87 @@ impl HandModel {
         self.joints.len()
     }
 
-    /// The hand's wrench on the object about the grasp point in O axes, from its pads' wrenches, each about the pad's
-    /// centre in pad axes.
-    pub fn wrench_about_grasp_point(&self, pads_p: &[Wrench; 2]) -> Wrench {
-        let about_object = |index: usize| self.pads[index].wrench_about_object(&pads_p[index]);
-        (about_object(0) + about_object(1)).about(&-self.grasp_point_o)
+    /// Its pads; none of a measured gripper.
+    #[must_use]
+    pub fn pads(&self) -> &[PadModel] {
+        self.pad_pair().map_or(&[], |pair| &pair.pads)
     }
 
-    /// Joint torques `g + J' w` under its pads' wrenches on the object, N m.
-    pub(super) fn joint_torque_nm(&self, pads_p: &[Wrench; 2]) -> DVector<f64> {
-        let wrench = self.wrench_about_grasp_point(pads_p).to_vector();
+    /// Its pads, to change them.
+    pub fn pads_mut(&mut self) -> &mut [PadModel] {
+        match &mut self.hold {
+            Hold::Pads(pair) => &mut pair.pads,
+            Hold::Measured(_) => &mut [],
+        }
+    }
+
+    /// Its pads with their force; `None` for a measured gripper.
+    #[must_use]
+    pub fn pad_pair(&self) -> Option<&PadPair> {
+        match &self.hold {
+            Hold::Pads(pair) => Some(pair),
+            Hold::Measured(_) => None,
+        }
+    }
+
+    /// Its measured limits; `None` for pads.
+    #[must_use]
+    pub fn measured(&self) -> Option<&MeasuredHold> {
+        match &self.hold {
+            Hold::Pads(_) => None,
+            Hold::Measured(measured) => Some(measured),
+        }
+    }
+
+    /// Multiplies the grip force of its pads, or its measured limits, by a factor.
+    pub fn scale_grip(&mut self, factor: f64) {
+        match &mut self.hold {
+            Hold::Pads(pair) => pair.grip_force_n *= factor,
+            Hold::Measured(measured) => measured.limits = measured.limits.scaled(factor),
+        }
+    }
+
+    /// The hand's wrench on the object about the grasp point in O axes.
+    pub fn wrench_about_grasp_point(&self, wrench: &HandWrench) -> Wrench {
+        match wrench {
+            HandWrench::Measured(whole) => *whole,
+            HandWrench::Pads(pads_p) => {
+                let of_pads = self.pads().iter().zip(pads_p).map(|(pad, wrench_p)| pad.wrench_about_object(wrench_p));
+                of_pads.reduce(|sum, of_pad| sum + of_pad).unwrap_or_default().about(&-self.grasp_point_o)
+            }
+        }
+    }
+
+    /// The ratio of the hand's wrench to measured limits; 0 for pads.
+    #[must_use]
+    pub fn grip_ratio(&self, wrench: &HandWrench) -> f64 {
+        match (&self.hold, wrench) {
+            (Hold::Measured(measured), HandWrench::Measured(whole)) => measured.limits.ratio(&measured.in_g(whole)),
+            _ => 0.0,
+        }
+    }
+
+    /// Joint torques `g + J' w` under its wrench on the object, N m.
+    pub(super) fn joint_torque_nm(&self, wrench: &HandWrench) -> DVector<f64> {
+        let wrench = self.wrench_about_grasp_point(wrench).to_vector();
         self.jacobian_o.tr_mul(&wrench) + &self.gravity_torque_nm
     }
 
     /// Compliance of arm and pads at the grasp point, `C = J (K_q + dg/dq)^-1 J' + C_pads`, 6 x 6, O axes (m/N, rad/(N
-    /// m)): a wrench w on the faces of the pads displaces them by `C w`. NaN if `K_q + dg/dq` is not positive definite,
+    /// m)): a wrench w on the faces of the pads displaces them by `C w`. Of a measured gripper `C_pads` is its own. NaN if `K_q + dg/dq` is not positive definite,
     /// which [`ContactModel::check`](super::ContactModel::check) rejects.
     #[must_use]
     pub fn compliance(&self) -> Matrix6<f64> {
         let arm = self.arm_compliance();
-        self.pad_compliance().map_or(arm, |pads| arm + pads)
+        self.hold_compliance().map_or(arm, |hold| arm + hold)
+    }
+
+    /// The part of the compliance between hand and board; `None` if it is rigid.
+    pub(super) fn hold_compliance(&self) -> Option<Matrix6<f64>> {
+        match &self.hold {
+            Hold::Pads(_) => self.pad_compliance(),
+            Hold::Measured(measured) => measured.compliance(),
+        }
     }
 
     /// The arm's part of the compliance.

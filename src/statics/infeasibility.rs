@@ -5,17 +5,13 @@
 //! kinematic bound of limit analysis: weak duality of the load program (docs/method.md#66-certificate) with a dual
 //! vector made from `y`. A few likely mechanisms are tried.
 //!
-//! Only pad limits are used: `h_i = 2 F max_c (v_n + mu |(v_t1, v_t2, e w_n)| + b |w_t1| + a |w_t2|)`, with `(v, w)`
+//! Only the limits of pads and of measured grippers are used, for these the support function of the limits. For pads `h_i = 2 F max_c (v_n + mu |(v_t1, v_t2, e w_n)| + b |w_t1| + a |w_t2|)`, with `(v, w)`
 //! the twist at pad c in pad axes. Torque limits are left to the program: a twist that they reject and the pads do not
 //! is rare.
 
 use nalgebra::Vector3;
 
-use super::{
-    contact_model::ContactModel,
-    hand::{HandModel, PadModel},
-    twist::Twist,
-};
+use super::{contact_model::ContactModel, hand::HandModel, hold::Hold, pad_model::PadModel, twist::Twist};
 use crate::model::wrench::Wrench;
 
 /// Relative excess of demand over capacity above which a mechanism counts: rounding only.
@@ -64,8 +60,7 @@ impl ContactModel {
     pub fn infeasibility(&self, load_factor: f64) -> Option<Infeasibility> {
         let outer = self.weight + self.load.scaled(load_factor);
         // Computed once for all mechanisms: they would take most of the time.
-        let radii_m: Vec<_> =
-            self.hands.iter().map(|hand| hand.pads.each_ref().map(PadModel::torsion_radius_m)).collect();
+        let radii_m: Vec<_> = self.hands.iter().map(radii_m).collect();
         let proof = |(mechanism, twist): (Mechanism, Twist)| {
             let back = Twist { linear: -twist.linear, angular: -twist.angular };
             let demand_j = twist.work(&outer);
@@ -96,14 +91,26 @@ fn mechanisms(model: &ContactModel, outer: &Wrench) -> Vec<(Mechanism, Twist)> {
     motions
 }
 
+/// The torsion radii of a hand's pads, m; of no use for a measured gripper.
+fn radii_m(hand: &HandModel) -> [f64; 2] {
+    hand.pad_pair().map_or([0.0; 2], |pair| pair.pads.each_ref().map(PadModel::torsion_radius_m))
+}
+
+/// The largest work with which a hand resists a twist at O's origin, J.
 fn work_of_hand(hand: &HandModel, radii_m: &[f64; 2], twist: &Twist) -> f64 {
-    let largest = hand
-        .pads
-        .iter()
-        .zip(radii_m)
-        .map(|(pad, radius_m)| work_per_normal_force(pad, *radius_m, twist))
-        .fold(f64::NEG_INFINITY, f64::max);
-    2.0 * hand.grip_force_n * largest
+    match &hand.hold {
+        Hold::Pads(pair) => {
+            let per_force = pair.pads.iter().zip(radii_m);
+            let per_force = per_force.map(|(pad, radius_m)| work_per_normal_force(pad, *radius_m, twist));
+            2.0 * pair.grip_force_n * per_force.fold(f64::NEG_INFINITY, f64::max)
+        }
+        Hold::Measured(measured) => {
+            let at_grasp = twist.at(&hand.grasp_point_o);
+            // A twist turns like a wrench.
+            let twist_g = measured.in_g(&Wrench::new(at_grasp.linear, at_grasp.angular));
+            measured.limits.largest_work(&twist_g.into())
+        }
+    }
 }
 
 /// The largest work of a pad per newton of normal force, m. `radius_m` is the torsion radius of its patch.

@@ -1,4 +1,4 @@
-//! Limits of a compliant response: torque, deflection and slip.
+//! Limits of a compliant response: torque, the wrench of measured grippers, deflection and slip.
 
 use super::{contact_model::ContactModel, equilibrium::CompliantResponse};
 use crate::model::scenario::Limits;
@@ -16,6 +16,11 @@ pub enum LimitCrossing {
     Torque {
         /// The joint.
         joint: String,
+    },
+    /// The wrench of a measured gripper leaves its limits: it lets go.
+    GripWrench {
+        /// The hand.
+        hand: String,
     },
     /// The tool tip deflects too far.
     Deflection,
@@ -42,6 +47,7 @@ impl std::fmt::Display for LimitCrossing {
             Self::NoEquilibrium { binding } if binding.is_empty() => f.write_str("weight: no equilibrium"),
             Self::NoEquilibrium { binding } => f.write_str(&binding.join(", ")),
             Self::Torque { joint } => write!(f, "{joint}: torque"),
+            Self::GripWrench { hand } => write!(f, "{hand} gripper: wrench"),
             Self::Deflection => f.write_str("deflection"),
             Self::Slip { hand } => write!(f, "{hand} hand: slip"),
             Self::SlipRotation { hand } => write!(f, "{hand} hand: slip rotation"),
@@ -51,13 +57,13 @@ impl std::fmt::Display for LimitCrossing {
 }
 
 impl CompliantResponse {
-    /// The largest ratio of a torque, deflection or slip to its limit. Creep takes time and is not included.
+    /// The largest ratio of a torque, measured wrench, deflection or slip to its limit. Creep takes time and is not included.
     #[must_use]
     pub fn utilisation(&self, model: &ContactModel, limits: &Limits) -> f64 {
         self.worst_limit(model, limits).0
     }
 
-    /// The largest ratio of a torque, deflection or slip to its limit, and that limit; it is crossed if the ratio is
+    /// The largest ratio of a torque, measured wrench, deflection or slip to its limit, and that limit; it is crossed if the ratio is
     /// above 1.
     #[must_use]
     pub fn worst_limit(&self, model: &ContactModel, limits: &Limits) -> (f64, LimitCrossing) {
@@ -70,6 +76,9 @@ impl CompliantResponse {
             }
         };
         consider(self.deflection_mm() / limits.deflection_mm, &|| LimitCrossing::Deflection);
+        for (hand, wrench) in model.hands.iter().zip(&self.equilibrium.hand_wrenches) {
+            consider(hand.grip_ratio(wrench), &|| LimitCrossing::GripWrench { hand: hand.name.clone() });
+        }
         for (hand, slip) in model.hands.iter().zip(&self.slip) {
             let name = || hand.name.clone();
             consider(slip.linear.norm() * 1e3 / limits.slip_mm, &|| LimitCrossing::Slip { hand: name() });

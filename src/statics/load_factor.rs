@@ -6,16 +6,16 @@ use nalgebra::DVector;
 use super::{
     certificate::DualVector,
     contact_model::ContactModel,
-    hand::{HandModel, PadModel},
-    sensitivity::{self, Sensitivity},
+    hold::HandWrench,
+    pad_model::PadModel,
+    sensitivity::{self, Sensitivity, limit_terms},
     solvers::{
         clarabel::RawSolution,
-        cone_program::{ConeProgram, MAX_LOAD_FACTOR, pad_wrenches},
-        layout::PadLayout,
+        cone_program::{ConeProgram, MAX_LOAD_FACTOR, wrench_of},
+        layout::{HoldLayout, PadLayout},
         units::FORCE_UNIT_N,
     },
 };
-use crate::model::wrench::Wrench;
 
 /// Subtracted from a load factor that was found with reduced accuracy.
 const ALMOST_SOLVED_MARGIN: f64 = 1e-3;
@@ -32,8 +32,8 @@ pub(super) const NAMED_SHARE: f64 = 0.05;
 pub struct LoadFactor {
     /// lambda*, 0 to 100: the largest multiple of the load that some distribution of forces balances within all limits.
     pub load_factor: f64,
-    /// The binding limits, strongest first, such as `left upper pad: friction` or `left_w1: torque`; empty if only the
-    /// cap of 100 binds.
+    /// The binding limits, strongest first, such as `left upper pad: friction`, `left_w1: torque`, `left gripper: moment x`
+    /// (a measured box) or `left gripper: wrench` (an ellipsoid); empty if only the cap of 100 binds.
     ///
     /// They are ordered by `d lambda* / d ln(limit)`: for the friction, torsion and tilt limits of a pad their part of
     /// `z's`, for a joint `tau_max (z+ + z-)`. A pad with less than 5 % of its grip force is limited by the grip. Terms
@@ -41,8 +41,8 @@ pub struct LoadFactor {
     pub binding: Vec<String>,
     /// Derivatives by grip force, friction and torque limits.
     pub sensitivity: Sensitivity,
-    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes.
-    pub pad_wrenches_p: Vec<[Wrench; 2]>,
+    /// The wrench of each hand on the object.
+    pub hand_wrenches: Vec<HandWrench>,
     /// Torques of each arm's joints, `g + J' w`, N m.
     pub joint_torque_nm: Vec<DVector<f64>>,
     /// The dual vector: a certificate of the load factor, see [`DualVector::upper_bound`].
@@ -119,15 +119,15 @@ pub(super) fn interpret(model: &ContactModel, program: &ConeProgram, raw: &RawSo
         status => return LoadFactorOutcome::Unknown { status: format!("{status:?}") },
     };
     let lambda = raw.x[raw.x.len() - 1] / program.load_scale;
-    let pad_wrenches_p: Vec<_> =
-        model.hands.iter().zip(program.layout.hands()).map(|(hand, place)| pad_wrenches(hand, place, raw.x)).collect();
+    let hand_wrenches: Vec<_> =
+        model.hands.iter().zip(program.layout.hands()).map(|(hand, place)| wrench_of(hand, place, raw.x)).collect();
     let joint_torque_nm =
-        model.hands.iter().zip(&pad_wrenches_p).map(|(hand, pads)| hand.joint_torque_nm(pads)).collect();
+        model.hands.iter().zip(&hand_wrenches).map(|(hand, wrench)| hand.joint_torque_nm(wrench)).collect();
     LoadFactorOutcome::Solved(LoadFactor {
         load_factor: (lambda - margin).clamp(0.0, MAX_LOAD_FACTOR),
         binding: binding(model, program, raw),
         sensitivity: sensitivity::of(model, program, raw),
-        pad_wrenches_p,
+        hand_wrenches,
         joint_torque_nm,
         dual: DualVector::new(program, raw.z),
     })
@@ -139,8 +139,15 @@ fn binding(model: &ContactModel, program: &ConeProgram, raw: &RawSolution<'_>) -
     let cap = raw.z[layout.load_rows() + 1];
     let mut terms: Vec<(f64, String)> = Vec::new();
     for (hand, place) in model.hands.iter().zip(layout.hands()) {
-        for (pad, pad_place) in hand.pads.iter().zip(&place.pads) {
-            let of_pad = pad_terms(hand, pad, pad_place, raw);
+        if let HoldLayout::Measured(limits) = &place.hold {
+            terms.extend(
+                limit_terms(limits, raw).map(|(term, limit)| (term, format!("{} gripper: {limit}", hand.name))),
+            );
+        }
+        let pads =
+            hand.pad_pair().into_iter().flat_map(|pair| pair.pads.iter().map(move |pad| (pair.grip_force_n, pad)));
+        for ((grip_force_n, pad), pad_place) in pads.zip(place.pads()) {
+            let of_pad = pad_terms(grip_force_n, pad, pad_place, raw);
             terms.extend(
                 of_pad.map(|(term, limit)| (term, format!("{} {} pad: {}", hand.name, pad.name, limit.name()))),
             );
@@ -166,9 +173,9 @@ fn binding(model: &ContactModel, program: &ConeProgram, raw: &RawSolution<'_>) -
 }
 
 /// `d lambda* / d ln(limit)` of a pad's four limits.
-fn pad_terms(hand: &HandModel, pad: &PadModel, place: &PadLayout, raw: &RawSolution<'_>) -> [(f64, PadLimit); 4] {
+fn pad_terms(grip_force_n: f64, pad: &PadModel, place: &PadLayout, raw: &RawSolution<'_>) -> [(f64, PadLimit); 4] {
     let normal = raw.x[place.variables + 2];
-    let grip = hand.grip_force_n / FORCE_UNIT_N;
+    let grip = grip_force_n / FORCE_UNIT_N;
     if normal < OPEN_PAD_RATIO * grip {
         let pull = grip * pull_multiplier(pad, place, raw);
         return [(pull, PadLimit::Grip), (0.0, PadLimit::Friction), (0.0, PadLimit::Torsion), (0.0, PadLimit::Tilt)];

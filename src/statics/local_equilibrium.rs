@@ -30,6 +30,7 @@ enum Base {
 
 impl LocalEquilibrium {
     /// `None` without an equilibrium under the weight alone or at the load factor, or if a pad has no friction.
+    /// Also `None` if pads are at their limits beside a measured gripper: the interior point has pads alone.
     #[must_use]
     pub fn new(model: &ContactModel, load_factor: f64) -> Option<Self> {
         let welded = WeldedStiffness::new(model);
@@ -57,7 +58,7 @@ impl LocalEquilibrium {
                 Base::InteriorPoint(point) => {
                     let energies: &Vec<HandEnergy> = energies.get_or_insert_with(|| HandEnergy::of_hands(model));
                     let found = point.first_order(model, energies, load_factor)?;
-                    Some(Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board))
+                    Some(Equilibrium::of_hands(model, load_factor, found.hand_wrenches, found.board))
                 }
             }
         };

@@ -8,7 +8,9 @@
 use nalgebra::{Matrix6, Vector6};
 
 use super::{
-    hand::{HandModel, PadModel},
+    hand::HandModel,
+    hold::{Hold, PadPair},
+    pad_model::PadModel,
     welded::twist_map,
 };
 use crate::model::frames::Pose;
@@ -36,7 +38,7 @@ impl HandModel {
     #[must_use]
     pub fn pad_stiffness(&self, x_of: &Pose) -> Option<Matrix6<f64>> {
         let mut stiffness = Matrix6::zeros();
-        for pad in &self.pads {
+        for pad in self.pads() {
             let x_fp = x_of.inverse() * pad.x_op;
             let mut to_pad = Matrix6::zeros();
             let r_pf = x_fp.rotation.inverse().to_rotation_matrix();
@@ -48,13 +50,22 @@ impl HandModel {
         Some(stiffness)
     }
 
-    /// The frame in which the stiffness of two opposite pads of one size is diagonal, in O: in the middle between their
-    /// centres, with the axes of the first.
+    /// The frame D in which the stiffness between hand and board is diagonal, in O, and that diagonal along and about its axes,
+    /// N/m and N m/rad; `None` if it is rigid. Of two opposite pads of one size D is in the middle between their centres with
+    /// the axes of the first, of a measured gripper at the grasp point with the axes of G.
     #[must_use]
-    pub fn between_pads(&self) -> Pose {
-        let [first, second] = self.pads.each_ref().map(|pad| pad.x_op);
-        let middle_o = (first.translation.vector + second.translation.vector) / 2.0;
-        Pose::from_parts(middle_o.into(), first.rotation)
+    pub fn springs(&self) -> Option<(Pose, Vector6<f64>)> {
+        match &self.hold {
+            Hold::Pads(PadPair { pads, .. }) => {
+                let [first, second] = pads.each_ref().map(|pad| pad.x_op);
+                let middle_o = (first.translation.vector + second.translation.vector) / 2.0;
+                let x_od = Pose::from_parts(middle_o.into(), first.rotation);
+                Some((x_od, self.pad_stiffness(&x_od)?.diagonal()))
+            }
+            Hold::Measured(measured) => {
+                Some((Pose::from_parts(self.grasp_point_o.into(), measured.rotation_og), measured.stiffness?))
+            }
+        }
     }
 
     /// Compliance of the pads at the grasp point, 6 x 6, O axes (m/N, rad/(N m)); `None` if a pad is rigid. NaN for a

@@ -48,7 +48,7 @@ pub struct Variation {
     pub load: Wrench,
     /// Friction of every pad, as a multiple of its own.
     pub friction_ratio: f64,
-    /// Grip force of every hand, as a multiple of its own; more than 0.
+    /// Grip force of every hand, or its measured limits, as a multiple of its own; more than 0.
     pub grip_force_ratio: f64,
 }
 
@@ -143,8 +143,8 @@ fn check(variations: &[Variation]) -> Result<(), ContactModelError> {
 fn varied(model: &ContactModel, variation: &Variation) -> ContactModel {
     let mut varied = ContactModel { load: variation.load, ..model.clone() };
     for hand in &mut varied.hands {
-        hand.grip_force_n *= variation.grip_force_ratio;
-        hand.pads.iter_mut().for_each(|pad| pad.friction *= variation.friction_ratio);
+        hand.scale_grip(variation.grip_force_ratio);
+        hand.pads_mut().iter_mut().for_each(|pad| pad.friction *= variation.friction_ratio);
     }
     varied
 }
@@ -178,8 +178,8 @@ fn smallest(workspace: &mut StabilityWorkspace, models: &[ContactModel]) -> Resu
                 if solved.load_factor < worst.0 {
                     worst = (solved.load_factor, variation);
                 }
-                let of_hands = model.hands.iter().zip(&solved.pad_wrenches_p);
-                hand_wrenches.push(of_hands.map(|(hand, pads)| hand.wrench_about_grasp_point(pads)).collect());
+                let of_hands = model.hands.iter().zip(&solved.hand_wrenches);
+                hand_wrenches.push(of_hands.map(|(hand, wrench)| hand.wrench_about_grasp_point(wrench)).collect());
             }
             LoadFactorOutcome::GravityInfeasible { .. } => return Ok(RobustOutcome::GravityInfeasible { variation }),
             LoadFactorOutcome::Unknown { status } => return Ok(RobustOutcome::Unknown { status }),

@@ -41,7 +41,7 @@ fn by_program(model: &ContactModel, load_factor: f64) -> EquilibriumOutcome {
 }
 
 fn equilibrium(model: &ContactModel, load_factor: f64, found: Solution) -> Equilibrium {
-    Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board)
+    Equilibrium::of_hands(model, load_factor, found.hand_wrenches, found.board)
 }
 
 /// Differences of two equilibria: displacement of the tool tip, m, and largest joint torque, N m.
@@ -84,7 +84,7 @@ fn the_newton_step_to_another_model_is_exact_to_first_order() {
         moved.load.force_n += Vector3::new(0.4, -0.3, 0.5) * step;
         moved.load.moment_nm += Vector3::new(0.02, 0.05, -0.04) * step;
         moved.hands[0].grasp_point_o.x += 1e-3 * step;
-        moved.hands[0].pads.iter_mut().for_each(|pad| pad.x_op.translation.vector.x += 1e-3 * step);
+        moved.hands[0].pads_mut().iter_mut().for_each(|pad| pad.x_op.translation.vector.x += 1e-3 * step);
         moved
     };
     for model in models() {

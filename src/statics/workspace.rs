@@ -131,7 +131,7 @@ impl StabilityWorkspace {
 
 fn by_interior_point(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Equilibrium> {
     let found = InteriorPoint::solve(model, energies, load_factor)?.solution(model);
-    Some(Equilibrium::of_pads(model, load_factor, found.pad_wrenches_p, found.board))
+    Some(Equilibrium::of_hands(model, load_factor, found.hand_wrenches, found.board))
 }
 
 fn solve_load(solver: &mut ReusedSolver, model: &ContactModel, kind: ProgramKind) -> LoadFactorOutcome {

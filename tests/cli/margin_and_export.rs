@@ -182,7 +182,7 @@ fn an_exported_scene_has_the_masses_joints_gains_and_load_of_the_plan() {
 #[test]
 fn exported_elastic_pads_are_the_springs_of_the_hand() {
     let (plan, mut robot) = read_plan(&root().join("scenarios/plans/cut-rim.json"), None).unwrap();
-    robot.arms.iter_mut().for_each(|arm| arm.gripper.pad_stiffness_n_m = Some(8e5));
+    robot.arms.iter_mut().for_each(|arm| arm.gripper.holding.pads_mut().unwrap().pad_stiffness_n_m = Some(8e5));
     let checked = checked(&robot, &plan);
     let conditions = Conditions::new(0.6, SimulationSettings::default());
     let scene = Exported(elements(&mjcf(&checked, &conditions, &Limits::CUT).unwrap()));

@@ -10,7 +10,7 @@ use benchdog::{
         trace::Sample,
         wrench::Wrench,
     },
-    robot::{Arm, Finger, Gripper, Joint, JointKind, Link, Pad, Robot, RobotOptions},
+    robot::{Arm, Finger, Gripper, Holding, Joint, JointKind, Link, Pad, PadGrip, Robot, RobotOptions},
     sim::{Conditions, SimScene, blank_sample},
 };
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
@@ -88,12 +88,15 @@ pub fn robot(x_wg: Pose, hinge: Option<Hinge>) -> Robot {
         gripper: Gripper {
             frame_link: 1,
             palm_link: 1,
-            fingers: [finger("left", 2, 1.0), finger("right", 3, -1.0)],
+            fingers: vec![finger("left", 2, 1.0), finger("right", 3, -1.0)],
+            cup: None,
             opening_m: [-0.0037, 0.038],
-            max_force_n: 100.0,
-            grip_force_n: None,
-            friction: None,
-            pad_stiffness_n_m: None,
+            holding: Holding::Pads(PadGrip {
+                max_force_n: 100.0,
+                grip_force_n: None,
+                friction: None,
+                pad_stiffness_n_m: None,
+            }),
             linkage: None,
         },
     };
@@ -188,8 +191,9 @@ impl Bench {
 
     pub fn new(robot: &Robot, plan: &Plan, friction: f64) -> Self {
         let settings = SimulationSettings { timestep_s: TIMESTEP_S, ..SimulationSettings::default() };
-        let scene = SimScene::new(&crate::common::checked(robot, plan), &Conditions::new(friction, settings)).unwrap();
-        Self { scene, sample: blank_sample(plan) }
+        let checked = crate::common::checked(robot, plan);
+        let scene = SimScene::new(&checked, &Conditions::new(friction, settings)).unwrap();
+        Self { scene, sample: blank_sample(&checked) }
     }
 
     /// Steps for `duration_s` while the load changes linearly from one multiple of the wrench to another.

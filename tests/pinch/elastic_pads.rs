@@ -25,7 +25,10 @@ const TANGENTIAL_N_M: f64 = 2.0 / 3.0 * STIFFNESS_N_M;
 const GRIP: Grip = Grip { force_n: 100.0, friction: 0.8, mass_kg: 0.2 };
 
 fn with_pads(mut robot: Robot, stiffness_n_m: f64) -> Robot {
-    robot.arms.iter_mut().for_each(|arm| arm.gripper.pad_stiffness_n_m = Some(stiffness_n_m));
+    robot
+        .arms
+        .iter_mut()
+        .for_each(|arm| arm.gripper.holding.pads_mut().unwrap().pad_stiffness_n_m = Some(stiffness_n_m));
     robot
 }
 

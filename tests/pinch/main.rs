@@ -11,6 +11,7 @@ mod bench;
 mod elastic_pads;
 mod holds;
 mod loads;
+mod measured;
 mod patch;
 mod person;
 mod plates;

@@ -16,3 +16,4 @@ mod muscles;
 mod natural;
 mod planner;
 mod plans;
+mod suction;

@@ -2,7 +2,14 @@
 
 use std::path::Path;
 
-use benchdog::robot::{Chain, Robot, RobotError};
+use benchdog::{
+    model::{
+        wrench::Wrench,
+        wrench_limits::{LimitShape, WrenchLimits},
+    },
+    robot::{Chain, MeasuredGrip, Robot, RobotError},
+};
+use nalgebra::Vector6;
 
 use crate::common::baxter;
 
@@ -130,4 +137,82 @@ fn fingers_must_close_along_the_grippers_y() {
     let expected =
         "found l_gripper_l_finger_joint along (1.0000, 0.0000, 0.0000) of the gripper's frame, expected an axis along";
     assert!(message.contains(expected), "{message}");
+}
+
+/// Measured limits in place of the force of the fingers of the left gripper.
+const MEASURED: &str =
+    "wrench_limits = { shape = \"ellipsoid\", force_n = [200, 200.0, [-60.0, 300]], moment_nm = [20.0, 15.0, 10.0] }";
+
+#[test]
+fn measured_limits_take_the_place_of_force_and_friction() {
+    let with = |lines: &str| load(&DESCRIPTION.replacen("max_force_n = 35.0", lines, 1), URDF);
+    let robot = with(MEASURED).unwrap();
+    let mut limits =
+        WrenchLimits::symmetric(LimitShape::Ellipsoid, Wrench::from([200.0, 200.0, 300.0, 20.0, 15.0, 10.0]));
+    limits.low.force_n.z = -60.0;
+    assert_eq!(robot.arms[0].gripper.holding.measured(), Some(&MeasuredGrip { limits, stiffness: None }));
+    assert!(robot.arms[1].gripper.holding.pads().is_some());
+    let elastic = "hold_stiffness_n_m = [1e5, 2e5, 3e5]\nhold_stiffness_nm_rad = [100.0, 200.0, 300.0]";
+    let robot = with(&format!("{MEASURED}\n{elastic}")).unwrap();
+    let stiffness = Some(Vector6::new(1e5, 2e5, 3e5, 100.0, 200.0, 300.0));
+    assert_eq!(robot.arms[0].gripper.holding.measured(), Some(&MeasuredGrip { limits, stiffness }));
+}
+
+#[test]
+fn messages_about_measured_limits_name_line_key_found_and_expected() {
+    let beside = "expected no such key beside wrench_limits, which say what the gripper holds";
+    let limits = "expected a number above 0 and up to 10000 N, or [low, high] with low below and high above 0";
+    let changed = |from: &str, to: &str| {
+        assert!(MEASURED.contains(from), "{from}");
+        MEASURED.replace(from, to)
+    };
+    let cases = [
+        (format!("{MEASURED}\nmax_force_n = 35.0"), 1, format!("max_force_n: found 35, {beside}")),
+        (format!("{MEASURED}\ngrip_force_n = 30.0"), 1, format!("grip_force_n: found 30, {beside}")),
+        (format!("{MEASURED}\nfriction = 0.6"), 1, format!("friction: found 0.6, {beside}")),
+        (format!("{MEASURED}\npad_stiffness_n_m = 8e5"), 1, format!("pad_stiffness_n_m: found 800000, {beside}")),
+        (changed("200.0", "0.0"), 0, format!("wrench_limits.force_n: found 0, {limits}")),
+        (changed("200.0", "2e4"), 0, format!("wrench_limits.force_n: found 20000, {limits}")),
+        (changed("-60.0", "60.0"), 0, format!("wrench_limits.force_n: found [60, 300], {limits}")),
+        (changed("-60.0, 300", "-60.0, inf"), 0, format!("wrench_limits.force_n: found [-60, inf], {limits}")),
+        (
+            changed("15.0", "nan"),
+            0,
+            "wrench_limits.moment_nm: found NaN, expected a number above 0 and up to 1000 N m".into(),
+        ),
+        (changed("ellipsoid", "ball"), 0, "unknown variant `ball`, expected `box` or `ellipsoid`".into()),
+        (changed("-60.0, 300", "-60.0, 10, 300"), 0, "invalid length 3, expected an array of length 2".into()),
+        (
+            changed("[-60.0, 300]", "\"much\""),
+            0,
+            "invalid type: string \"much\", expected a number for both directions, or [low, high]".into(),
+        ),
+        (changed(", 10.0]", "]"), 0, "invalid length 2, expected an array of length 3".into()),
+        (
+            format!("{MEASURED}\nhold_stiffness_n_m = [1e5, 1e5, 1e5]"),
+            1,
+            "hold_stiffness: found one of two keys, expected both hold_stiffness_n_m and hold_stiffness_nm_rad".into(),
+        ),
+        (
+            format!("{MEASURED}\nhold_stiffness_n_m = [1e5, 1.0, 1e5]\nhold_stiffness_nm_rad = [1.0, 1.0, 1.0]"),
+            1,
+            "hold_stiffness_n_m: found 1, expected three numbers from 100 to 1000000000 N/m".into(),
+        ),
+        (
+            "max_force_n = 35.0\nhold_stiffness_n_m = [1e5, 1e5, 1e5]".into(),
+            1,
+            "hold_stiffness_n_m: found a stiffness, expected no such key without wrench_limits".into(),
+        ),
+        (
+            "friction = 0.6".into(),
+            -3,
+            "max_force_n: found none, expected the force of each finger, N, or wrench".into(),
+        ),
+    ];
+    let first = 1 + DESCRIPTION.lines().position(|line| line == "max_force_n = 35.0").unwrap();
+    for (lines, further, expected) in cases {
+        let message = message(false, "max_force_n = 35.0", &lines);
+        let line = format!("robot.toml: line {}: ", first as i64 + further);
+        assert!(message.contains(&format!("{line}{expected}")), "{message}, expected {line}{expected}");
+    }
 }

@@ -179,7 +179,7 @@ proptest! {
     fn a_linkage_holds_its_pads_at_the_gap(gap_m in 0.006..0.059, other_m in 0.006..0.059) {
         let robot = rail().at_gap(gap_m);
         let gripper = &robot.arms[0].gripper;
-        let [left, right] = gripper.fingers.each_ref().map(|finger| finger.joint);
+        let [left, right] = [0, 1].map(|finger: usize| gripper.fingers[finger].joint);
         assert_eq!([left, right].map(|joint| robot.joints[joint].kind), [JointKind::Prismatic; 2]);
         let pose = |robot: &Robot, gap_m: f64, name: &str| -> Pose {
             let gripper = &robot.arms[0].gripper;
@@ -354,4 +354,76 @@ fn joints_that_follow_in_a_circle_are_refused() {
         error.contains("joints: found cable, which mimics one of them, expected joints of an arm that move no other"),
         "{error}"
     );
+}
+
+/// A gripper in place of that of [`description`], which has figures of pads.
+fn with_gripper(gripper: &str) -> String {
+    let text = description("");
+    let start = text.find("max_force_n").unwrap();
+    format!("{}{gripper}", &text[..start])
+}
+
+const SUCTION: &str = "kind = \"suction\"\nframe_xyz_m = [0.0, 0.0, 0.1]\ncup_diameter_m = 0.06\ncup_height_m = 0.03\n\
+    wrench_limits = { shape = \"box\", force_n = [40.0, 40.0, [-60.0, 200.0]], moment_nm = [2.0, 2.0, 1.0] }\n";
+
+#[test]
+fn a_suction_cup_ends_at_the_origin_of_its_frame() {
+    let robot = load(&with_gripper(SUCTION)).unwrap();
+    let gripper = &robot.arms[0].gripper;
+    let cup = gripper.cup.unwrap();
+    assert_eq!((gripper.fingers.len(), cup.radius_m, gripper.grasp_point_g()), (0, 0.03, Vector3::zeros()));
+    let state = ArmState { arm: 0, q_rad: &[0.1, 0.5, 0.3], finger_travel_m: [0.0; 2] };
+    let x_wl = robot.link_poses(&robot.positions(&[state]));
+    let x_gl = x_wl[gripper.frame_link].inverse() * x_wl[cup.link];
+    let placed = &robot.links[cup.link].shapes[0];
+    let Shape::Cylinder { radius_m, half_length_m } = placed.shape else { panic!("{:?}", placed.shape) };
+    assert_relative_eq!((x_gl * placed.x_ls).translation.vector, Vector3::new(0.0, 0.0, -0.015), epsilon = 1e-15);
+    assert_relative_eq!((x_gl * placed.x_ls) * Vector3::z(), Vector3::z(), epsilon = 1e-15);
+    assert_eq!((radius_m, half_length_m), (0.03, 0.015));
+    assert!(robot.links[cup.link].mass_kg > 0.0);
+}
+
+#[test]
+fn messages_about_suction_cups_name_key_found_and_expected() {
+    let cases = [
+        (SUCTION.replace("cup_diameter_m = 0.06\n", ""), "cup_diameter_m: found none, expected 0.002 to 0.5 m"),
+        (SUCTION.replace("0.03\n", "0.0\n"), "cup_height_m: found 0, expected 0.002 to 0.5 m"),
+        (
+            format!("{SUCTION}opening_m = [0.0, 0.05]\n"),
+            "opening_m: found a key of two jaws, expected no such key: a suction cup",
+        ),
+        (format!("{SUCTION}pad_size_m = [0.02, 0.02]\n"), "pad_size_m: found a key of two jaws, expected no such key"),
+        (
+            SUCTION.lines().filter(|line| !line.starts_with("wrench")).map(|line| format!("{line}\n")).collect(),
+            "wrench_limits: found none, expected the measured limits of the suction cup",
+        ),
+        (format!("{SUCTION}friction = 0.5\n"), "friction: found 0.5, expected no such key beside wrench_limits"),
+    ];
+    for (gripper, expected) in cases {
+        let error = load(&with_gripper(&gripper)).unwrap_err();
+        assert!(error.contains(expected), "{error}, expected {expected}");
+    }
+    let of_jaws = [
+        (
+            "opening_m = [0.0, 0.05]\npad_centre_m = [0.0, 0.0]\nkind = \"clamp\"\ncup_height_m = 0.1\n",
+            "cup_height_m: found 0.1, expected no such key",
+        ),
+        ("pad_centre_m = [0.0, 0.0]\nkind = \"clamp\"\n", "opening_m: found none, expected the gaps between the pads"),
+    ];
+    for (gripper, expected) in of_jaws {
+        let error = load(&description(gripper)).unwrap_err();
+        assert!(error.contains(expected), "{error}, expected {expected}");
+    }
+}
+
+/// A clamp with measured limits has the jaws of a clamp.
+#[test]
+fn a_measured_clamp_has_jaws_at_the_gap() {
+    let clamp = "kind = \"clamp\"\nframe_xyz_m = [0.0, 0.0, 0.1]\nopening_m = [0.0, 0.05]\npad_size_m = [0.02, 0.02]\n\
+        pad_centre_m = [0.01, 0.03]\nwrench_limits = { shape = \"box\", force_n = [90.0, 90.0, 90.0], moment_nm = [5.0, 5.0, 5.0] }\n";
+    let robot = load(&with_gripper(clamp)).unwrap();
+    let gripper = &robot.arms[0].gripper;
+    assert_eq!((gripper.fingers.len(), gripper.opening_m), (2, [0.0, 0.05]));
+    assert_eq!(gripper.grasp_point_g(), Vector3::new(0.01, 0.0, 0.03));
+    assert_eq!(gripper.holding.measured().unwrap().limits.high.force_n, Vector3::repeat(90.0));
 }

@@ -21,9 +21,9 @@ fn a_plan_becomes_its_geometry() {
         assert!((weight_w - GRAVITY_W * object.mass_kg).norm() < 1e-14);
         for (hand, arm) in hold.hands.iter().zip(arms) {
             assert_eq!((&hand.name, &hand.joints), (&arm.name, &arm.joints));
-            let names: Vec<_> = hand.pads.iter().map(|pad| pad.name.as_str()).collect();
+            let names: Vec<_> = hand.pads().iter().map(|pad| pad.name.as_str()).collect();
             assert!(names == ["upper", "lower"] || names == ["lower", "upper"], "{names:?}");
-            for pad in &hand.pads {
+            for pad in hand.pads() {
                 // On its face, pressing into the board, at the grasp point: at 35 mm the whole pad is on the board.
                 let side = if pad.name == "upper" { 1.0 } else { -1.0 };
                 let p = pad.x_op.translation.vector;
@@ -99,7 +99,7 @@ fn a_pad_that_overhangs_the_edge_counts_with_what_is_on_the_board() {
     let shifted: Vec<_> = arms.iter().map(|arm| shift(arm, 0.015)).collect();
     let hold = contact_model(&robot, &shifted, object, operation, 0.6).unwrap();
     for hand in &hold.hands {
-        for pad in &hand.pads {
+        for pad in hand.pads() {
             assert!((pad.half_sides_m[0] - 0.0202).abs() < 1e-12);
             assert!((pad.half_sides_m[1] - 0.0231 / 2.0).abs() < 1e-12, "{:?}", pad.half_sides_m);
             assert!((pad.x_op.translation.y.abs() - (0.2 - 0.0231 / 2.0)).abs() < 1e-12);

@@ -203,11 +203,11 @@ fn errors_of_invalid_models_name_the_place() {
     assert!(workspace.load_factor(&good).is_ok());
     assert_eq!(message(&|hold| hold.hands.clear()), "found 0 hands, expected 1 to 4");
     assert_eq!(
-        message(&|hold| hold.hands[1].pads[0].half_sides_m[1] = 0.0),
+        message(&|hold| hold.hands[1].pads_mut()[0].half_sides_m[1] = 0.0),
         "right upper pad: found half side 0, expected more than 0 m"
     );
     assert_eq!(
-        message(&|hold| hold.hands[0].pads[1].friction = -0.1),
+        message(&|hold| hold.hands[0].pads_mut()[1].friction = -0.1),
         "left lower pad: found friction -0.1, expected 0 or more"
     );
     assert_eq!(message(&|hold| hold.load.force_n.x = f64::NAN), "object: found a load that is not finite");
@@ -222,7 +222,7 @@ fn errors_of_invalid_models_name_the_place() {
 #[test]
 fn without_friction_a_pinch_holds_only_along_its_normals() {
     let mut hold = one_hand(Wrench::from_force(Vector3::y()));
-    hold.hands[0].pads.iter_mut().for_each(|pad| pad.friction = 0.0);
+    hold.hands[0].pads_mut().iter_mut().for_each(|pad| pad.friction = 0.0);
     approx::assert_abs_diff_eq!(solved(&hold).load_factor, 60.0, epsilon = 60.0 * TOLERANCE);
     hold.load = Wrench::from_force(Vector3::x());
     approx::assert_abs_diff_eq!(solved(&hold).load_factor, 0.0, epsilon = TOLERANCE);

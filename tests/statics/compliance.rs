@@ -9,7 +9,7 @@ use benchdog::{
 };
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::fixtures::{limits, random_hold, strong_hand, two_strong_hands};
+use crate::fixtures::{limits, random_hold, set_grip, strong_hand, two_strong_hands};
 
 fn response(hold: &ContactModel, load_factor: f64) -> CompliantResponse {
     match StabilityWorkspace::new().response(hold, load_factor).unwrap() {
@@ -21,7 +21,7 @@ fn response(hold: &ContactModel, load_factor: f64) -> CompliantResponse {
 /// A random contact model with pads far from their limits.
 fn elastic_hold(seed: u64) -> ContactModel {
     let mut hold = random_hold(seed, 2);
-    hold.hands.iter_mut().for_each(|hand| hand.grip_force_n = 1e3);
+    hold.hands.iter_mut().for_each(|hand| set_grip(hand, 1e3));
     hold
 }
 
@@ -83,10 +83,10 @@ fn without_slip_pads_do_not_matter() {
         let reference = response(&hold, 1.0).deflection_m;
         let mut other = hold.clone();
         for hand in &mut other.hands {
-            hand.grip_force_n *= 1.7;
-            hand.pads[0].friction *= 1.5;
-            hand.pads[1].half_sides_m[0] *= 0.7;
-            hand.pads[1].x_op.translation.vector.x += 0.005;
+            hand.scale_grip(1.7);
+            hand.pads_mut()[0].friction *= 1.5;
+            hand.pads_mut()[1].half_sides_m[0] *= 0.7;
+            hand.pads_mut()[1].x_op.translation.vector.x += 0.005;
         }
         approx::assert_relative_eq!(
             response(&other, 1.0).deflection_m,
@@ -120,7 +120,7 @@ fn a_sliding_hand_leaves_the_rest_of_the_load_to_the_other() {
     // Along x, in line with both hands: each takes half until the weak one slides at 2 mu F = 12 N.
     let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::new(30.0, 0.0, 0.0)));
     hold.p_ot = Vector3::zeros();
-    hold.hands[1].grip_force_n = 10.0;
+    set_grip(&mut hold.hands[1], 10.0);
     let compliance = 1e-3;
     let elastic = response(&hold, 0.5);
     approx::assert_relative_eq!(elastic.deflection_m.x, 7.5 * compliance, max_relative = 1e-4);
@@ -154,7 +154,7 @@ fn a_hand_that_turns_becomes_a_hinge() {
         load,
         p_ot: Vector3::zeros(),
     };
-    let held_nm = 2.0 * 0.6 * 10.0 * hold.hands[1].pads[0].torsion_radius_m();
+    let held_nm = 2.0 * 0.6 * 10.0 * hold.hands[1].pads()[0].torsion_radius_m();
     let found = response(&hold, 1.0);
     let turned_rad = (1.0 - held_nm) / 100.0;
     let slip_rad = turned_rad - held_nm / 100.0;

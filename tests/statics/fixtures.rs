@@ -14,7 +14,8 @@ use benchdog::{
     },
     robot::{Chain, InverseKinematics, Robot},
     statics::{
-        ContactModel, ContactModelError, HandModel, LoadFactor, LoadFactorOutcome, PadModel, StabilityWorkspace,
+        ContactModel, ContactModelError, HandModel, Hold, LoadFactor, LoadFactorOutcome, PadModel, PadPair,
+        StabilityWorkspace,
     },
 };
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3};
@@ -54,8 +55,7 @@ pub fn strong_hand(
     HandModel {
         name: name.into(),
         joints: (0..6).map(|joint| format!("{name}_{joint}")).collect(),
-        pads: [pad("upper", 1.0), pad("lower", -1.0)],
-        grip_force_n: grip_n,
+        hold: Hold::Pads(PadPair { pads: [pad("upper", 1.0), pad("lower", -1.0)], grip_force_n: grip_n }),
         grasp_point_o: p,
         jacobian_o: Matrix6xX::identity(6),
         gravity_torque_nm: DVector::zeros(6),
@@ -63,6 +63,12 @@ pub fn strong_hand(
         stiffness_nm_rad: DVector::from_element(6, 1e3),
         gravity_stiffness_nm_rad: DMatrix::zeros(6, 6),
     }
+}
+
+/// Sets the grip force of a hand with pads, N.
+pub fn set_grip(hand: &mut HandModel, force_n: f64) {
+    let now_n = hand.pad_pair().unwrap().grip_force_n;
+    hand.scale_grip(force_n / now_n);
 }
 
 /// A board of 0.5 x 0.4 x 0.03 m held on two opposite edges by strong hands, pads on its faces.
@@ -128,7 +134,10 @@ pub fn moved(hold: &ContactModel, x: &Pose) -> ContactModel {
     let mut moved = hold.clone();
     for hand in &mut moved.hands {
         hand.grasp_point_o = (x * nalgebra::Point3::from(hand.grasp_point_o)).coords;
-        hand.pads.iter_mut().for_each(|pad| pad.x_op = x * pad.x_op);
+        hand.pads_mut().iter_mut().for_each(|pad| pad.x_op = x * pad.x_op);
+        if let Hold::Measured(measured) = &mut hand.hold {
+            measured.rotation_og = x.rotation * measured.rotation_og;
+        }
         for mut column in hand.jacobian_o.column_iter_mut() {
             let linear = x.rotation * Vector3::new(column[0], column[1], column[2]);
             let angular = x.rotation * Vector3::new(column[3], column[4], column[5]);
@@ -146,12 +155,15 @@ pub fn moved(hold: &ContactModel, x: &Pose) -> ContactModel {
 pub fn stronger(hold: &ContactModel, factor: f64) -> ContactModel {
     let mut stronger = hold.clone();
     for hand in &mut stronger.hands {
-        hand.grip_force_n *= factor;
+        hand.scale_grip(factor);
         hand.gravity_torque_nm *= factor;
         hand.effort_nm *= factor;
         hand.stiffness_nm_rad *= factor;
         hand.gravity_stiffness_nm_rad *= factor;
-        hand.pads.iter_mut().filter_map(|pad| pad.stiffness_n_m.as_mut()).for_each(|stiffness| *stiffness *= factor);
+        hand.pads_mut()
+            .iter_mut()
+            .filter_map(|pad| pad.stiffness_n_m.as_mut())
+            .for_each(|stiffness| *stiffness *= factor);
     }
     stronger.weight = hold.weight.scaled(factor);
     stronger.load = hold.load.scaled(factor);

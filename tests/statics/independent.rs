@@ -31,10 +31,10 @@ fn without_rounding(terms: impl IntoIterator<Item = (Variable, f64)>) -> Vec<(Va
 fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
     let mut problem = Problem::new(OptimizationDirection::Maximize);
     let lambda = problem.add_var(1.0, (0.0, 100.0));
-    let pads: Vec<&PadModel> = hold.hands.iter().flat_map(|hand| &hand.pads).collect();
+    let pads: Vec<&PadModel> = hold.hands.iter().flat_map(benchdog::statics::HandModel::pads).collect();
     let variables: Vec<[Variable; 6]> = (0..pads.len())
         .map(|pad| {
-            let most = 2.0 * hold.hands[pad / 2].grip_force_n;
+            let most = 2.0 * hold.hands[pad / 2].pad_pair().unwrap().grip_force_n;
             [most, most, most, 1.0, 1.0, 1.0].map(|bound| {
                 // Bounds that the cones imply, so that the first program, without planes, is bounded.
                 let least = if bound == most { -most } else { -bound * most };
@@ -53,8 +53,9 @@ fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
     }
     for (number, hand) in hold.hands.iter().enumerate() {
         let [first, second] = [variables[2 * number], variables[2 * number + 1]];
-        problem.add_constraint([(first[2], 1.0), (second[2], 1.0)], ComparisonOp::Eq, 2.0 * hand.grip_force_n);
-        let maps = [0, 1].map(|pad| hand.jacobian_o.transpose() * pad_wrench(&hand.pads[pad], &hand.grasp_point_o));
+        let both_n = 2.0 * hand.pad_pair().unwrap().grip_force_n;
+        problem.add_constraint([(first[2], 1.0), (second[2], 1.0)], ComparisonOp::Eq, both_n);
+        let maps = [0, 1].map(|pad| hand.jacobian_o.transpose() * pad_wrench(&hand.pads()[pad], &hand.grasp_point_o));
         for joint in 0..hand.dof() {
             let terms: Vec<_> = (0..6)
                 .flat_map(|column| {
@@ -89,7 +90,7 @@ fn relaxed(hold: &ContactModel, cuts: &[Cut]) -> (f64, Vec<Vector6<f64>>) {
 
 /// An upper bound of the load factor, tight up to the remaining violation of at most 1e-4 N.
 fn by_cutting_planes(hold: &ContactModel) -> f64 {
-    let pads: Vec<&PadModel> = hold.hands.iter().flat_map(|hand| &hand.pads).collect();
+    let pads: Vec<&PadModel> = hold.hands.iter().flat_map(benchdog::statics::HandModel::pads).collect();
     let mut cuts = Vec::new();
     for _ in 0..200 {
         let (lambda, wrenches) = relaxed(hold, &cuts);
@@ -133,7 +134,7 @@ fn random_holds_agree_with_cutting_planes() {
 fn a_skew_load_on_one_hand_agrees_with_cutting_planes() {
     // Friction, torsion and tilt at once, with pads of different size.
     let mut hand = strong_hand("left", Vector3::new(0.05, 0.0, 0.02), Vector3::z(), Vector3::x(), 30.0, 0.6, 0.03);
-    hand.pads[1].half_sides_m = [HALF_SIDES_M[0] / 2.0, HALF_SIDES_M[1]];
+    hand.pads_mut()[1].half_sides_m = [HALF_SIDES_M[0] / 2.0, HALF_SIDES_M[1]];
     let load = benchdog::model::wrench::Wrench::from([3.0, -2.0, 5.0, 0.1, 0.2, -0.1]);
     let hold = ContactModel { hands: vec![hand], weight: Default::default(), load, p_ot: Vector3::zeros() };
     let (ours, theirs) = (solved(&hold).load_factor, by_cutting_planes(&hold));

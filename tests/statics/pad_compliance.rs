@@ -9,7 +9,7 @@ use benchdog::{
 };
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, UnitQuaternion, Vector3};
 
-use crate::fixtures::{HALF_SIDES_M, baxter_holds, contact_model, moved, random_hold, strong_hand};
+use crate::fixtures::{HALF_SIDES_M, baxter_holds, contact_model, moved, random_hold, set_grip, strong_hand};
 
 /// Stiffness of a pad, N/m.
 const STIFFNESS_N_M: f64 = 8e5;
@@ -18,7 +18,10 @@ const STIFFNESS_N_M: f64 = 8e5;
 const HALF_GAP_M: f64 = 0.015;
 
 fn with_pads(mut hold: ContactModel, stiffness_n_m: f64) -> ContactModel {
-    hold.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.stiffness_n_m = Some(stiffness_n_m));
+    hold.hands
+        .iter_mut()
+        .flat_map(benchdog::statics::HandModel::pads_mut)
+        .for_each(|pad| pad.stiffness_n_m = Some(stiffness_n_m));
     hold
 }
 
@@ -74,7 +77,7 @@ fn a_hand_off_its_grasp_point_is_as_stiff_as_its_pads() {
     // The pads are 5 mm beside the grasp point: pushed there the board does not turn.
     let lever = Vector3::new(0.005, 0.0, 0.0);
     let mut hold = fixed_hand(Wrench::from_force(Vector3::z() * 20.0).about(&lever));
-    hold.hands[0].pads.iter_mut().for_each(|pad| pad.x_op.translation.vector += lever);
+    hold.hands[0].pads_mut().iter_mut().for_each(|pad| pad.x_op.translation.vector += lever);
     let found = response(&hold, 1.0).board;
     // Rounding beside 1.25e-5 m.
     assert!(found.angular.norm() < 1e-12 && (found.linear.z - 20.0 / (2.0 * STIFFNESS_N_M)).abs() < 1e-9, "{found:?}");
@@ -84,7 +87,7 @@ fn a_hand_off_its_grasp_point_is_as_stiff_as_its_pads() {
 fn elastic_pads_add_to_the_arms_compliance_and_do_not_slip() {
     for seed in 0..10 {
         let mut rigid = random_hold(seed, 2);
-        rigid.hands.iter_mut().for_each(|hand| hand.grip_force_n = 1e3);
+        rigid.hands.iter_mut().for_each(|hand| set_grip(hand, 1e3));
         let hold = with_pads(rigid.clone(), STIFFNESS_N_M);
         for (hand, rigid) in hold.hands.iter().zip(&rigid.hands) {
             let added = hand.compliance() - rigid.compliance();
@@ -148,13 +151,16 @@ fn the_choice_of_frame_does_not_matter() {
 #[test]
 fn a_pad_half_on_the_board_is_half_as_stiff() {
     let (mut robot, holds) = baxter_holds(1, 5);
-    robot.arms.iter_mut().for_each(|arm| arm.gripper.pad_stiffness_n_m = Some(STIFFNESS_N_M));
+    robot
+        .arms
+        .iter_mut()
+        .for_each(|arm| arm.gripper.holding.pads_mut().unwrap().pad_stiffness_n_m = Some(STIFFNESS_N_M));
     let (mut arms, object, operation) = holds[0].clone();
     let model = |arms: &_| contact_model(&robot, arms, &object, &operation, 0.6).unwrap();
-    assert_eq!(model(&arms).hands[0].pads[0].stiffness_n_m, Some(STIFFNESS_N_M));
+    assert_eq!(model(&arms).hands[0].pads()[0].stiffness_n_m, Some(STIFFNESS_N_M));
     // G's origin is 14.9 mm in front of the pad's centre and 35 mm inside the edge: 20.1 mm out, the centre is on the edge.
     arms[0].x_og *= Isometry3::translation(0.0, 0.0, -0.0201);
-    let clipped = model(&arms).hands[0].pads.clone().map(|pad| pad.stiffness_n_m.unwrap());
+    let clipped = model(&arms).hands[0].pad_pair().unwrap().pads.clone().map(|pad| pad.stiffness_n_m.unwrap());
     // Rounding of places of some decimetres.
     clipped.iter().for_each(|found| approx::assert_relative_eq!(*found, STIFFNESS_N_M / 2.0, max_relative = 1e-9));
 }
@@ -162,10 +168,13 @@ fn a_pad_half_on_the_board_is_half_as_stiff() {
 #[test]
 fn the_stiffness_is_diagonal_between_the_pads_of_a_plan() {
     let (mut robot, holds) = baxter_holds(6, 9);
-    robot.arms.iter_mut().for_each(|arm| arm.gripper.pad_stiffness_n_m = Some(STIFFNESS_N_M));
+    robot
+        .arms
+        .iter_mut()
+        .for_each(|arm| arm.gripper.holding.pads_mut().unwrap().pad_stiffness_n_m = Some(STIFFNESS_N_M));
     for (arms, object, operation) in &holds {
         for hand in contact_model(&robot, arms, object, operation, 0.6).unwrap().hands {
-            let stiffness = hand.pad_stiffness(&hand.between_pads()).unwrap();
+            let stiffness = hand.pad_stiffness(&hand.springs().unwrap().0).unwrap();
             let rest = stiffness - nalgebra::Matrix6::from_diagonal(&stiffness.diagonal());
             // Rounding beside 1e6 N/m.
             assert!(rest.amax() < 1e-6, "{rest}");

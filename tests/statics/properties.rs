@@ -35,12 +35,12 @@ proptest! {
         let hold = random_hold(seed, hands);
         let reference = load_factor(&hold);
         let changed = |change: &dyn Fn(&mut ContactModel)| { let mut other = hold.clone(); change(&mut other); load_factor(&other) };
-        let rougher = changed(&|hold| hold.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= factor));
+        let rougher = changed(&|hold| hold.hands.iter_mut().flat_map(benchdog::statics::HandModel::pads_mut).for_each(|pad| pad.friction *= factor));
         prop_assert!(at_least(rougher, reference), "friction: {rougher} after {reference}");
         let with_torque = changed(&|hold| hold.hands.iter_mut().for_each(|hand| hand.effort_nm *= factor));
         prop_assert!(at_least(with_torque, reference), "torque: {with_torque} after {reference}");
         // Nor does more grip: the surplus of fn_1 + fn_2 squeezes the board without load on the arm.
-        let tighter = changed(&|hold| hold.hands.iter_mut().for_each(|hand| hand.grip_force_n *= factor));
+        let tighter = changed(&|hold| hold.hands.iter_mut().for_each(|hand| hand.scale_grip(factor)));
         prop_assert!(at_least(tighter, reference), "grip: {tighter} after {reference}");
     }
 
@@ -131,8 +131,9 @@ proptest! {
 fn check_primal(hold: &ContactModel, solved: &benchdog::statics::LoadFactor) -> Result<(), TestCaseError> {
     const FORCE_TOLERANCE: f64 = 1e-4;
     let mut sum = hold.weight + hold.load.scaled(solved.load_factor);
-    for ((hand, pads), torque) in hold.hands.iter().zip(&solved.pad_wrenches_p).zip(&solved.joint_torque_nm) {
-        for (pad, wrench) in hand.pads.iter().zip(pads) {
+    for ((hand, wrench), torque) in hold.hands.iter().zip(&solved.hand_wrenches).zip(&solved.joint_torque_nm) {
+        let pads = wrench.of_pads();
+        for (pad, wrench) in hand.pads().iter().zip(pads) {
             sum = sum + pad.wrench_about_object(wrench);
             let (force, moment) = (wrench.force_n, wrench.moment_nm);
             let [a, b] = pad.half_sides_m;
@@ -142,7 +143,7 @@ fn check_primal(hold: &ContactModel, solved: &benchdog::statics::LoadFactor) -> 
             prop_assert!(moment.y.abs() <= a * force.z + FORCE_TOLERANCE);
         }
         let grip = pads[0].force_n.z + pads[1].force_n.z;
-        prop_assert!((grip - 2.0 * hand.grip_force_n).abs() <= FORCE_TOLERANCE);
+        prop_assert!((grip - 2.0 * hand.pad_pair().unwrap().grip_force_n).abs() <= FORCE_TOLERANCE);
         for joint in 0..hand.dof() {
             prop_assert!(torque[joint].abs() <= hand.effort_nm[joint] + FORCE_TOLERANCE);
         }

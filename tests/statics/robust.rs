@@ -39,7 +39,11 @@ fn variations(hold: &ContactModel, seed: u64) -> Vec<Variation> {
 
 fn varied(hold: &ContactModel, variation: &Variation) -> ContactModel {
     let mut varied = ContactModel { load: variation.load, ..hold.clone() };
-    varied.hands.iter_mut().flat_map(|hand| &mut hand.pads).for_each(|pad| pad.friction *= variation.friction_ratio);
+    varied
+        .hands
+        .iter_mut()
+        .flat_map(benchdog::statics::HandModel::pads_mut)
+        .for_each(|pad| pad.friction *= variation.friction_ratio);
     varied
 }
 

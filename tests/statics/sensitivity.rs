@@ -30,15 +30,15 @@ fn derivatives(hold: &ContactModel) -> Vec<Derivative> {
         all.push(Derivative {
             name: format!("{} grip", hand.name),
             found: found.per_grip_force_n,
-            limit: hand.grip_force_n,
-            scale: Box::new(move |hold, by| hold.hands[number].grip_force_n *= by),
+            limit: hand.pad_pair().unwrap().grip_force_n,
+            scale: Box::new(move |hold, by| hold.hands[number].scale_grip(by)),
         });
         for pad in 0..2 {
             all.push(Derivative {
-                name: format!("{} {} friction", hand.name, hand.pads[pad].name),
+                name: format!("{} {} friction", hand.name, hand.pads()[pad].name),
                 found: found.per_friction[pad],
-                limit: hand.pads[pad].friction,
-                scale: Box::new(move |hold, by| hold.hands[number].pads[pad].friction *= by),
+                limit: hand.pads()[pad].friction,
+                scale: Box::new(move |hold, by| hold.hands[number].pads_mut()[pad].friction *= by),
             });
         }
         for joint in 0..hand.dof() {

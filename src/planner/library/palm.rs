@@ -9,7 +9,7 @@ use crate::{
         grasp::EdgeGrasp,
     },
     planner::domain::DEPTH_M,
-    robot::Gripper,
+    robot::{Finger, Gripper},
 };
 
 /// Bisections of a depth: from 60 mm to below 1e-9 m.
@@ -40,7 +40,8 @@ impl Palm {
         clearance_m: f64,
     ) -> [f64; 2] {
         let tested = if board.plate.is_some() { edges } else { &[Edge::PLUS_X] };
-        let pad = &gripper.fingers[0].pad;
+        // A suction cup grasps no edge.
+        let Some(Finger { pad, .. }) = gripper.fingers.first() else { return [0.0; 2] };
         let least_m = DEPTH_M[0].min(pad.size_m[1] / 2.0 - pad.centre_m[1]).max(0.0);
         let is_clear = |depth_m: f64| {
             tested.iter().all(|&edge| {

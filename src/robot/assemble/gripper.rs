@@ -1,7 +1,5 @@
 //! Grippers: frame, pads, fingers, opening.
 
-use std::ops::RangeInclusive;
-
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use toml::Spanned;
 
@@ -12,6 +10,7 @@ use crate::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
         faces::{mean_y, nearest_face},
         geometry::{PlacedShape, Shape, Visual, VisualGeometry},
+        holding::Holding,
         tree::{Finger, Gripper, JointKind, Linkage, Pad},
     },
 };
@@ -21,12 +20,6 @@ const AXIS_TOLERANCE: f64 = 1e-5;
 
 /// Tolerance of a gripper's opening relative to the finger joints' limits, m: published gaps are rounded to 0.1 mm.
 const OPENING_TOLERANCE_M: f64 = 1e-4;
-
-/// Stiffness of a pad, N/m, from softer than a foam cushion to stiffer than a steel block of its size.
-const PAD_STIFFNESS_N_M: RangeInclusive<f64> = 1e4..=1e9;
-
-/// The largest friction coefficient: soft rubber on a rough board has less than 2.
-const MOST_FRICTION: f64 = 5.0;
 
 /// Thickness, m, and mass, kg, of a jaw of a clamp: a steel plate of the size of a hand's pad.
 const JAW_THICKNESS_M: f64 = 0.010;
@@ -40,12 +33,9 @@ struct Hand {
     /// Poses of all links with every joint at rest.
     x_wl: Vec<Pose>,
     opening_m: [f64; 2],
-    max_force_n: f64,
-    grip_force_n: Option<f64>,
-    friction: Option<f64>,
     pad_size_m: [f64; 2],
     pad_centre_m: [f64; 2],
-    pad_stiffness_n_m: Option<f64>,
+    holding: Holding,
 }
 
 impl Hand {
@@ -57,12 +47,10 @@ impl Hand {
         Gripper {
             frame_link: self.frame_link,
             palm_link: self.palm_link,
-            fingers,
+            fingers: fingers.into(),
+            cup: None,
             opening_m: self.opening_m,
-            max_force_n: self.max_force_n,
-            grip_force_n: self.grip_force_n,
-            friction: self.friction,
-            pad_stiffness_n_m: self.pad_stiffness_n_m,
+            holding: self.holding.clone(),
             linkage,
         }
     }
@@ -74,11 +62,11 @@ impl Assembler<'_> {
         self.carriers = self.robot.carriers();
         let given_frame = self.link("frame_link", &entry.frame_link);
         let palm = entry.palm_link.as_ref().map_or(Some(given_frame), |name| self.link("palm_link", name).map(Some));
-        self.positive("max_force_n", &entry.max_force_n, &[*entry.max_force_n.get_ref()]);
-        self.positive("pad_size_m", &entry.pad_size_m, &entry.pad_size_m.get_ref().0);
-        let pad_centre_m = self.finite("pad_centre_m", &entry.pad_centre_m, "m");
-        let pad_stiffness_n_m = self.pad_stiffness(entry);
-        let (grip_force_n, friction) = self.grip_defaults(entry);
+        let holding = self.holding(entry);
+        let jaw = match entry.kind {
+            GripperKind::Suction => None,
+            GripperKind::Fingers | GripperKind::Clamp => self.jaw(entry),
+        };
         let (given_frame, palm_link) = (given_frame?, palm??);
         if self.carriers[palm_link] != self.carriers[given_frame] {
             let (key, at) = entry.palm_link.as_ref().map(|palm| (palm.get_ref().clone(), palm.span()))?;
@@ -87,29 +75,56 @@ impl Assembler<'_> {
             return None;
         }
         let frame_link = self.gripper_frame(arm, given_frame, entry)?;
+        if entry.kind == GripperKind::Suction {
+            return self.suction(arm, entry, [frame_link, palm_link], holding);
+        }
+        let (opening_m, pad_size_m, pad_centre_m) = jaw?;
         let hand = Hand {
             frame_link,
             palm_link,
             x_wl: self.robot.link_poses(&self.robot.positions(&[])),
-            opening_m: entry.opening_m.get_ref().0,
-            max_force_n: *entry.max_force_n.get_ref(),
-            grip_force_n,
-            friction,
-            pad_size_m: entry.pad_size_m.get_ref().0,
-            pad_centre_m: pad_centre_m?,
-            pad_stiffness_n_m,
+            opening_m,
+            pad_size_m,
+            pad_centre_m,
+            holding: holding?,
         };
         if entry.kind == GripperKind::Clamp {
             return self.clamp(arm, &hand, entry);
         }
         let Some(fingers) = &entry.fingers else {
-            self.fault(entry.frame_link.span(), "fingers", "none", "two fingers, or kind = \"clamp\"");
+            self.fault(entry.frame_link.span(), "fingers", "none", "two fingers, or kind = \"clamp\" or \"suction\"");
             return None;
         };
         match fingers.get_ref().0.each_ref().map(|finger| finger.joint.as_ref()) {
             [Some(first), Some(second)] => self.prismatic_fingers(&hand, entry, fingers, [first, second]),
             _ => self.linkage(&hand, entry, fingers),
         }
+    }
+
+    /// Opening, and size and centre of the pads, of two jaws.
+    fn jaw(&mut self, entry: &GripperEntry) -> Option<([f64; 2], [f64; 2], [f64; 2])> {
+        for (key, given) in [("cup_diameter_m", &entry.cup_diameter_m), ("cup_height_m", &entry.cup_height_m)] {
+            if let Some(given) = given {
+                self.fault(given.span(), key, given.get_ref(), "no such key: it belongs to kind = \"suction\"");
+            }
+        }
+        let keys = [
+            ("opening_m", &entry.opening_m, "the gaps between the pads when closed and when open, m"),
+            ("pad_size_m", &entry.pad_size_m, "the sides of a pad along x and z of G, m"),
+            ("pad_centre_m", &entry.pad_centre_m, "the centre of a pad along x and z of G, m"),
+        ];
+        let found = keys.map(|(key, given, expected)| {
+            if given.is_none() {
+                self.fault(entry.frame_link.span(), key, "none", expected);
+            }
+            given.as_ref()
+        });
+        let [opening, size, centre] = found;
+        if let Some(size) = size {
+            self.positive("pad_size_m", size, &size.get_ref().0);
+        }
+        let centre_m = centre.and_then(|centre| self.finite("pad_centre_m", centre, "m"));
+        Some((opening?.get_ref().0, size?.get_ref().0, centre_m?))
     }
 
     /// The link whose frame is G: that of the description, or a new one at a pose in it.
@@ -143,7 +158,7 @@ impl Assembler<'_> {
         let [narrow_m, wide_m] = hand.opening_m;
         let met = narrow_m.is_finite() && wide_m.is_finite() && 0.0 <= narrow_m && narrow_m < wide_m;
         let found = format!("{narrow_m} to {wide_m}");
-        self.check(met, entry.opening_m.span(), "opening_m", found, "two gaps from 0 m, the narrower first")?;
+        self.check(met, opening_span(entry), "opening_m", found, "two gaps from 0 m, the narrower first")?;
         if let Some(fingers) = &entry.fingers {
             self.fault(fingers.span(), "fingers", "fingers of a clamp", "no such key: a clamp has jaws of its own");
             return None;
@@ -203,8 +218,8 @@ impl Assembler<'_> {
         joints: [&Spanned<String>; 2],
     ) -> Option<Gripper> {
         let [first, second] = &fingers.get_ref().0;
-        let first = self.finger(hand, entry, first, joints[0]);
-        let second = self.finger(hand, entry, second, joints[1]);
+        let first = self.finger(hand, first, joints[0]);
+        let second = self.finger(hand, second, joints[1]);
         let ((first, first_side), (second, second_side)) = (first?, second?);
         if first_side == second_side {
             self.fault(fingers.span(), "fingers", "both on one side of y_G = 0", "one on either side");
@@ -254,55 +269,17 @@ impl Assembler<'_> {
         Some(hand.gripper(fingers, Some(linkage)))
     }
 
-    /// Grip force and friction for scenarios that have none.
-    fn grip_defaults(&mut self, entry: &GripperEntry) -> (Option<f64>, Option<f64>) {
-        let most_n = *entry.max_force_n.get_ref();
-        if let Some(force) = &entry.grip_force_n {
-            let force_n = *force.get_ref();
-            let expected = format!("more than 0 and at most max_force_n, {most_n} N");
-            self.check(force_n > 0.0 && force_n <= most_n, force.span(), "grip_force_n", force_n, &expected);
-        }
-        if let Some(friction) = &entry.friction {
-            let found = *friction.get_ref();
-            self.check((0.0..=MOST_FRICTION).contains(&found), friction.span(), "friction", found, "0 to 5");
-        }
-        let value = |given: &Option<Spanned<f64>>| given.as_ref().map(|given| *given.get_ref());
-        (value(&entry.grip_force_n), value(&entry.friction))
-    }
-
-    /// The stiffness of a pad, if the description has one.
-    fn pad_stiffness(&mut self, entry: &GripperEntry) -> Option<f64> {
-        let given = entry.pad_stiffness_n_m.as_ref()?;
-        let stiffness_n_m = *given.get_ref();
-        let expected = "10000 to 1000000000 N/m, or no such key for rigid pads";
-        let met = PAD_STIFFNESS_N_M.contains(&stiffness_n_m);
-        self.check(met, given.span(), "pad_stiffness_n_m", stiffness_n_m, expected)?;
-        Some(stiffness_n_m)
-    }
-
     /// Checks the opening against the gaps that the joints allow.
     fn check_opening(&mut self, entry: &GripperEntry, possible_m: [f64; 2]) -> Option<()> {
-        let [narrow, wide] = entry.opening_m.get_ref().0;
+        let [narrow, wide] = entry.opening_m.as_ref()?.get_ref().0;
         let within = narrow >= possible_m[0] - OPENING_TOLERANCE_M && wide <= possible_m[1] + OPENING_TOLERANCE_M;
         let expected =
             format!("two gaps within {:.4} to {:.4}, which the finger joints allow", possible_m[0], possible_m[1]);
-        self.check(
-            narrow < wide && within,
-            entry.opening_m.span(),
-            "opening_m",
-            format!("{narrow} to {wide}"),
-            &expected,
-        )
+        self.check(narrow < wide && within, opening_span(entry), "opening_m", format!("{narrow} to {wide}"), &expected)
     }
 
     /// A finger on a prismatic joint, and the side of the plane y_G = 0 of its pad, 1 or -1.
-    fn finger(
-        &mut self,
-        hand: &Hand,
-        entry: &GripperEntry,
-        finger: &FingerEntry,
-        name: &Spanned<String>,
-    ) -> Option<(Finger, f64)> {
+    fn finger(&mut self, hand: &Hand, finger: &FingerEntry, name: &Spanned<String>) -> Option<(Finger, f64)> {
         let found = self.moving_joint("joint", name);
         let link = self.link("pad_link", &finger.pad_link);
         let (joint_index, link) = (found?, link?);
@@ -343,16 +320,16 @@ impl Assembler<'_> {
         let opening_sign = side * along_y;
         let closed_m = if opening_sign > 0.0 { joint.lower } else { joint.upper };
         let offset_m = nearest_face(&self.robot, link, &x_gl, side) + opening_sign * (closed_m - here);
-        let pad = Pad {
-            name: finger.name.clone(),
-            link,
-            size_m: entry.pad_size_m.get_ref().0,
-            centre_m: hand.pad_centre_m,
-            offset_m,
-        };
+        let pad =
+            Pad { name: finger.name.clone(), link, size_m: hand.pad_size_m, centre_m: hand.pad_centre_m, offset_m };
         let max_travel_m = joint.upper - joint.lower;
         Some((Finger { joint: joint_index, closed_m, opening_sign, max_travel_m, pad }, side))
     }
+}
+
+/// Where the opening of two jaws is in the file.
+fn opening_span(entry: &GripperEntry) -> std::ops::Range<usize> {
+    entry.opening_m.as_ref().map_or_else(|| entry.frame_link.span(), Spanned::span)
 }
 
 /// The rotation of a pose; angles in degrees that are quarter turns give exact axes.

@@ -2,7 +2,9 @@
 
 mod arms;
 mod gripper;
+mod holding;
 mod lists;
+mod suction;
 
 use std::{collections::BTreeMap, fmt, ops::Range, sync::Arc};
 
@@ -40,7 +42,8 @@ pub(super) fn assemble(
     }
     if robot.arms.iter().any(|arm| arm.gripper.linkage.is_some()) {
         robot.with_linkages = Some(Arc::new(robot.clone()));
-        let widest_m = robot.arms.iter().map(|arm| arm.gripper.opening_m[1]).fold(0.0, f64::max);
+        let jaws = robot.arms.iter().filter(|arm| arm.gripper.cup.is_none());
+        let widest_m = jaws.map(|arm| arm.gripper.opening_m[1]).fold(0.0, f64::max);
         robot = robot.at_gap(widest_m / 2.0);
     }
     Some(robot)

@@ -100,7 +100,7 @@ fn softness_attributes(time_constant_s: f64, impedance: f64) -> [(&'static str, 
 pub(super) fn couplings(xml: &mut Xml, robot: &Robot, arms: &[ExportedArm<'_>]) -> io::Result<()> {
     xml.create_element("equality").write_inner_content(|xml| {
         for arm in arms {
-            let [first, second] = &arm.arm.gripper.fingers;
+            let [first, second] = arm.arm.gripper.fingers.as_slice() else { continue };
             let slope = first.opening_sign * second.opening_sign;
             let offset_m = second.closed_m - slope * first.closed_m;
             let mut attributes = vec![

@@ -39,10 +39,15 @@ struct Exported<'a> {
 /// Writes the scene of a plan as MJCF, with the limits by which a player judges it.
 ///
 /// # Errors
-/// If the conditions or the load over time are invalid.
+/// If the conditions or the load over time are invalid, or a gripper has measured wrench limits: its joint with the board is not
+/// exported.
 pub fn mjcf(checked: &CheckedPlan<'_>, conditions: &Conditions, limits: &Limits) -> Result<String, SimError> {
     let (robot, plan) = (checked.robot(), checked.plan());
     conditions.check()?;
+    let measured = checked.arms().iter().find(|arm| robot.arms[arm.index].gripper.holding.measured().is_some());
+    if let Some(arm) = measured {
+        return Err(SimError::ExportMeasured { arm: arm.hold.name.clone() });
+    }
     let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
     let world = new_world(conditions.settings.timestep_s, stiffness_scale);
     let softness_s2 = contact_softness_s2(&world);

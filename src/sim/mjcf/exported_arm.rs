@@ -56,10 +56,10 @@ impl<'a> ExportedArm<'a> {
         let &CheckedArm { index, hold, .. } = checked_arm;
         let arm = &robot.arms[index];
         let gap_m = object.size_m[2];
-        let finger_m = [0, 1].map(|k| arm.gripper.fingers[k].joint_position_m(arm.gripper.travel_for_gap_m(k, gap_m)));
+        let finger_m = arm.gripper.finger_positions_m(gap_m);
         let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
         let layer = PadLayer::of(robot, checked_arm, object, conditions);
-        let bodies = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd));
+        let bodies = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd), gap_m);
         let loading =
             PadLoading::new(&GraspingHand { arm, bodies: &bodies, x_og: hold.x_og }, object, grip_force_n, softness_s2);
         Self {

@@ -3,18 +3,21 @@
 //!
 //! Variables: for each hand `(ft1, ft2, fn, mt1, mt2, mn)` of each pad, in pad axes about the pad's centre, then the
 //! hand's wrench about its grasp point; last, in the load program, the load factor lambda. Torque rows and energy are
-//! written in the hand's wrench, where they have half as many entries as in the pads' variables. Rows, in the order of
-//! the cones:
+//! written in the hand's wrench, where they have half as many entries as in the pads' variables. A measured gripper has its
+//! wrench alone, and with an ellipsoid the six shares `u` of its limits; in the equilibrium program it has no limits. Rows, in
+//! the order of the cones:
 //!
 //! | rows | cone | what |
 //! |---|---|---|
 //! | 6 | zero | balance of the object: sum of the hands' wrenches + lambda load = -weight |
-//! | 6 a hand | zero | the hand's wrench is the sum of its pads' |
-//! | 1 a hand | zero | `fn_1 + fn_2 = 2 F` |
+//! | 6 a hand with pads | zero | the hand's wrench is the sum of its pads' |
+//! | 1 a hand with pads | zero | `fn_1 + fn_2 = 2 F` |
 //! | 2 (load program) | nonnegative | `0 <= lambda <= 100` |
 //! | 4 a pad | nonnegative | centre of pressure: `|mt1| <= b fn`, `|mt2| <= a fn`; `fn >= 0` follows |
+//! | 12 a measured gripper (load program) | nonnegative | `w_i / h_i` and `w_i / l_i` at most 1 (box) or `u_i` (ellipsoid) |
 //! | 2 n a hand (with torque limits) | nonnegative | `J' w <= tau_max - tau_g`, `-J' w <= tau_max + tau_g` |
 //! | 4 a pad | second order | friction: `(mu fn, ft1, ft2, mn / e)` |
+//! | 7 an ellipsoid (load program) | second order | `(1, u)` |
 //!
 //! Scales: see [`super::units`]; torque rows are divided by the joint's limit, lambda is scaled by the load's size.
 //! With these clarabel needs no equilibration, which would make results depend on the order of solves.
@@ -24,14 +27,19 @@ use nalgebra::Vector6;
 
 use super::{
     energy::HandEnergy,
-    layout::{HandLayout, Layout, PAD_VARIABLES, PadLayout, ProgramKind},
+    layout::{
+        HandLayout, HoldLayout, LIMIT_ROWS, Layout, LimitLayout, PAD_VARIABLES, PadLayout, PairLayout, ProgramKind,
+        ShareLayout,
+    },
     units::{FORCE_UNIT_N, LENGTH_UNIT_M, pad_map, pad_wrench, scaled, wrench_units},
 };
 use crate::{
     model::wrench::Wrench,
     statics::{
         contact_model::ContactModel,
-        hand::{HandModel, PadModel},
+        hand::HandModel,
+        hold::{HandWrench, MeasuredHold},
+        pad_model::PadModel,
     },
 };
 
@@ -101,6 +109,7 @@ impl ConeProgram {
         let layout = Layout::new(model, ProgramKind::Equilibrium);
         let mut p = Columns::default();
         for (hand, energy) in layout.hands().iter().zip(energies) {
+            // A measured gripper has no variables before its wrench.
             for variable in hand.first_variable..hand.wrench_variables {
                 p.begin();
                 p.push(variable, energy.pads);
@@ -121,15 +130,20 @@ impl ConeProgram {
 fn hand_columns(model: &ContactModel, layout: &Layout) -> Columns {
     let mut columns = Columns::default();
     for (hand, place) in model.hands.iter().zip(layout.hands()) {
-        for (pad, pad_place) in hand.pads.iter().zip(&place.pads) {
-            push_pad(&mut columns, hand, place, pad, pad_place);
+        if let (Some(pair), HoldLayout::Pads(pair_place)) = (hand.pad_pair(), &place.hold) {
+            for (pad, pad_place) in pair.pads.iter().zip(&pair_place.pads) {
+                push_pad(&mut columns, hand, pair_place, pad, pad_place);
+            }
         }
         push_wrench(&mut columns, layout, hand, place);
+        if let HoldLayout::Measured(LimitLayout { rows, shares: Some(shares) }) = &place.hold {
+            push_shares(&mut columns, *rows, shares);
+        }
     }
     columns
 }
 
-fn push_pad(columns: &mut Columns, hand: &HandModel, hand_place: &HandLayout, pad: &PadModel, place: &PadLayout) {
+fn push_pad(columns: &mut Columns, hand: &HandModel, pair: &PairLayout, pad: &PadModel, place: &PadLayout) {
     let lever_o = pad.x_op.translation.vector - hand.grasp_point_o;
     let (map, units) = (pad_map(pad, &lever_o), wrench_units());
     let (pressure, friction) = (place.pressure_rows, place.friction_rows);
@@ -137,9 +151,9 @@ fn push_pad(columns: &mut Columns, hand: &HandModel, hand_place: &HandLayout, pa
         columns.begin();
         // A moment has no force, so those entries are structurally zero.
         let first = if variable < 3 { 0 } else { 3 };
-        (first..6).for_each(|row| columns.push(hand_place.wrench_rows + row, map[(row, variable)] / units[row]));
+        (first..6).for_each(|row| columns.push(pair.wrench_rows + row, map[(row, variable)] / units[row]));
         if variable == 2 {
-            columns.push(hand_place.grip_row, 1.0);
+            columns.push(pair.grip_row, 1.0);
         }
         match variable {
             0 | 1 => columns.push(friction + 1 + variable, -1.0),
@@ -166,7 +180,11 @@ fn push_wrench(columns: &mut Columns, layout: &Layout, hand: &HandModel, place: 
         if component < 3 {
             (0..3).filter(|&row| row != component).for_each(|row| columns.push(3 + row, lever[(row, component)]));
         }
-        columns.push(place.wrench_rows + component, -1.0);
+        match (&place.hold, hand.measured()) {
+            (HoldLayout::Pads(pair), _) => columns.push(pair.wrench_rows + component, -1.0),
+            (HoldLayout::Measured(limits), Some(measured)) => push_limits(columns, limits, measured, component),
+            _ => {}
+        }
         if layout.has_torque_rows() {
             let (first, dof) = (place.torque_rows, hand.dof());
             let torque = |joint: usize| hand.jacobian_o[(component, joint)] * units[component] / hand.effort_nm[joint];
@@ -176,13 +194,42 @@ fn push_wrench(columns: &mut Columns, layout: &Layout, hand: &HandModel, place: 
     }
 }
 
+/// The entries of a wrench variable in the rows of measured limits. Forces are in the rows of forces alone, moments in those of
+/// moments; of these all are pushed, so that programs of one layout have the same structure.
+fn push_limits(columns: &mut Columns, limits: &LimitLayout, measured: &MeasuredHold, component: usize) {
+    let mut unit = [0.0; 6];
+    unit[component] = wrench_units()[component];
+    let wrench_g = <[f64; 6]>::from(measured.in_g(&Wrench::from(unit)));
+    let first = if component < 3 { 0 } else { 3 };
+    for (number, limit) in [measured.limits.high, measured.limits.low].map(<[f64; 6]>::from).into_iter().enumerate() {
+        (first..first + 3).for_each(|row| columns.push(limits.rows + 6 * number + row, wrench_g[row] / limit[row]));
+    }
+}
+
+/// The columns of the shares of an ellipsoid's limits.
+fn push_shares(columns: &mut Columns, rows: usize, shares: &ShareLayout) {
+    for component in 0..6 {
+        columns.begin();
+        columns.push(rows + component, -1.0);
+        columns.push(rows + 6 + component, -1.0);
+        columns.push(shares.cone_rows + 1 + component, -1.0);
+    }
+}
+
 /// The right-hand side b, which contains `lambda` times the load.
 fn limits(model: &ContactModel, layout: &Layout, lambda: f64) -> Vec<f64> {
     let mut b = vec![0.0; layout.rows()];
     let outer = scaled(&(model.weight + model.load.scaled(lambda)));
     (0..6).for_each(|row| b[row] = -outer[row]);
     for (hand, place) in model.hands.iter().zip(layout.hands()) {
-        b[place.grip_row] = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
+        match (&place.hold, hand.pad_pair()) {
+            (HoldLayout::Pads(pair_place), Some(pair)) => {
+                b[pair_place.grip_row] = 2.0 * pair.grip_force_n / FORCE_UNIT_N;
+            }
+            (HoldLayout::Measured(LimitLayout { shares: Some(shares), .. }), _) => b[shares.cone_rows] = 1.0,
+            (HoldLayout::Measured(LimitLayout { rows, shares: None }), _) => b[*rows..rows + LIMIT_ROWS].fill(1.0),
+            _ => {}
+        }
         if layout.has_torque_rows() {
             let row = place.torque_rows;
             for joint in 0..hand.dof() {
@@ -195,12 +242,15 @@ fn limits(model: &ContactModel, layout: &Layout, lambda: f64) -> Vec<f64> {
     b
 }
 
-/// The wrenches of one hand's pads on the object, each about its centre in pad axes, from the variables.
-pub fn pad_wrenches(hand: &HandModel, place: &HandLayout, x: &[f64]) -> [Wrench; 2] {
-    [0, 1].map(|pad: usize| {
-        let first = place.pads[pad].variables;
-        pad_wrench(&hand.pads[pad], &Vector6::from_column_slice(&x[first..first + PAD_VARIABLES]))
-    })
+/// The wrench of a hand on the object from the variables: of its pads, or of the whole of a measured gripper.
+pub fn wrench_of(hand: &HandModel, place: &HandLayout, x: &[f64]) -> HandWrench {
+    match (hand.pad_pair(), &place.hold) {
+        (Some(pair), HoldLayout::Pads(pair_place)) => HandWrench::Pads([0, 1].map(|pad: usize| {
+            let first = pair_place.pads[pad].variables;
+            pad_wrench(&pair.pads[pad], &Vector6::from_column_slice(&x[first..first + PAD_VARIABLES]))
+        })),
+        _ => HandWrench::Measured(hand_wrench(place, x)),
+    }
 }
 
 /// The wrench of a hand on the object about its grasp point, O axes.

@@ -21,13 +21,11 @@ use super::{
     pad_cone::{self, Scaling, Slack},
     units::{self, DISPLACEMENT_UNIT_M, FORCE_UNIT_N, balance_twist, pad_wrench},
 };
-use crate::{
-    model::wrench::Wrench,
-    statics::{
-        contact_model::{ContactModel, MAX_HANDS},
-        hand::HandModel,
-        twist::Twist,
-    },
+use crate::statics::{
+    contact_model::{ContactModel, MAX_HANDS},
+    hand::HandModel,
+    hold::{HandWrench, PadPair},
+    twist::Twist,
 };
 
 /// Rows of the balance and of the largest number of grips.
@@ -67,28 +65,29 @@ struct EquilibriumProgram {
 }
 
 impl EquilibriumProgram {
-    /// `None` if a pad has no friction.
+    /// `None` if a pad has no friction, or for a measured gripper.
     fn new(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
         let outer = units::scaled(&(model.weight + model.load.scaled(load_factor)));
         let mut rhs = Rows::zeros();
         rhs.fixed_rows_mut::<6>(0).copy_from(&-outer);
         let mut hands = Vec::with_capacity(model.hands.len());
         for (number, (hand, energy)) in model.hands.iter().zip(energies).enumerate() {
-            if !hand.pads.iter().all(|pad| pad.friction > 0.0) {
+            let pair = hand.pad_pair()?;
+            if !pair.pads.iter().all(|pad| pad.friction > 0.0) {
                 return None;
             }
-            rhs[6 + number] = 2.0 * hand.grip_force_n / FORCE_UNIT_N;
-            hands.push(hand_program(hand, energy));
+            rhs[6 + number] = 2.0 * pair.grip_force_n / FORCE_UNIT_N;
+            hands.push(hand_program(hand, pair, energy));
         }
         Some(Self { hands, rhs })
     }
 }
 
-fn hand_program(hand: &HandModel, energy: &HandEnergy) -> HandProgram {
+fn hand_program(hand: &HandModel, pair: &PadPair, energy: &HandEnergy) -> HandProgram {
     let wrench_units = units::wrench_units();
     let mut about_grasp = SMatrix::<f64, 6, 12>::zeros();
     let mut about_object = SMatrix::<f64, 6, 12>::zeros();
-    for (index, pad) in hand.pads.iter().enumerate() {
+    for (index, pad) in pair.pads.iter().enumerate() {
         let place_o = pad.x_op.translation.vector;
         for (map, lever_o) in [(&mut about_grasp, place_o - hand.grasp_point_o), (&mut about_object, place_o)] {
             let mut of_pad = units::pad_map(pad, &lever_o);
@@ -103,7 +102,7 @@ fn hand_program(hand: &HandModel, energy: &HandEnergy) -> HandProgram {
     HandProgram {
         energy: about_grasp.tr_mul(&(energy.arm * about_grasp)) + SMatrix::from_diagonal_element(energy.pads),
         rows,
-        friction: hand.pads.each_ref().map(|pad| pad.friction),
+        friction: pair.pads.each_ref().map(|pad| pad.friction),
     }
 }
 
@@ -175,7 +174,7 @@ pub struct InteriorPoint {
 }
 
 impl InteriorPoint {
-    /// Solves the program; `None` if a pad has no friction, or without convergence.
+    /// Solves the program; `None` if a pad has no friction, for a measured gripper, or without convergence.
     pub fn solve(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
         let program = EquilibriumProgram::new(model, energies, load_factor)?;
         let starts = program.hands.iter().enumerate();
@@ -228,21 +227,20 @@ impl InteriorPoint {
 /// An equilibrium: the forces and the board's displacement.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    /// Wrenches of each hand's pads on the object, about the pad's centre in pad axes.
-    pub pad_wrenches_p: Vec<[Wrench; 2]>,
+    /// The wrench of each hand on the object.
+    pub hand_wrenches: Vec<HandWrench>,
     /// Displacement of the board at O's origin.
     pub board: Twist,
 }
 
 /// The equilibrium with these variables and multipliers.
 fn solution(model: &ContactModel, hands: impl Iterator<Item = Variables>, y: &Rows) -> Solution {
-    let wrenches_p = model
-        .hands
-        .iter()
-        .zip(hands)
-        .map(|(hand, x)| [0, 1].map(|pad: usize| pad_wrench(&hand.pads[pad], &pad_part(&x, pad))));
+    let pairs = model.hands.iter().filter_map(HandModel::pad_pair);
+    let of_pair = |(pair, x): (&PadPair, Variables)| {
+        HandWrench::Pads([0, 1].map(|pad: usize| pad_wrench(&pair.pads[pad], &pad_part(&x, pad))))
+    };
     Solution {
-        pad_wrenches_p: wrenches_p.collect(),
+        hand_wrenches: pairs.zip(hands).map(of_pair).collect(),
         board: balance_twist(y.as_slice(), FORCE_UNIT_N * DISPLACEMENT_UNIT_M),
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 
 use crate::{
     model::wrench::Wrench,
-    statics::{hand::PadModel, twist::Twist},
+    statics::{pad_model::PadModel, twist::Twist},
 };
 
 /// Unit of force, N.
