@@ -339,12 +339,7 @@ impl Robot {
 
     /// For each link whether an arm or a gripper moves it.
     pub fn moved_links(&self) -> Vec<bool> {
-        let active = self.active_joints();
-        let mut moves: Vec<bool> = Vec::with_capacity(self.links.len());
-        for link in &self.links {
-            moves.push(link.parent_joint.is_some_and(|joint| active[joint] || moves[self.joints[joint].parent_link]));
-        }
-        moves
+        self.active_carriers().iter().map(Option::is_some).collect()
     }
 
     /// Adds a link without mass and shapes that is fixed to another, and returns its index.
@@ -357,14 +352,25 @@ impl Robot {
 
     /// For each link the moving joint that carries it, directly or through fixed joints; `None` for fixed links.
     pub fn carriers(&self) -> Vec<Option<usize>> {
-        let mut carriers: Vec<Option<usize>> = Vec::with_capacity(self.links.len());
+        self.nearest_above(|joint| (self.joints[joint].kind != JointKind::Fixed).then_some(joint))
+    }
+
+    /// For each link the joint of an arm or a gripper that carries it; `None` for links that stay at rest. Links with the same
+    /// one do not move against each other.
+    pub fn active_carriers(&self) -> Vec<Option<usize>> {
+        let active = self.active_joints();
+        self.nearest_above(|joint| active[joint].then_some(joint))
+    }
+
+    /// For each link the value of the first joint on the way to the root that has one; `None` if none has.
+    pub fn nearest_above<T: Copy>(&self, of_joint: impl Fn(usize) -> Option<T>) -> Vec<Option<T>> {
+        let mut nearest: Vec<Option<T>> = Vec::with_capacity(self.links.len());
+        // Parents come before children.
         for link in &self.links {
-            carriers.push(link.parent_joint.and_then(|joint| match self.joints[joint].kind {
-                JointKind::Fixed => carriers[self.joints[joint].parent_link],
-                JointKind::Revolute | JointKind::Prismatic => Some(joint),
-            }));
+            let above = |joint: usize| of_joint(joint).or_else(|| nearest[self.joints[joint].parent_link]);
+            nearest.push(link.parent_joint.and_then(above));
         }
-        carriers
+        nearest
     }
 }
 

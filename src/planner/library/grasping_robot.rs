@@ -162,12 +162,5 @@ fn moved_by(robot: &Robot) -> Vec<Option<(usize, usize)>> {
             |arm: usize| robot.arms[arm].joints.iter().position(|&own| own == joint).map(|number| (arm, number));
         (0..robot.arms.len()).find_map(of_arm)
     };
-    let mut moved_by: Vec<Option<(usize, usize)>> = Vec::with_capacity(robot.links.len());
-    // Parents come before children.
-    for link in &robot.links {
-        let by =
-            link.parent_joint.and_then(|joint| driven(joint).or_else(|| moved_by[robot.joints[joint].parent_link]));
-        moved_by.push(by);
-    }
-    moved_by
+    robot.nearest_above(driven)
 }
