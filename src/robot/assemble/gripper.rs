@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use nalgebra::{Isometry3, Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use toml::Spanned;
 
 use super::Assembler;
@@ -152,7 +152,7 @@ impl Assembler<'_> {
         let half_m = [hand.pad_size_m[0] / 2.0, JAW_THICKNESS_M / 2.0, hand.pad_size_m[1] / 2.0];
         let x_palm_g = hand.x_wl[hand.palm_link].inverse() * self.frame_pose(hand);
         let fingers = [("upper", 1.0), ("lower", -1.0)].map(|(name, side)| {
-            let turn = nalgebra::UnitQuaternion::from_axis_angle(
+            let turn = UnitQuaternion::from_axis_angle(
                 &Vector3::z_axis(),
                 if side > 0.0 { 0.0 } else { std::f64::consts::PI },
             );
@@ -356,9 +356,14 @@ impl Assembler<'_> {
 }
 
 /// The rotation of a pose; angles in degrees that are quarter turns give exact axes.
-fn squared(pose: &Pose) -> nalgebra::UnitQuaternion<f64> {
+fn squared(pose: &Pose) -> UnitQuaternion<f64> {
     let matrix = pose.rotation.to_rotation_matrix();
     let rounded = matrix.matrix().map(f64::round);
     let is_square = (matrix.matrix() - rounded).amax() < AXIS_TOLERANCE * AXIS_TOLERANCE;
-    if is_square { nalgebra::UnitQuaternion::from_matrix(&rounded) } else { pose.rotation }
+    // Not `UnitQuaternion::from_matrix`: its search for the nearest rotation begins at none and does not leave half turns.
+    if is_square {
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rounded))
+    } else {
+        pose.rotation
+    }
 }

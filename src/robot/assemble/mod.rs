@@ -6,7 +6,7 @@ mod lists;
 
 use std::{collections::BTreeMap, fmt, ops::Range, sync::Arc};
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion};
 use toml::Spanned;
 
 use super::{
@@ -38,12 +38,38 @@ pub(super) fn assemble(
     if !faults.is_empty() {
         return None;
     }
+    weigh_links_between_joints(&mut robot);
     if robot.arms.iter().any(|arm| arm.gripper.linkage.is_some()) {
         robot.with_linkages = Some(Arc::new(robot.clone()));
         let widest_m = robot.arms.iter().map(|arm| arm.gripper.opening_m[1]).fold(0.0, f64::max);
         robot = robot.at_gap(widest_m / 2.0);
     }
     Some(robot)
+}
+
+/// Mass, kg, and radius, m, of the ball that stands for a link without mass between two joints of an arm: less than any part
+/// of an arm, and enough for the engine.
+const BETWEEN_JOINTS_KG: f64 = 1e-3;
+const BETWEEN_JOINTS_M: f64 = 0.01;
+
+/// Gives a mass to links that joints of arms and grippers move and that have none, with what is fixed to them: URDFs describe a
+/// joint with several axes by such links.
+fn weigh_links_between_joints(robot: &mut Robot) {
+    let carriers = robot.active_carriers();
+    let active = robot.active_joints();
+    for joint in (0..robot.joints.len()).filter(|&joint| active[joint]) {
+        let carried = robot.links.iter().zip(&carriers).filter(|(_, carrier)| **carrier == Some(joint));
+        if carried.map(|(link, _)| link.mass_kg).sum::<f64>() > 0.0 {
+            continue;
+        }
+        let link = &mut robot.links[robot.joints[joint].child_link];
+        link.mass_kg = BETWEEN_JOINTS_KG;
+        link.inertia_l = Matrix3::identity() * (0.4 * BETWEEN_JOINTS_KG * BETWEEN_JOINTS_M * BETWEEN_JOINTS_M);
+        robot.notes.push(format!(
+            "link {}: it has no mass, nor has what is fixed to it; {BETWEEN_JOINTS_KG} kg is taken since a joint moves it",
+            link.name
+        ));
+    }
 }
 
 /// A robot without arms.
