@@ -19,6 +19,7 @@ pub mod tree;
 mod urdf;
 
 pub use chain::Chain;
+pub use faces::Face;
 pub use faults::{Fault, Faults, RobotError};
 pub use geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry};
 pub use inverse::{InverseKinematics, Solution};

@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
-use super::geometry::{PlacedShape, Visual};
+use super::{
+    faces::Face,
+    geometry::{PlacedShape, Visual},
+};
 use crate::model::{frames::Pose, plan::ArmHold};
 
 /// A robot: a tree of links, its arms, and the data of the description.
@@ -169,10 +172,14 @@ pub struct Gripper {
 pub struct Linkage {
     /// One joint that moves both pads, or one for each.
     pub(super) drives: Vec<Drive>,
-    /// For each pad the joint that carries it, an index into [`Robot::joints`].
+    /// For each pad its links, which move as one.
+    pub(super) pads: [Vec<usize>; 2],
+    /// For each pad the joint that carries the first of its links, in the order of the tree, an index into [`Robot::joints`].
     pub(super) carriers: [usize; 2],
-    /// For each pad its link.
-    pub(super) pad_links: [usize; 2],
+    /// For each pad the joints that carry its other links.
+    pub(super) others: [Vec<usize>; 2],
+    /// For each pad the shapes that may touch the board.
+    pub(super) faces: [Face; 2],
     /// For each pad the side of the plane y_G = 0 that it is on, 1 or -1.
     pub(super) sides: [f64; 2],
 }

@@ -10,7 +10,7 @@ use crate::{
     model::frames::Pose,
     robot::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
-        faces::{mean_y, nearest_face},
+        faces::Face,
         geometry::{PlacedShape, Shape, Visual, VisualGeometry},
         tree::{Finger, Gripper, JointKind, Linkage, Pad},
     },
@@ -51,6 +51,14 @@ struct Hand {
 impl Hand {
     fn pad(&self, name: &str, link: usize, offset_m: f64) -> Pad {
         Pad { name: name.into(), link, size_m: self.pad_size_m, centre_m: self.pad_centre_m, offset_m }
+    }
+
+    /// Where the pads are, along x and z of G, m.
+    fn rectangle(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|axis| {
+            let (centre_m, half_m) = (self.pad_centre_m[axis], self.pad_size_m[axis] / 2.0);
+            [centre_m - half_m, centre_m + half_m]
+        })
     }
 
     fn gripper(&self, fingers: [Finger; 2], linkage: Option<Linkage>) -> Gripper {
@@ -229,10 +237,10 @@ impl Assembler<'_> {
         fingers: &Spanned<Exactly<FingerEntry, 2>>,
     ) -> Option<Gripper> {
         let [first, second] = &fingers.get_ref().0;
-        let (first_link, second_link) =
-            (self.link("pad_link", &first.pad_link), self.link("pad_link", &second.pad_link));
-        let pad_links = [first_link?, second_link?];
-        let linkage = Linkage::new(&self.robot, [hand.frame_link, hand.palm_link], pad_links)
+        let (first_links, second_links) = (self.pad_links(first), self.pad_links(second));
+        let pads = [first_links?, second_links?];
+        let pad_links = [pads[0][0], pads[1][0]];
+        let linkage = Linkage::new(&self.robot, [hand.frame_link, hand.palm_link], pads, Some(hand.rectangle()))
             .and_then(|linkage| linkage.range_m(&self.robot, hand.frame_link).map(|range_m| (linkage, range_m)));
         let (linkage, range_m) = match linkage {
             Ok(found) => found,
@@ -252,6 +260,13 @@ impl Assembler<'_> {
         };
         let fingers = [finger(first, pad_links[0]), finger(second, pad_links[1])];
         Some(hand.gripper(fingers, Some(linkage)))
+    }
+
+    /// The links of a linkage's pad.
+    fn pad_links(&mut self, entry: &FingerEntry) -> Option<Vec<usize>> {
+        let named = std::iter::once(self.link("pad_link", &entry.pad_link));
+        let others: Vec<_> = entry.beside.iter().map(|name| self.link("beside", name)).collect();
+        named.chain(others).collect()
     }
 
     /// Grip force and friction for scenarios that have none.
@@ -318,13 +333,21 @@ impl Assembler<'_> {
             self.fault(name.span(), "joint", &joint.name, expected);
             return None;
         }
+        if let Some(other) = finger.beside.first() {
+            self.fault(
+                other.span(),
+                "beside",
+                other.get_ref(),
+                "no such key: one joint carries all of a sliding finger",
+            );
+            return None;
+        }
         if self.carriers[link] != Some(joint_index) || self.robot.links[link].shapes.is_empty() {
             let expected = format!("a link with collision geometry that {} moves", joint.name);
             self.fault(finger.pad_link.span(), "pad_link", finger.pad_link.get_ref(), expected);
             return None;
         }
         let x_gw = hand.x_wl[hand.frame_link].inverse();
-        let x_gl = x_gw * hand.x_wl[link];
         let axis_g = (x_gw * hand.x_wl[hand.palm_link] * joint.x_pj) * joint.axis_j;
         if axis_g.xz().norm() > AXIS_TOLERANCE {
             let found = format!(
@@ -339,10 +362,13 @@ impl Assembler<'_> {
         let here = joint.rest;
         let along_y = axis_g.y.signum();
         let middle = (joint.lower + joint.upper) / 2.0 - here;
-        let side = (mean_y(&self.robot, link, &x_gl) + along_y * middle).signum();
+        let of_link = Face::of_links(&self.robot, &[link]);
+        let side = (of_link.mean_y(&self.robot, &hand.x_wl, &x_gw) + along_y * middle).signum();
+        let face = of_link.across(&self.robot, &hand.x_wl, &x_gw, &hand.rectangle());
         let opening_sign = side * along_y;
         let closed_m = if opening_sign > 0.0 { joint.lower } else { joint.upper };
-        let offset_m = nearest_face(&self.robot, link, &x_gl, side) + opening_sign * (closed_m - here);
+        let nearest_m = face.nearest_m(&self.robot, &hand.x_wl, &x_gw, side);
+        let offset_m = nearest_m + opening_sign * (closed_m - here);
         let pad = Pad {
             name: finger.name.clone(),
             link,

@@ -59,7 +59,15 @@ fn weigh_links_between_joints(robot: &mut Robot) {
     let active = robot.active_joints();
     for joint in (0..robot.joints.len()).filter(|&joint| active[joint]) {
         let carried = robot.links.iter().zip(&carriers).filter(|(_, carrier)| **carrier == Some(joint));
-        if carried.map(|(link, _)| link.mass_kg).sum::<f64>() > 0.0 {
+        let carried: Vec<_> = carried.map(|(link, _)| link).collect();
+        if carried.iter().any(|link| link.mass_kg > 0.0) {
+            continue;
+        }
+        if let Some(part) = carried.iter().find(|link| !link.shapes.is_empty()) {
+            let name = &part.name;
+            robot
+                .notes
+                .push(format!("link {name}: it has no mass, nor has what is fixed to it; a simulation needs its mass"));
             continue;
         }
         let link = &mut robot.links[robot.joints[joint].child_link];
