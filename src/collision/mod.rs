@@ -178,7 +178,8 @@ impl PlacedLink<'_> {
         if (self.centre_w - other.centre_w).length_squared() > reach_m * reach_m {
             return None;
         }
-        let near = self.pieces.iter().filter(|piece| piece.meets_sphere(other.centre_w, other.radius_m + required_m));
+        let near =
+            self.pieces.iter().filter(|piece| piece.may_meet_sphere(other.centre_w, other.radius_m + required_m));
         let pairs = near.flat_map(|piece| other.pieces.iter().map(move |other| (piece, other)));
         let close = pairs.filter(|(piece, other)| piece.closer_than(other, required_m));
         close.map(|(piece, other)| piece.distance_m(other)).min_by(f64::total_cmp)
@@ -186,7 +187,7 @@ impl PlacedLink<'_> {
 
     /// Distance to another body if it is less than `required_m`, m.
     fn too_close(&self, other: &Placed<'_>, required_m: f64) -> Option<f64> {
-        if self.pieces.is_empty() || !other.meets_sphere(self.centre_w, self.radius_m + required_m) {
+        if self.pieces.is_empty() || !other.may_meet_sphere(self.centre_w, self.radius_m + required_m) {
             return None;
         }
         let close = self.pieces.iter().filter(|piece| piece.closer_than(other, required_m));

@@ -116,14 +116,15 @@ mod tests {
             Packages::new(Vec::new(), &urdf_folder),
             Packages::new(vec![share.clone()], away.path()),
             Packages::new(vec![share.join("robot_description")], away.path()),
-            // Under another name than the URDF has.
-            Packages::new(Vec::new(), &renamed.join("urdf")),
         ];
         for packages in places {
             for uri in ["package://robot_description/meshes/arm.stl", "$(find robot_description)/meshes/arm.stl"] {
                 assert_eq!(packages.resolve(uri).unwrap().canonicalize().unwrap(), mesh, "{uri}");
             }
         }
+        // Under another name than the URDF has.
+        let copy = Packages::new(Vec::new(), &renamed.join("urdf")).resolve("package://arm_support/meshes/arm.stl");
+        assert_eq!(copy.unwrap().canonicalize().unwrap(), renamed.join("meshes/arm.stl").canonicalize().unwrap());
         let relative = Packages::new(Vec::new(), &urdf_folder).resolve("../meshes/arm.stl").unwrap();
         assert_eq!(relative.canonicalize().unwrap(), mesh);
         let absolute = format!("file://{}", mesh.display());

@@ -26,7 +26,7 @@ impl Palm {
     /// True if the palm keeps its clearance, m, from a board at this pose in G.
     pub fn is_clear(&self, model: &CollisionModel, board: &BoardBody, x_go: &Pose, clearance_m: f64) -> bool {
         self.links.iter().all(|(link, x_gl)| {
-            model.link_to_board_m(*link, x_gl, board, x_go) > model.board_clearance_m(*link, clearance_m)
+            !model.is_near_board(*link, x_gl, board, x_go, model.board_clearance_m(*link, clearance_m))
         })
     }
 
