@@ -142,7 +142,7 @@ fn all_grasps_have_files_of_their_own() {
     let arguments = ["import", "isaac.yaml", "--scenario", "cut.toml", "-o", "plans", "--all", "left"];
     assert_refused(
         &benchdog(folder.path(), &arguments),
-        "found a name whose plan is a-b.json, as that of a b, expected names that differ in letters, digits, `-`, `_` or `.`",
+        "isaac.yaml:18: grasps.a/b: found a name whose plan is a-b.json, as that of a b, expected names that differ in letters, digits, `-`, `_` or `.`",
     );
     assert!(contents(folder.path()) == before);
 }
