@@ -12,7 +12,7 @@ use crate::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
         faces::Face,
         geometry::{PlacedShape, Shape, Visual, VisualGeometry},
-        tree::{Finger, Gripper, JointKind, Linkage, Pad},
+        tree::{Finger, Gripper, Joint, JointKind, Linkage, Pad},
     },
 };
 
@@ -46,6 +46,18 @@ struct Hand {
     pad_size_m: [f64; 2],
     pad_centre_m: [f64; 2],
     pad_stiffness_n_m: Option<f64>,
+}
+
+/// Where the face of a sliding finger is.
+struct SlidingFace {
+    /// Side of the plane y_G = 0, 1 or -1.
+    side: f64,
+    /// 1 if the joint's position increases as the finger opens, else -1.
+    opening_sign: f64,
+    /// The joint's position when closed, m.
+    closed_m: f64,
+    /// Distance of the face from the plane y_G = 0 when closed, m.
+    offset_m: f64,
 }
 
 impl Hand {
@@ -358,17 +370,8 @@ impl Assembler<'_> {
             self.fault(name.span(), "joint", found, expected);
             return None;
         }
-        // `x_wl` has the finger at rest; its side is determined half open.
-        let here = joint.rest;
-        let along_y = axis_g.y.signum();
-        let middle = (joint.lower + joint.upper) / 2.0 - here;
-        let of_link = Face::of_links(&self.robot, &[link]);
-        let side = (of_link.mean_y(&self.robot, &hand.x_wl, &x_gw) + along_y * middle).signum();
-        let face = of_link.across(&self.robot, &hand.x_wl, &x_gw, &hand.rectangle());
-        let opening_sign = side * along_y;
-        let closed_m = if opening_sign > 0.0 { joint.lower } else { joint.upper };
-        let nearest_m = face.nearest_m(&self.robot, &hand.x_wl, &x_gw, side);
-        let offset_m = nearest_m + opening_sign * (closed_m - here);
+        let SlidingFace { side, opening_sign, closed_m, offset_m } =
+            self.sliding_face(hand, link, &joint, axis_g.y.signum());
         let pad = Pad {
             name: finger.name.clone(),
             link,
@@ -378,6 +381,22 @@ impl Assembler<'_> {
         };
         let max_travel_m = joint.upper - joint.lower;
         Some((Finger { joint: joint_index, closed_m, opening_sign, max_travel_m, pad }, side))
+    }
+
+    /// The face of a finger whose joint moves it along y_G, in the sense of `along_y`, 1 or -1.
+    fn sliding_face(&self, hand: &Hand, link: usize, joint: &Joint, along_y: f64) -> SlidingFace {
+        let x_gw = hand.x_wl[hand.frame_link].inverse();
+        // `x_wl` has the finger at rest; its side is determined half open.
+        let here = joint.rest;
+        let middle = (joint.lower + joint.upper) / 2.0 - here;
+        let of_link = Face::of_links(&self.robot, &[link]);
+        let side = (of_link.mean_y(&self.robot, &hand.x_wl, &x_gw) + along_y * middle).signum();
+        let face = of_link.across(&self.robot, &hand.x_wl, &x_gw, &hand.rectangle());
+        let opening_sign = side * along_y;
+        let closed_m = if opening_sign > 0.0 { joint.lower } else { joint.upper };
+        let nearest_m = face.nearest_m(&self.robot, &hand.x_wl, &x_gw, side);
+        let offset_m = nearest_m + opening_sign * (closed_m - here);
+        SlidingFace { side, opening_sign, closed_m, offset_m }
     }
 }
 
