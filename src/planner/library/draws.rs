@@ -36,7 +36,7 @@ pub fn draw_grasp(
 ) -> Option<EdgeGrasp> {
     (0..GRASP_ATTEMPTS)
         .map(|_| domain::draw_grasp(edge, &robot.board, arm.depth_m, random))
-        // The clearance of the palm is the dearest test.
+        // The clearance of the palm takes longest.
         .find(|grasp| {
             robot.has_pads_on_board(arm, grasp)
                 && accepts(&grasp.x_og(&robot.board))
