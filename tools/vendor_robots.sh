@@ -41,7 +41,19 @@ pr2 pr2_description/urdf/pr2.urdf holds
 tiago-dual tiago_description/robots/tiago_dual.urdf holds
 tiago-pro tiago_pro_description/robots/tiago_pro.urdf holds
 icub icub_description/robots/icub.urdf
-talos talos_data/robots/talos_full_v2.urdf
+talos talos_data/robots/talos_full_v2.urdf holds
+alex-nub alex_description/urdf/alex_nub_hands.urdf holds
+alex-sake alex_description/urdf/alex_sake_hands.urdf holds
+alex-psyonic alex_description/urdf/alex_psyonic_hands.urdf holds
+centauro centauro_description/urdf/centauro.urdf holds
+g1 g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf holds
+romeo romeo_description/urdf/romeo.urdf holds
+anymal-kinova anymal_b_simple_description/robots/anymal-kinova.urdf holds
+b1-z1 b1_description/urdf/b1-z1.urdf holds
+z1 z1_description/urdf/z1.urdf holds
+so100 so_arm_description/urdf/so100.urdf holds
+so101 so_arm_description/urdf/so101.urdf holds
+ur3 ur_description/urdf/ur3_robot.urdf holds
 xarm7 xarm_description/urdf/xarm7.urdf holds
 kinova kinova_description/robots/kinova.urdf holds
 LIST

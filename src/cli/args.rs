@@ -248,15 +248,18 @@ pub struct SimulateArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::IMPORT)]
 pub struct ImportArgs {
-    /// File with grasps: isaac_grasp 1.0, or messages of moveit_msgs/Grasp, in YAML
+    /// File with grasps: isaac_grasp 1.0 or messages of moveit_msgs/Grasp in YAML; or 4x4 matrices, in JSON or as rows of numbers
     #[arg(value_name = "GRASPS")]
     pub grasps: PathBuf,
     /// Scenario with the robot, the board and the operation
     #[arg(long, value_name = "FILE")]
     pub scenario: PathBuf,
     /// An arm and its grasp by name; once for each arm that holds the board
-    #[arg(long, required = true, value_name = "ARM=GRASP", value_parser = arm_choice)]
+    #[arg(long, required_unless_present = "all", value_name = "ARM=GRASP", value_parser = arm_choice)]
     pub arm: Vec<ArmChoice>,
+    /// Make a plan of each grasp of the file, with this arm, beside those of --arm; -o is then a folder
+    #[arg(long, requires = "output", value_name = "ARM")]
+    pub all: Option<String>,
     /// Pose of the board in the robot's base; by default the first of the search domain that the arms reach
     #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = pose)]
     pub board_pose: Option<Pose>,
@@ -269,7 +272,7 @@ pub struct ImportArgs {
     /// Name of a frame in the file that is the robot's base; all other frames are the board's. Needs --board-pose
     #[arg(long, value_name = "NAME", requires = "board_pose")]
     pub world_frame: Option<String>,
-    /// File for the plan, by default standard output
+    /// File for the plan, by default standard output; with --all the folder for the plans
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }

@@ -80,6 +80,7 @@ Examples:
   benchdog import grasps.yaml --scenario panel.toml --arm left=grasp_0 -o plan.json
   benchdog import grasps.yaml --scenario panel.toml --arm left=grasp_0 --arm right=grasp_3 \\
       --board-pose '0.6 0.1 0.2 0 1.57 0' --gripper-frame '0 0 0.1 0 1.5708 0' -o plan.json
+  benchdog import grasps.yaml --scenario panel.toml --all left -o plans
   benchdog simulate plan.json
 
 A POSE is 'x y z roll pitch yaw' in m and rad, about fixed axes as in a URDF, or
@@ -90,7 +91,10 @@ Robot, board, operation and grip force are the scenario's; the arms' angles foll
 kinematics. The gripper's opening in the file is not used: the fingers close on the board.
 The plan has no person. Without --board-pose the poses of the planner's search domain are tried in
 the order of the scenario's seed; neither person nor load has a part in the choice. The exit code
-is 3 if no pose is reached.";
+is 3 if no pose is reached.
+With --all every grasp of the file becomes a plan PLANS/GRASP.json, and a line says which are left
+out and why; the exit code is 3 if all are. Matrices are four rows of 4 numbers or one of 16, their
+names grasp_0, grasp_1 and so on, their frame the object's.";
 
 /// `benchdog curve --help`.
 pub const CURVE: &str = "\

@@ -1,7 +1,12 @@
 //! `benchdog import`: makes a plan of grasps that another planner wrote.
 
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
 use super::{
-    args::ImportArgs,
+    args::{ArmChoice, ImportArgs},
     exit::{CliError, Exit},
     inputs, output,
     plan::load_for_planning,
@@ -37,23 +42,25 @@ struct Placement {
     origin: String,
 }
 
-/// Makes a plan of a scenario's task and a file's grasps.
+/// A plan, and what a user should know about it.
+struct Imported {
+    plan: Plan,
+    notes: Vec<String>,
+}
+
+/// Makes a plan of a scenario's task and a file's grasps, or one of each grasp.
 pub fn import(args: &ImportArgs) -> Result<Exit, CliError> {
     let loaded = load_for_planning(&args.scenario)?;
     let file = read_grasps(&args.grasps)?;
     let read: Vec<_> = loaded.inputs.iter().chain([&args.grasps]).cloned().collect();
+    if let (Some(arm), Some(folder)) = (&args.all, &args.output) {
+        return all(args, &loaded, &file, &read, (arm, folder));
+    }
     inputs::protect(&read, args.output.clone())?;
-    let holds = holds(args, &loaded, &file)?;
-    let Some(Placement { x_wo, q_rad, origin }) = placement(args, &loaded, &file, &holds)? else {
-        let found = format!("{}: no feasible plan: none of {BOARD_DRAWS} poses of the board", loaded.scenario.name);
-        output::message(&format!("{found} lets the arms reach these grasps without a contact"));
+    let Some(Imported { plan, notes }) = imported(args, &loaded, &file, &args.arm)? else {
+        output::message(&format!("{}: no feasible plan: {}", loaded.scenario.name, no_pose()));
         return Ok(Exit::Infeasible);
     };
-    let plan = plan_of(&loaded, &holds, x_wo, q_rad);
-    let checked = CheckedPlan::new(&loaded.robot, &plan, &loaded.scenario.human, &loaded.scenario.tool)?;
-    let mut notes: Vec<_> = holds.iter().map(|hold| described(&loaded, hold)).collect();
-    notes.push(origin);
-    notes.extend(checked.first_contact(0.0).map(|contact| format!("the plan {}: {}", contact.verdict, contact.reason)));
     let text = report::json::plan(&plan);
     match &args.output {
         Some(path) => {
@@ -69,14 +76,81 @@ pub fn import(args: &ImportArgs) -> Result<Exit, CliError> {
     Ok(Exit::Met)
 }
 
+fn no_pose() -> String {
+    format!("none of {BOARD_DRAWS} poses of the board lets the arms reach these grasps without a contact")
+}
+
+/// Makes a plan of each grasp of a file that `--arm` does not name, with the arm of `--all`, in a folder.
+fn all(
+    args: &ImportArgs,
+    loaded: &LoadedScenario,
+    file: &ForeignGrasps,
+    read: &[PathBuf],
+    (arm, folder): (&str, &Path),
+) -> Result<Exit, CliError> {
+    let is_free = |grasp: &&ForeignGrasp| args.arm.iter().all(|choice| choice.grasp != grasp.name);
+    let mut grasps: Vec<&ForeignGrasp> = file.grasps.iter().filter(is_free).collect();
+    grasps.sort_by(|a, b| a.name.cmp(&b.name));
+    let mut paths = BTreeMap::new();
+    for grasp in &grasps {
+        let stem = output::file_stem(&grasp.name);
+        if let Some(other) = paths.insert(stem.clone(), &grasp.name) {
+            let found = format!("a name whose plan is {stem}.json, as that of {other}");
+            return Err(file
+                .error(grasp, found, "names that differ in letters, digits, `-`, `_` or `.`".into())
+                .into());
+        }
+    }
+    let path_of = |grasp: &ForeignGrasp| folder.join(format!("{}.json", output::file_stem(&grasp.name)));
+    inputs::protect(read, grasps.iter().map(|grasp| path_of(grasp)))?;
+    report::file::check_folder(folder)?;
+    let mut exit = Exit::Infeasible;
+    for grasp in grasps {
+        let own = ArmChoice { arm: arm.to_owned(), grasp: grasp.name.clone() };
+        let choices: Vec<ArmChoice> = args.arm.iter().cloned().chain([own]).collect();
+        let left_out = match imported(args, loaded, file, &choices) {
+            Ok(Some(Imported { mut plan, notes })) => {
+                plan.name = format!("{}-{}", plan.name, output::file_stem(&grasp.name));
+                report::file::write_whole(&path_of(grasp), report::json::plan(&plan).as_bytes())?;
+                output::print(&format!("wrote {}: {}\n", path_of(grasp).display(), notes.join("; ")))?;
+                exit = Exit::Met;
+                continue;
+            }
+            Ok(None) => no_pose(),
+            Err(CliError::Input(error)) => error.to_string(),
+            Err(error) => return Err(error),
+        };
+        output::print(&format!("left out {}: {left_out}\n", grasp.name))?;
+    }
+    Ok(exit)
+}
+
+/// The plan of these grasps; `None` if the board has no pose at which the arms reach them.
+fn imported(
+    args: &ImportArgs,
+    loaded: &LoadedScenario,
+    file: &ForeignGrasps,
+    choices: &[ArmChoice],
+) -> Result<Option<Imported>, CliError> {
+    let holds = holds(args, loaded, file, choices)?;
+    let Some(Placement { x_wo, q_rad, origin }) = placement(args, loaded, file, &holds)? else { return Ok(None) };
+    let plan = plan_of(loaded, &holds, x_wo, q_rad);
+    let checked = CheckedPlan::new(&loaded.robot, &plan, &loaded.scenario.human, &loaded.scenario.tool)?;
+    let mut notes: Vec<_> = holds.iter().map(|hold| described(loaded, hold)).collect();
+    notes.push(origin);
+    notes.extend(checked.first_contact(0.0).map(|contact| format!("the plan {}: {}", contact.verdict, contact.reason)));
+    Ok(Some(Imported { plan, notes }))
+}
+
 /// The arms with their grasps in our frames.
 fn holds<'a>(
     args: &ImportArgs,
     LoadedScenario { robot, scenario, .. }: &LoadedScenario,
     file: &'a ForeignGrasps,
+    choices: &[ArmChoice],
 ) -> Result<Vec<Hold<'a>>, CliError> {
-    let mut holds: Vec<Hold<'a>> = Vec::with_capacity(args.arm.len());
-    for choice in &args.arm {
+    let mut holds: Vec<Hold<'a>> = Vec::with_capacity(choices.len());
+    for choice in choices {
         let usage = |found: &str, expected: String| {
             CliError::Usage(format!("--arm {}={}: found {found}, expected {expected}", choice.arm, choice.grasp))
         };

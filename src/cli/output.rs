@@ -20,6 +20,12 @@ pub fn message(message: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{message}");
 }
 
+/// A name as that of a file: letters, digits, `-`, `_` and `.`, and others as `-`.
+pub fn file_stem(name: &str) -> String {
+    let keep = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
+    name.chars().map(keep).collect::<String>().trim_start_matches('.').to_owned()
+}
+
 /// Writes notes to standard error.
 pub fn notes(notes: &[String]) {
     notes.iter().for_each(|note| message(&format!("note: {note}")));

@@ -81,15 +81,13 @@ fn scenario(made: &Setup, description: &Path, scenario: &Path) -> String {
     let thickness_m = (BOARD_M[2].min(OPENING_SHARE * widest_m).max(narrowest_m + 1e-3) * 1e3).round() / 1e3;
     let [width_m, height_m, _] = BOARD_M;
     let name = scenario.file_stem().map_or_else(|| "drill".into(), |stem| stem.to_string_lossy().into_owned());
-    let name: String =
-        name.chars().map(|c| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' }).collect();
     let here = path_from(scenario, description).display().to_string();
     format!(
         "# Written by `benchdog robot new`: a person drills a board that the robot holds.\n\n\
          format = 1\nname = {}\n\n[robot]\ndescription = {}\n\n\
          [object]\nsize_m = [{width_m:?}, {height_m:?}, {thickness_m:?}]\nmaterial = \"foam\"\n\n\
          [operation]\nkind = \"drill\"\npoint_m = [0.0, 0.0]\nforce_n = {DRILL_N:?}\n",
-        toml::Value::from(name.trim_start_matches('.')),
+        toml::Value::from(output::file_stem(&name)),
         toml::Value::from(here)
     )
 }

@@ -3,6 +3,7 @@
 //! Primitives of robot and board and capsules of the person are compared with parry. Bounding spheres of links and of
 //! primitives exclude pairs that are far apart. The required distances are those of docs/method.md#35-clearances.
 
+mod bars;
 mod board_distance;
 mod clearances;
 mod link_shapes;
@@ -22,6 +23,7 @@ use crate::{
     model::{board::BoardShape, frames::Pose},
     robot::Robot,
 };
+pub use bars::board_between_pads;
 use link_shapes::LinkShapes;
 pub use near_pairs::{BodyRef, NearPair};
 pub use nearest::Nearest;
@@ -157,6 +159,8 @@ pub struct CollisionModel {
     self_pairs: Vec<SelfPair>,
     /// For each arm the links of its fingers, which may touch the board.
     fingers: Vec<Vec<usize>>,
+    /// For each link the most that it can be asked to keep from the board, m; infinite but for the bars of linkages.
+    board_most_m: Vec<f64>,
 }
 
 /// A link in W.
@@ -174,7 +178,8 @@ impl PlacedLink<'_> {
         if (self.centre_w - other.centre_w).length_squared() > reach_m * reach_m {
             return None;
         }
-        let near = self.pieces.iter().filter(|piece| piece.meets_sphere(other.centre_w, other.radius_m + required_m));
+        let near =
+            self.pieces.iter().filter(|piece| piece.may_meet_sphere(other.centre_w, other.radius_m + required_m));
         let pairs = near.flat_map(|piece| other.pieces.iter().map(move |other| (piece, other)));
         let close = pairs.filter(|(piece, other)| piece.closer_than(other, required_m));
         close.map(|(piece, other)| piece.distance_m(other)).min_by(f64::total_cmp)
@@ -182,7 +187,7 @@ impl PlacedLink<'_> {
 
     /// Distance to another body if it is less than `required_m`, m.
     fn too_close(&self, other: &Placed<'_>, required_m: f64) -> Option<f64> {
-        if self.pieces.is_empty() || !other.meets_sphere(self.centre_w, self.radius_m + required_m) {
+        if self.pieces.is_empty() || !other.may_meet_sphere(self.centre_w, self.radius_m + required_m) {
             return None;
         }
         let close = self.pieces.iter().filter(|piece| piece.closer_than(other, required_m));
@@ -203,7 +208,13 @@ impl CollisionModel {
             })
             .collect();
         let self_pairs = self_pairs(robot, &links);
-        Self { links, self_pairs, fingers: robot.arms.iter().map(|arm| fingers(robot, &arm.gripper)).collect() }
+        let fingers = robot.arms.iter().map(|arm| fingers(robot, &arm.gripper)).collect();
+        let board_most_m = vec![f64::INFINITY; links.len()];
+        let mut model = Self { links, self_pairs, fingers, board_most_m };
+        for (bar, most_m) in model.bars(robot) {
+            model.board_most_m[bar] = most_m;
+        }
+        model
     }
 
     /// The first violation of a scene: robot with itself, then robot with board, then person. A body whose pose or size is not
@@ -259,9 +270,10 @@ impl CollisionModel {
             margin_m = nearest - clearance_m;
         }
         for link in (0..self.links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
-            let bound_m = margin_m + scene.clearance_m;
+            let required_m = self.board_clearance_m(link, scene.clearance_m);
+            let bound_m = margin_m + required_m;
             let nearest = self.links[link].distance_to_within(&poses[link], &board, bound_m, measure);
-            margin_m = nearest - scene.clearance_m;
+            margin_m = nearest - required_m;
         }
         for part in scene.person {
             let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
@@ -298,6 +310,11 @@ impl CollisionModel {
         scene.person.iter().find(|part| !part_is_finite(part)).map(|part| Body::Person(part.name))
     }
 
+    /// The distance that a link must keep from the board, m, where `clearance_m` is asked for.
+    pub fn board_clearance_m(&self, link: usize, clearance_m: f64) -> f64 {
+        clearance_m.min(self.board_most_m[link])
+    }
+
     /// True for fingers of a gripper that holds the board.
     fn may_touch_board(&self, scene: &Scene<'_>, link: usize) -> bool {
         scene.holding.iter().any(|&arm| self.fingers[arm].contains(&link))
@@ -328,7 +345,7 @@ impl CollisionModel {
 
     fn robot_board(&self, scene: &Scene<'_>, links: &[PlacedLink<'_>], board: &Placed<'_>) -> Option<Violation> {
         (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
-            let required_m = scene.clearance_m;
+            let required_m = self.board_clearance_m(link, scene.clearance_m);
             let distance_m = links[link].too_close(board, required_m)?;
             Some(Violation { bodies: [Body::Link(link), Body::Board], required_m, distance_m })
         })

@@ -62,7 +62,7 @@ impl CollisionModel {
             }
         }
         for link in (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
-            pairs(&links[link], &board, scene.clearance_m, within_m, &mut found);
+            pairs(&links[link], &board, self.board_clearance_m(link, scene.clearance_m), within_m, &mut found);
         }
         for (index, (part, capsule)) in scene.person.iter().zip(&capsules).enumerate() {
             let body = PlacedBody { body: BodyRef::Person(index), pieces: vec![capsule.placed(&Pose::identity())] };

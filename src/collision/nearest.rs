@@ -62,7 +62,7 @@ impl CollisionModel {
             let centre_w = super::point_w(&poses[link], &shapes.centre_l);
             // A link inside the board may be deeper in it than its own radius.
             let reach_m = shapes.radius_m + found.bound_m().max(0.0);
-            if !shapes.pieces.is_empty() && board.meets_sphere(centre_w, reach_m) {
+            if !shapes.pieces.is_empty() && board.may_meet_sphere(centre_w, reach_m) {
                 let (bound_m, measure) = (found.bound_m(), Measure::SignedDistance);
                 let distance_m = shapes.distance_to_within(&poses[link], &board, bound_m, measure);
                 found.offer([Body::Link(link), Body::Board], distance_m);

@@ -61,7 +61,8 @@ impl CollisionModel {
             }
             let links = self.links.iter().zip(link_poses).enumerate();
             for (index, (link, x_wl)) in links.filter(|_| part.keeps_off_robot) {
-                if !link.pieces.is_empty() && capsule.meets_sphere(centres_w[index], link.radius_m + found.bound_m()) {
+                if !link.pieces.is_empty() && capsule.may_meet_sphere(centres_w[index], link.radius_m + found.bound_m())
+                {
                     let distance_m = link.signed_distance_within(x_wl, &capsule, found.bound_m());
                     found.offer([Body::Link(index), name], distance_m);
                 }

@@ -32,10 +32,10 @@ impl SelfPair {
 /// All pairs of links with shapes but those that do not move against each other and the robot's allowed collisions.
 pub(super) fn self_pairs(robot: &Robot, links: &[LinkShapes]) -> Vec<SelfPair> {
     let active = robot.active_joints();
-    let groups = rigid_groups(robot, &active);
+    let carriers = robot.active_carriers();
     (0..links.len())
         .flat_map(|a| (a + 1..links.len()).map(move |b| [a, b]))
-        .filter(|&[a, b]| !links[a].pieces.is_empty() && !links[b].pieces.is_empty() && groups[a] != groups[b])
+        .filter(|&[a, b]| !links[a].pieces.is_empty() && !links[b].pieces.is_empty() && carriers[a] != carriers[b])
         .filter(|pair| !robot.allowed_collisions.contains(pair))
         .map(|pair| SelfPair { links: pair, most_m: most_m(robot, &active, links, pair) })
         .collect()
@@ -82,15 +82,4 @@ fn joints_between(robot: &Robot, active: &[bool], a: usize, b: usize) -> Vec<usi
     let [mut between, more]: [Vec<usize>; 2] = [own(&of_a, &of_b), own(&of_b, &of_a)];
     between.extend(more);
     between
-}
-
-/// For every link the first link of its rigid group. Links move against each other by the joints of arms and grippers only.
-fn rigid_groups(robot: &Robot, active: &[bool]) -> Vec<usize> {
-    let mut groups: Vec<usize> = (0..robot.links.len()).collect();
-    for (joint, active) in robot.joints.iter().zip(active) {
-        if !active {
-            groups[joint.child_link] = groups[joint.parent_link];
-        }
-    }
-    groups
 }

@@ -4,8 +4,8 @@ use nalgebra::{Point3, Unit, Vector3};
 use parry3d_f64::{
     glamx::{DQuat, DVec3},
     math::Pose as ParryPose,
-    query,
-    shape::SharedShape,
+    query::{self, gjk, gjk::GJKResult},
+    shape::{SharedShape, SupportMap},
 };
 
 use crate::{
@@ -139,12 +139,39 @@ pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
 impl Placed<'_> {
     /// True if two primitives overlap or are closer than `required_m`.
     pub fn closer_than(&self, other: &Placed<'_>, required_m: f64) -> bool {
-        if !self.meets_sphere(other.pose.translation, other.radius_m + required_m)
-            || !other.meets_sphere(self.pose.translation, self.radius_m + required_m)
+        if !self.may_meet_sphere(other.pose.translation, other.radius_m + required_m)
+            || !other.may_meet_sphere(self.pose.translation, self.radius_m + required_m)
         {
             return false;
         }
-        if required_m > 0.0 { self.distance_m(other) <= required_m } else { self.overlaps(other) }
+        if required_m > 0.0 { !self.is_beyond(other, required_m) } else { self.overlaps(other) }
+    }
+
+    /// True if the distance of two primitives exceeds `within_m`, which is above 0. It is faster than a distance: the search for
+    /// the closest points ends with a plane between the primitives that tells that they are too far apart.
+    fn is_beyond(&self, other: &Placed<'_>, within_m: f64) -> bool {
+        let by_distance = || self.distance_m(other) > within_m;
+        let is_searched = |shape: &SharedShape| shape.as_ball().is_none();
+        let are_boxes = self.shape.as_cuboid().is_some() && other.shape.as_cuboid().is_some();
+        let (Some(own), Some(others)) = (self.shape.as_support_map(), other.shape.as_support_map()) else {
+            return by_distance();
+        };
+        if are_boxes || !is_searched(self.shape) || !is_searched(other.shape) {
+            return by_distance();
+        }
+        let x_so = self.pose.inv_mul(&other.pose);
+        let start = (-x_so.translation).try_normalize().unwrap_or(DVec3::X);
+        let mut simplex = gjk::VoronoiSimplex::new();
+        simplex.reset(gjk::CsoPoint::from_shapes(&x_so, own, others, start));
+        match gjk::closest_points(&x_so, own, others, within_m, true, &mut simplex) {
+            GJKResult::ClosestPoints(one, other, _) => (one - other).length() > within_m,
+            GJKResult::NoIntersection(towards) => {
+                // The search may also have ended without a result.
+                let apart = gjk::CsoPoint::from_shapes(&x_so, own, others, towards).point.dot(-towards);
+                apart > within_m || by_distance()
+            }
+            GJKResult::Intersection | GJKResult::Proximity(_) => false,
+        }
     }
 
     /// True if two primitives overlap. Faster than a distance.
@@ -169,9 +196,22 @@ impl Placed<'_> {
     /// Minimum of `bound_m` and the signed distance of two primitives, m. Each is first tested against the other's bounding
     /// sphere.
     pub fn signed_distance_within(&self, other: &Placed<'_>, bound_m: f64) -> f64 {
-        let near = self.meets_sphere(other.pose.translation, other.radius_m + bound_m)
-            && other.meets_sphere(self.pose.translation, self.radius_m + bound_m);
+        let near = self.may_meet_sphere(other.pose.translation, other.radius_m + bound_m)
+            && other.may_meet_sphere(self.pose.translation, self.radius_m + bound_m);
         if near { bound_m.min(self.signed_distance_m(other)) } else { bound_m }
+    }
+
+    /// False only if the primitive does not intersect a sphere in W. For polyhedra one plane is tested, normal to the line
+    /// between the centres.
+    pub fn may_meet_sphere(&self, centre_w: DVec3, radius_m: f64) -> bool {
+        let Some(polyhedron) = self.shape.as_convex_polyhedron() else { return self.meets_sphere(centre_w, radius_m) };
+        let centre_s = self.pose.inverse_transform_point(centre_w);
+        let reach_m = self.radius_m + radius_m;
+        if centre_s.length_squared() > reach_m * reach_m {
+            return false;
+        }
+        let Some(towards) = centre_s.try_normalize() else { return true };
+        towards.dot(centre_s - polyhedron.local_support_point(towards)) <= radius_m
     }
 
     /// True if the primitive intersects a sphere in W.

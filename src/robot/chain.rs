@@ -80,7 +80,8 @@ impl Chain {
         // At zero angles the frame of a joint is that of its child link.
         let x_wl = robot.link_poses(&robot.positions(&[state]));
         let x_wj: Vec<Pose> = arm.joints.iter().map(|&joint| x_wl[robot.joints[joint].child_link]).collect();
-        let carrier = carriers_within(robot, &arm.joints);
+        // For each link the last joint of the chain above it.
+        let carrier = robot.nearest_above(|joint| arm.joints.iter().position(|&own| own == joint));
         let joints = (0..arm.joints.len()).map(|number| {
             let carried = (0..robot.links.len()).filter(|&link| carrier[link] == Some(number));
             ChainJoint {
@@ -334,17 +335,6 @@ impl Chain {
     pub fn is_revolute(&self) -> bool {
         self.joints.iter().all(|joint| !joint.slides)
     }
-}
-
-/// For each link the last of `joints` between the root and the link, as an index into `joints`; `None` outside the chain.
-fn carriers_within(robot: &Robot, joints: &[usize]) -> Vec<Option<usize>> {
-    let mut carriers: Vec<Option<usize>> = Vec::with_capacity(robot.links.len());
-    for link in &robot.links {
-        carriers.push(link.parent_joint.and_then(|joint| {
-            joints.iter().position(|&own| own == joint).or_else(|| carriers[robot.joints[joint].parent_link])
-        }));
-    }
-    carriers
 }
 
 /// The mass properties of links as one rigid body in the frame `x_wj`.

@@ -204,6 +204,9 @@ pub(super) struct FingerEntry {
     /// The prismatic joint that moves it; absent for a linkage.
     pub joint: Option<Spanned<String>>,
     pub pad_link: Spanned<String>,
+    /// Other links of a linkage that are part of the pad.
+    #[serde(default)]
+    pub beside: Vec<Spanned<String>>,
 }
 
 /// An entry of a point on the robot's surface.

@@ -20,6 +20,7 @@ pub mod tree;
 mod urdf;
 
 pub use chain::Chain;
+pub use faces::Face;
 pub use faults::{Fault, Faults, RobotError};
 pub use geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry};
 pub use holding::{Holding, MeasuredGrip, PadGrip};

@@ -58,7 +58,9 @@ impl Packages {
             let itself = (folder.file_name() == Some(OsStr::new(package))).then(|| folder.join(inside));
             [Some(folder.join(package).join(inside)), itself]
         });
-        candidates.flatten().find(|path| path.is_file())
+        // A package that was copied into a folder of another name.
+        let renamed = self.folders.iter().map(|folder| folder.join(inside));
+        candidates.flatten().chain(renamed).find(|path| path.is_file())
     }
 
     fn not_found(&self, uri: &str, package: &str) -> String {
@@ -104,6 +106,11 @@ mod tests {
         std::fs::write(&mesh, "").unwrap();
         let mesh = mesh.canonicalize().unwrap();
         let away = tempfile::tempdir().unwrap();
+        let renamed = place.path().join("copies/arm");
+        for folder in ["meshes", "urdf"] {
+            std::fs::create_dir_all(renamed.join(folder)).unwrap();
+        }
+        std::fs::write(renamed.join("meshes/arm.stl"), "").unwrap();
         let share = place.path().join("share");
         let places = [
             Packages::new(Vec::new(), &urdf_folder),
@@ -115,6 +122,9 @@ mod tests {
                 assert_eq!(packages.resolve(uri).unwrap().canonicalize().unwrap(), mesh, "{uri}");
             }
         }
+        // Under another name than the URDF has.
+        let copy = Packages::new(Vec::new(), &renamed.join("urdf")).resolve("package://arm_support/meshes/arm.stl");
+        assert_eq!(copy.unwrap().canonicalize().unwrap(), renamed.join("meshes/arm.stl").canonicalize().unwrap());
         let relative = Packages::new(Vec::new(), &urdf_folder).resolve("../meshes/arm.stl").unwrap();
         assert_eq!(relative.canonicalize().unwrap(), mesh);
         let absolute = format!("file://{}", mesh.display());

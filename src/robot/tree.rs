@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::{
+    faces::Face,
     geometry::{PlacedShape, Visual},
     holding::Holding,
 };
@@ -177,10 +178,14 @@ pub struct Cup {
 pub struct Linkage {
     /// One joint that moves both pads, or one for each.
     pub(super) drives: Vec<Drive>,
-    /// For each pad the joint that carries it, an index into [`Robot::joints`].
+    /// For each pad its links, which move as one.
+    pub(super) pads: [Vec<usize>; 2],
+    /// For each pad the joint that carries the first of its links, in the order of the tree, an index into [`Robot::joints`].
     pub(super) carriers: [usize; 2],
-    /// For each pad its link.
-    pub(super) pad_links: [usize; 2],
+    /// For each pad the joints that carry its other links.
+    pub(super) others: [Vec<usize>; 2],
+    /// For each pad the shapes that may touch the board.
+    pub(super) faces: [Face; 2],
     /// For each pad the side of the plane y_G = 0 that it is on, 1 or -1.
     pub(super) sides: [f64; 2],
 }
@@ -357,12 +362,7 @@ impl Robot {
 
     /// For each link whether an arm or a gripper moves it.
     pub fn moved_links(&self) -> Vec<bool> {
-        let active = self.active_joints();
-        let mut moves: Vec<bool> = Vec::with_capacity(self.links.len());
-        for link in &self.links {
-            moves.push(link.parent_joint.is_some_and(|joint| active[joint] || moves[self.joints[joint].parent_link]));
-        }
-        moves
+        self.active_carriers().iter().map(Option::is_some).collect()
     }
 
     /// Adds a link without mass and shapes that is fixed to another, and returns its index.
@@ -375,14 +375,25 @@ impl Robot {
 
     /// For each link the moving joint that carries it, directly or through fixed joints; `None` for fixed links.
     pub fn carriers(&self) -> Vec<Option<usize>> {
-        let mut carriers: Vec<Option<usize>> = Vec::with_capacity(self.links.len());
+        self.nearest_above(|joint| (self.joints[joint].kind != JointKind::Fixed).then_some(joint))
+    }
+
+    /// For each link the joint of an arm or a gripper that carries it; `None` for links that stay at rest. Links with the same
+    /// one do not move against each other.
+    pub fn active_carriers(&self) -> Vec<Option<usize>> {
+        let active = self.active_joints();
+        self.nearest_above(|joint| active[joint].then_some(joint))
+    }
+
+    /// For each link the value of the first joint on the way to the root that has one; `None` if none has.
+    pub fn nearest_above<T: Copy>(&self, of_joint: impl Fn(usize) -> Option<T>) -> Vec<Option<T>> {
+        let mut nearest: Vec<Option<T>> = Vec::with_capacity(self.links.len());
+        // Parents come before children.
         for link in &self.links {
-            carriers.push(link.parent_joint.and_then(|joint| match self.joints[joint].kind {
-                JointKind::Fixed => carriers[self.joints[joint].parent_link],
-                JointKind::Revolute | JointKind::Prismatic => Some(joint),
-            }));
+            let above = |joint: usize| of_joint(joint).or_else(|| nearest[self.joints[joint].parent_link]);
+            nearest.push(link.parent_joint.and_then(above));
         }
-        carriers
+        nearest
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use super::skeleton::Run;
 use crate::{
     model::frames::Pose,
-    robot::{JointKind, Linkage, Robot},
+    robot::{Face, JointKind, Linkage, Robot},
 };
 
 /// Tolerance of directions of existing frames, as the sine of an angle: four quarter turns with six digits.
@@ -52,8 +52,8 @@ pub(super) struct Hand {
 pub(super) enum Fingers {
     /// Two prismatic joints, each with its pad's link.
     Prismatic([(usize, usize); 2]),
-    /// Two links of a linkage.
-    Linkage([usize; 2]),
+    /// The links of the two pads of a linkage.
+    Linkage([Vec<usize>; 2]),
     /// None that close in parallel: a clamp in their place.
     Clamp,
 }
@@ -109,11 +109,17 @@ impl Scene<'_> {
 
     /// Points on the surface of a link's shapes, W.
     fn points_w(&self, link: usize) -> Vec<Point3<f64>> {
-        let shapes = self.robot.links[link].shapes.iter();
-        shapes
-            .flat_map(|placed| placed.shape.surface_points().into_iter().map(move |p_s| placed.x_ls * p_s))
-            .map(|p_l| self.x_wl[link] * p_l)
-            .collect()
+        self.face_points_w(&Face::of_links(self.robot, &[link]))
+    }
+
+    /// Points on the surface of shapes, W.
+    fn face_points_w(&self, face: &Face) -> Vec<Point3<f64>> {
+        let of_shape = |&[link, shape]: &[usize; 2]| {
+            let placed = &self.robot.links[link].shapes[shape];
+            let points = placed.shape.surface_points().into_iter();
+            points.map(move |p_s| self.x_wl[link] * (placed.x_ls * p_s))
+        };
+        face.shapes().iter().flat_map(of_shape).collect()
     }
 
     fn mean_w(&self, links: &[usize]) -> Option<Vector3<f64>> {
@@ -146,8 +152,10 @@ impl Scene<'_> {
             solid.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, link)| link)
         };
         let pads = [pad_of(&groups[0])?, pad_of(&groups[1])?];
-        let range_m = self.prismatic_range_m([first, second], pads, &x_wg);
-        let (pad_size_m, pad_centre_m) = self.pads(pads, [x_wg; 2]);
+        let faces = pads.map(|link| Face::of_links(self.robot, &[link]));
+        let faces = Face::facing(&faces, self.robot, self.x_wl, &x_wg.inverse());
+        let range_m = self.prismatic_range_m([first, second], &faces, &x_wg);
+        let (pad_size_m, pad_centre_m) = self.pads(&faces, [x_wg; 2])?;
         Some(Hand {
             frame_link,
             x_lg,
@@ -160,15 +168,15 @@ impl Scene<'_> {
         })
     }
 
-    /// Distance of a link's innermost plane from y_G = 0 on its side, m.
-    fn face_m(&self, link: usize, x_wg: &Pose, side: f64) -> f64 {
-        let points = self.points_w(link).into_iter().map(|p_w| x_wg.inverse() * p_w);
+    /// Distance of the innermost plane of shapes from y_G = 0 on their side, m.
+    fn face_m(&self, face: &Face, x_wg: &Pose, side: f64) -> f64 {
+        let points = self.face_points_w(face).into_iter().map(|p_w| x_wg.inverse() * p_w);
         points.map(|p_g| side * p_g.y).fold(f64::INFINITY, f64::min)
     }
 
     /// The gaps between two pads that their joints allow.
-    fn prismatic_range_m(&self, joints: [usize; 2], pads: [usize; 2], x_wg: &Pose) -> [f64; 2] {
-        let gap_now = self.face_m(pads[0], x_wg, 1.0) + self.face_m(pads[1], x_wg, -1.0);
+    fn prismatic_range_m(&self, joints: [usize; 2], faces: &[Face; 2], x_wg: &Pose) -> [f64; 2] {
+        let gap_now = self.face_m(&faces[0], x_wg, 1.0) + self.face_m(&faces[1], x_wg, -1.0);
         // Each finger opens from its rest position to one of its limits and closes to the other.
         let axis_y = |joint: usize| {
             let joint = &self.robot.joints[joint];
@@ -213,12 +221,12 @@ impl Scene<'_> {
         nearest.filter(|axis| axis.dot(direction_w) > 10_f64.to_radians().cos()).unwrap_or(*direction_w)
     }
 
-    /// Sides along x_G and z_G and centre of the area in which both pads touch. Each pad's link is at rest in W, and G at its
-    /// entry of `x_wg`.
-    fn pads(&self, links: [usize; 2], x_wg: [Pose; 2]) -> ([f64; 2], [f64; 2]) {
+    /// Sides along x_G and z_G and centre of the area in which both pads touch; `None` if they do not face each other. Each pad's
+    /// links are at rest in W, and G at its entry of `x_wg`.
+    fn pads(&self, faces: &[Face; 2], x_wg: [Pose; 2]) -> Option<([f64; 2], [f64; 2])> {
         let mut common = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
-        for ((link, side), x_wg) in links.into_iter().zip([1.0, -1.0]).zip(x_wg) {
-            let points: Vec<_> = self.points_w(link).into_iter().map(|p_w| x_wg.inverse() * p_w).collect();
+        for ((face, side), x_wg) in faces.iter().zip([1.0, -1.0]).zip(x_wg) {
+            let points: Vec<_> = self.face_points_w(face).into_iter().map(|p_w| x_wg.inverse() * p_w).collect();
             let inner = points.iter().map(|p_g| side * p_g.y).fold(f64::INFINITY, f64::min);
             let face = points.iter().filter(|p_g| side * p_g.y <= inner + PAD_DEPTH_M);
             let mut own = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -231,6 +239,9 @@ impl Scene<'_> {
                 *common = [common[0].max(own[0]), common[1].min(own[1])];
             }
         }
+        if common.iter().any(|[low, high]| high <= low) {
+            return None;
+        }
         // A board reaches to the palm at most.
         let palm_m = self.palm_front_m(&x_wg[0]) + PALM_CLEARANCE_M;
         if palm_m < common[1][1] - PAD_SIDE_M[0] {
@@ -238,7 +249,7 @@ impl Scene<'_> {
         }
         let millimetre_tenths = |v: f64| (v * 1e4).round() / 1e4 + 0.0;
         let size = common.map(|[low, high]| millimetre_tenths((high - low).clamp(PAD_SIDE_M[0], PAD_SIDE_M[1])));
-        (size, common.map(|[low, high]| millimetre_tenths((low + high) / 2.0)))
+        Some((size, common.map(|[low, high]| millimetre_tenths((low + high) / 2.0))))
     }
 
     /// How far the links at the end of the run reach along z of G, m.
@@ -254,13 +265,13 @@ impl Scene<'_> {
         let solid: Vec<usize> =
             moving.iter().copied().filter(|&link| !self.robot.links[link].shapes.is_empty()).collect();
         if solid.len() < 2 {
-            return Err(None);
+            return Err(solid.first().map(|&only| format!("found {} alone", self.robot.links[only].name)));
         }
         let mut best: Option<(f64, Hand)> = None;
         let mut problem = None;
         for (number, &a) in solid.iter().enumerate() {
             for &b in &solid[number + 1..] {
-                match self.linkage_of([a, b]) {
+                match self.linkage_of([vec![a], vec![b]], &solid) {
                     Ok((ahead_m, hand)) if best.as_ref().is_none_or(|(most_m, _)| ahead_m > *most_m) => {
                         best = Some((ahead_m, hand));
                     }
@@ -272,26 +283,46 @@ impl Scene<'_> {
         best.map(|(_, hand)| hand).ok_or(problem)
     }
 
-    /// A hand with these pads, and how far in front of the palm they are, m.
-    fn linkage_of(&self, links: [usize; 2]) -> Result<(f64, Hand), String> {
-        let palm_link = self.palm_of(links);
-        let centre = |link: usize| self.mean_w(&[link]).unwrap_or_default();
-        let [first_w, second_w] = links.map(centre);
-        let y_w = (first_w - second_w).try_normalize(1e-6).ok_or("found pads at one place")?;
+    /// A hand with these pads, and how far in front of the palm they are, m. If they do not face each other those of the `solid`
+    /// links that move with one of them are taken to be part of it.
+    fn linkage_of(&self, pads: [Vec<usize>; 2], solid: &[usize]) -> Result<(f64, Hand), String> {
+        let first = [pads[0][0], pads[1][0]];
+        let palm_link = self.palm_of(first);
+        let [first_w, second_w] = pads.each_ref().map(|links| self.mean_w(links).unwrap_or_default());
+        let between_w = first_w - second_w;
+        let y_w = match Linkage::opening_w(self.robot, palm_link, first) {
+            Some(y_w) => y_w * y_w.dot(&between_w).signum(),
+            None => between_w.try_normalize(1e-6).ok_or("found pads at one place")?,
+        };
         let y_w = self.nearest_axis(&self.x_wl[palm_link], &y_w);
         let (frame_link, x_lg) = self.frame(palm_link, &y_w, &((first_w + second_w) / 2.0));
         let mut robot = self.robot.clone();
         let frame = x_lg.map_or(frame_link, |x_lg| robot.add_frame("gripper frame", frame_link, x_lg));
-        let linkage = Linkage::new(&robot, [frame, palm_link], links)?;
+        let linkage = Linkage::new(&robot, [frame, palm_link], pads.clone(), None)?;
         let range_m = linkage.range_m(&robot, frame)?;
         let opening_m = rounded([range_m[0].max(0.0), range_m[1]]);
         let x_gl = linkage.pad_poses_g(&robot, frame, opening_m[0]);
         // The pads as they are at the narrowest opening: as if G had moved to the link's pose at rest.
-        let x_wg = [0, 1].map(|pad| self.x_wl[links[pad]] * x_gl[pad].inverse());
-        let sides_swapped = (x_gl[0].translation.y) < x_gl[1].translation.y;
-        let (links, x_wg) = if sides_swapped { ([links[1], links[0]], [x_wg[1], x_wg[0]]) } else { (links, x_wg) };
-        let (pad_size_m, pad_centre_m) = self.pads(links, x_wg);
-        let fingers = Fingers::Linkage(links);
+        let mut x_wg = [0, 1].map(|pad| self.x_wl[first[pad]] * x_gl[pad].inverse());
+        let (mut fingers, mut faces) = (pads.clone(), linkage.faces().clone());
+        if x_gl[0].translation.y < x_gl[1].translation.y {
+            fingers.reverse();
+            faces.reverse();
+            x_wg.reverse();
+        }
+        let Some((pad_size_m, pad_centre_m)) = self.pads(&faces, x_wg) else {
+            let with_others = [0, 1].map(|pad| {
+                let others = solid.iter().copied().filter(|link| !first.contains(link));
+                let mut links = pads[pad].clone();
+                links.extend(others.filter(|&link| linkage.moves_with(&robot, pad, link)));
+                links
+            });
+            if pads.iter().any(|links| links.len() > 1) || with_others == pads {
+                return Err("found pads that do not face each other".into());
+            }
+            return self.linkage_of(with_others, solid);
+        };
+        let fingers = Fingers::Linkage(fingers);
         let hand = Hand { frame_link, x_lg, palm_link, fingers, opening_m, pad_size_m, pad_centre_m, remark: None };
         Ok((pad_centre_m[1], hand))
     }

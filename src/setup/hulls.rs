@@ -2,13 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
-
 use super::pairs::{ALWAYS, Overlaps, adjacent};
 use crate::{
-    collision::{BoardBody, CollisionModel},
-    model::board::BoardShape,
-    robot::{Arm, Robot, Shape},
+    collision::{CollisionModel, board_between_pads},
+    robot::{Robot, Shape},
 };
 
 /// The share of random postures from which on a hull that overlaps another link is in the way.
@@ -22,9 +19,6 @@ const BOARD_CLEARANCE_M: f64 = 0.005;
 
 /// How much farther from the board the parts of a mesh must be than its hull, m.
 const FARTHER_M: f64 = 0.002;
-
-/// The board that is put into each gripper: its width and height, m.
-const BOARD_M: f64 = 0.3;
 
 /// Two links and the share of the random postures in which they overlap.
 pub(super) type Often = ([usize; 2], f64);
@@ -73,7 +67,7 @@ fn near_boards(robot: &Robot) -> BTreeMap<usize, f64> {
     let mut near = BTreeMap::new();
     for arm in &robot.arms {
         let gripper = &arm.gripper;
-        let (board, x_go) = board_between(arm, robot);
+        let (board, x_go) = board_between_pads(robot, arm);
         let x_wo = x_wl[gripper.frame_link] * x_go;
         let hand = (0..robot.links.len()).filter(|&link| carriers[link] == carriers[gripper.frame_link]);
         for link in hand.filter(|&link| !robot.links[link].shapes.is_empty()) {
@@ -84,21 +78,4 @@ fn near_boards(robot: &Robot) -> BTreeMap<usize, f64> {
         }
     }
     near
-}
-
-/// A board as thick as the gap between the pads at rest, which the pads just cover, and its pose in G.
-fn board_between(arm: &Arm, robot: &Robot) -> (BoardBody, Isometry3<f64>) {
-    let gripper = &arm.gripper;
-    let gap_m: f64 = gripper
-        .fingers
-        .iter()
-        .map(|finger| finger.pad.offset_m + finger.opening_sign * (robot.joints[finger.joint].rest - finger.closed_m))
-        .sum();
-    let pad = &gripper.fingers[0].pad;
-    let edge_z_m = pad.centre_m[1] - pad.size_m[1] / 2.0;
-    let board = BoardBody::new(&BoardShape::cuboid([BOARD_M, BOARD_M, gap_m.max(0.001)]));
-    // z_O along y_G; the board reaches forward from the rear edge of the pads.
-    let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), -std::f64::consts::FRAC_PI_2);
-    let centre_g = Point3::new(0.0, 0.0, edge_z_m + BOARD_M / 2.0);
-    (board, Isometry3::from_parts(centre_g.into(), turn))
 }

@@ -168,7 +168,7 @@ fn overlaps(robot: &Robot, model: &CollisionModel) -> Overlaps {
 /// of one gripper, which meet when it closes.
 pub(super) fn adjacent(robot: &Robot) -> BTreeSet<[usize; 2]> {
     let mut pairs = apart(robot, 1);
-    let carriers = active_carriers(robot);
+    let carriers = robot.active_carriers();
     let carried =
         |joint: usize| (0..robot.links.len()).filter(|&link| carriers[link] == Some(joint)).collect::<Vec<_>>();
     for arm in &robot.arms {
@@ -179,22 +179,9 @@ pub(super) fn adjacent(robot: &Robot) -> BTreeSet<[usize; 2]> {
     pairs
 }
 
-/// For each link the joint of an arm or a gripper that carries it.
-fn active_carriers(robot: &Robot) -> Vec<Option<usize>> {
-    let active = robot.active_joints();
-    let mut carriers: Vec<Option<usize>> = Vec::with_capacity(robot.links.len());
-    for link in &robot.links {
-        carriers.push(
-            link.parent_joint
-                .and_then(|joint| if active[joint] { Some(joint) } else { carriers[robot.joints[joint].parent_link] }),
-        );
-    }
-    carriers
-}
-
 /// Pairs of links, one behind the other, with one to `most` moving joints between them.
 fn apart(robot: &Robot, most: usize) -> BTreeSet<[usize; 2]> {
-    let carriers = active_carriers(robot);
+    let carriers = robot.active_carriers();
     // The carriers of a link, and of the links that carry these, from the link to the root, which has none.
     let above = |link: usize| {
         let next = |carrier: &Option<usize>| carrier.map(|joint| carriers[robot.joints[joint].parent_link]);

@@ -12,6 +12,12 @@ const LEAST_LENGTH_M: f64 = 0.20;
 const NO_ARM: [&str; 12] =
     ["leg", "hip", "knee", "ankle", "foot", "wheel", "caster", "head", "neck", "torso", "waist", "propeller"];
 
+/// Parts of names of joints that move a finger.
+const FINGER: [&str; 5] = ["gripper", "finger", "jaw", "claw", "thumb"];
+
+/// The range of a joint that closes a finger begins at 0, up to this share of its longer side; that of a wrist is on both sides.
+const ONE_SIDED: f64 = 0.2;
+
 /// A run of moving joints from a branch to a branch or an end.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
@@ -35,6 +41,7 @@ pub(super) fn arms(robot: &Robot) -> Vec<Run> {
     let group_of = group_of_links(robot);
     let mut runs = Vec::new();
     collect(robot, &group_of, 0, Vec::new(), &mut runs);
+    runs = runs.into_iter().map(|run| without_finger(robot, &group_of, run)).collect();
     runs.retain(|run| {
         run.joints.len() >= LEAST_JOINTS && length_m(robot, run) >= LEAST_LENGTH_M && !is_named_otherwise(robot, run)
     });
@@ -54,12 +61,9 @@ fn length_m(robot: &Robot, run: &Run) -> f64 {
 
 /// For each link the first link of its group.
 fn group_of_links(robot: &Robot) -> Vec<usize> {
-    let mut group_of: Vec<usize> = Vec::with_capacity(robot.links.len());
-    for (index, link) in robot.links.iter().enumerate() {
-        let fixed = link.parent_joint.filter(|&joint| robot.joints[joint].kind == JointKind::Fixed);
-        group_of.push(fixed.map_or(index, |joint| group_of[robot.joints[joint].parent_link]));
-    }
-    group_of
+    let root = 0;
+    let first = |carrier: Option<usize>| carrier.map_or(root, |joint| robot.joints[joint].child_link);
+    robot.carriers().into_iter().map(first).collect()
 }
 
 fn group(robot: &Robot, group_of: &[usize], first: usize) -> Group {
@@ -84,20 +88,49 @@ fn collect(robot: &Robot, group_of: &[usize], first: usize, run: Vec<usize>, run
     }
 }
 
+/// The run without its last joint if that moves the only finger of a gripper.
+fn without_finger(robot: &Robot, group_of: &[usize], mut run: Run) -> Run {
+    let closes = |joint: &usize| {
+        let joint = &robot.joints[*joint];
+        let name = joint.name.to_lowercase();
+        let [shorter, longer] = [joint.lower.abs().min(joint.upper.abs()), joint.lower.abs().max(joint.upper.abs())];
+        FINGER.iter().any(|part| name.contains(part)) && shorter <= ONE_SIDED * longer
+    };
+    if run.joints.len() > 1 && run.joints.last().is_some_and(closes) {
+        run.joints.pop();
+        let before = run.joints.last().map_or(0, |&joint| group_of[robot.joints[joint].child_link]);
+        let Group { links, joints } = group(robot, group_of, before);
+        (run.end_links, run.end_joints) = (links, joints);
+    }
+    run
+}
+
 fn is_named_otherwise(robot: &Robot, run: &Run) -> bool {
     let names = run.joints.iter().map(|&joint| robot.joints[joint].name.to_lowercase());
     let others = names.filter(|name| NO_ARM.iter().any(|part| name.contains(part))).count();
     2 * others > run.joints.len()
 }
 
+/// True if a joint's name begins with the letter of a side, and the robot has a joint of the same name with that of the other.
+fn has_mirror(robot: &Robot, name: &str, [own, other]: [char; 2]) -> bool {
+    let mirrored = |own: char, other: char| name.strip_prefix(own).map(|rest| format!("{other}{rest}"));
+    let names = [mirrored(own, other), mirrored(own.to_ascii_uppercase(), other.to_ascii_uppercase())];
+    names.into_iter().flatten().any(|name| robot.joints.iter().any(|joint| joint.name == name))
+}
+
 /// A name for each arm: its side if the names of its joints tell one, else a number.
 pub(super) fn names(robot: &Robot, runs: &[Run]) -> Vec<String> {
     let side = |run: &Run| {
-        let count = |words: [&str; 4]| {
-            let names = run.joints.iter().map(|&joint| format!("_{}_", robot.joints[joint].name.to_lowercase()));
-            names.filter(|name| words.iter().any(|word| name.contains(word))).count()
+        let count = |words: [&str; 4], [own, other]: [char; 2]| {
+            let has_word = |name: &str| {
+                let name = format!("_{}_", name.to_lowercase());
+                words.iter().any(|word| name.contains(word))
+            };
+            let names = run.joints.iter().map(|&joint| robot.joints[joint].name.as_str());
+            names.filter(|name| has_word(name) || has_mirror(robot, name, [own, other])).count()
         };
-        let (left, right) = (count(["left", "_l_", "_la_", "_lh_"]), count(["right", "_r_", "_ra_", "_rh_"]));
+        let left = count(["left", "_l_", "_la_", "_lh_"], ['l', 'r']);
+        let right = count(["right", "_r_", "_ra_", "_rh_"], ['r', 'l']);
         let all = run.joints.len();
         if 2 * left > all {
             Some("left")

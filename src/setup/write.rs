@@ -181,24 +181,36 @@ fn gripper(text: &mut String, robot: &Robot, arm: &ArmDraft) {
          pad_size_m = {:?} # {pads}\npad_centre_m = {:?} # along x and z of G\n",
         hand.opening_m, hand.pad_size_m, hand.pad_centre_m
     );
-    let fingers: Vec<(usize, Option<usize>)> = match hand.fingers {
-        Fingers::Prismatic(fingers) => fingers.iter().map(|&(joint, link)| (link, Some(joint))).collect(),
-        Fingers::Linkage(links) => links.iter().map(|&link| (link, None)).collect(),
+    let fingers: [(String, String); 2] = match &hand.fingers {
+        Fingers::Prismatic(fingers) => fingers.map(|(joint, link)| {
+            (format!(", joint = {}", quoted(&robot.joints[joint].name)), format!("pad_link = {}", name(link)))
+        }),
+        Fingers::Linkage(pads) => pads.each_ref().map(|links| {
+            let names: Vec<String> = links[1..].iter().map(|&link| robot.links[link].name.clone()).collect();
+            let beside = if names.is_empty() { String::new() } else { format!(", beside = {}", list(&names)) };
+            (String::new(), format!("pad_link = {}{beside}", name(links[0])))
+        }),
         Fingers::Clamp => return,
     };
     text.push_str("fingers = [\n");
-    for (number, (link, joint)) in fingers.into_iter().enumerate() {
-        let joint = joint.map_or_else(String::new, |joint| format!(", joint = {}", quoted(&robot.joints[joint].name)));
-        let _ = writeln!(text, "    {{ name = \"finger{}\"{joint}, pad_link = {} }},", number + 1, name(link));
+    for (number, (joint, links)) in fingers.into_iter().enumerate() {
+        let _ = writeln!(text, "    {{ name = \"finger{}\"{joint}, {links} }},", number + 1);
     }
     text.push_str("]\n");
 }
+
+/// A pitch this near to a quarter turn is one, rad: quarter turns with six digits.
+const SINGULAR_RAD: f64 = 1e-5;
 
 /// Position, m, and roll, pitch and yaw, degrees, of a frame, without the noise of rounding.
 fn frame_keys(x_lg: &Pose) -> [[f64; 3]; 2] {
     let clean = |value: f64, step: f64| ((value / step).round() * step * 1e9).round() / 1e9;
     let (roll, pitch, yaw) = x_lg.rotation.euler_angles();
     let xyz: [f64; 3] = x_lg.translation.vector.into();
+    // With the pitch at a quarter turn roll and yaw are about one axis.
+    let turn = std::f64::consts::FRAC_PI_2;
+    let is_singular = (pitch.abs() - turn).abs() < SINGULAR_RAD;
+    let (roll, yaw) = if is_singular { (roll - pitch.signum() * yaw, 0.0) } else { (roll, yaw) };
     // Quarter turns with six digits are quarter turns.
     let degrees = [roll, pitch, yaw].map(|angle| {
         let degrees = angle.to_degrees();

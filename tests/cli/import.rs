@@ -103,6 +103,50 @@ fn a_pose_of_the_board_is_found() {
     }
 }
 
+/// A plan of each grasp, as if each were imported alone.
+#[test]
+fn all_grasps_of_a_file() {
+    let folder = files();
+    let all = |arguments: &[&str]| {
+        let common = ["import", "isaac.yaml", "--scenario", "cut.toml", "-o", "plans", "--all"];
+        let output = benchdog(folder.path(), &[&common, arguments].concat());
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, printed) = all(&["left", "--arm", "right=grasp_2"]);
+    assert_eq!(code, Some(0), "{printed}");
+    let lines: Vec<&str> = printed.lines().collect();
+    assert!(lines[0].starts_with("wrote plans/grasp_0.json: right: grasp_2"), "{printed}");
+    assert!(lines[1].starts_with("left out grasp_1: isaac.yaml:18: grasps.grasp_1: found fingers"), "{printed}");
+    assert_eq!(lines.len(), 2);
+    let plan = |path: &str| read_plan(&folder.path().join(path), Some(baxter())).unwrap().0;
+    import(folder.path(), &["isaac.yaml", "--arm", "right=grasp_2", "--arm", "left=grasp_0"]);
+    let (mut one, alone) = (plan("plans/grasp_0.json"), plan("plan.json"));
+    assert_eq!(one.name, "cut-rim-grasp_0");
+    one.name.clone_from(&alone.name);
+    assert_eq!(one, alone);
+    // None is left if every grasp is left out.
+    std::fs::remove_dir_all(folder.path().join("plans")).unwrap();
+    let (code, printed) = all(&["left", "--arm", "right=grasp_2", "--board-pose", "5 0 0 0 0 0"]);
+    assert_eq!((code, printed.matches("left out").count()), (Some(3), 2), "{printed}");
+    let (code, _) = all(&["middle"]);
+    assert_eq!(code, Some(2));
+}
+
+/// Plans of names that are one file name are refused before one is written.
+#[test]
+fn all_grasps_have_files_of_their_own() {
+    let folder = files();
+    std::fs::write(folder.path().join("isaac.yaml"), ISAAC.replace("grasp_0", "a b").replace("grasp_1", "a/b"))
+        .unwrap();
+    let before = contents(folder.path());
+    let arguments = ["import", "isaac.yaml", "--scenario", "cut.toml", "-o", "plans", "--all", "left"];
+    assert_refused(
+        &benchdog(folder.path(), &arguments),
+        "isaac.yaml:18: grasps.a/b: found a name whose plan is a-b.json, as that of a b, expected names that differ in letters, digits, `-`, `_` or `.`",
+    );
+    assert!(contents(folder.path()) == before);
+}
+
 /// The same grasp as a pose in the world: of the file's board frame at the board's pose.
 #[test]
 fn poses_in_the_world() {
@@ -195,8 +239,8 @@ fn what_cannot_be_imported() {
     );
     refused(
         &["cut.toml", "--arm", "left=grasp_0"],
-        "cut.toml: found no keys, expected `format: isaac_grasp` with `grasps`, or messages of moveit_msgs/Grasp with \
-         `grasp_pose`",
+        "cut.toml: found no keys, expected `format: isaac_grasp` with `grasps`, messages of moveit_msgs/Grasp with \
+         `grasp_pose`, or 4x4 matrices",
     );
 }
 

@@ -5,7 +5,7 @@ use benchdog::{
     model::{GRAVITY_W, frames::Pose},
     robot::{ArmState, Chain, InverseKinematics, JointKind, Robot, RobotOptions, Shape, Solution},
 };
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DVector, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 /// Length of a finger of the linkage, distance of its joint from the middle, and of the pad's face inside it, m.
@@ -252,6 +252,26 @@ fn a_clamp_has_jaws_at_the_gap() {
     }
 }
 
+/// Every frame of quarter turns is as the description has it, half turns among them.
+#[test]
+fn a_frame_of_quarter_turns_is_exact() {
+    let quarters: [f64; 5] = [-180.0, -90.0, 0.0, 90.0, 180.0];
+    for [roll, pitch, yaw] in
+        quarters.iter().flat_map(|a| quarters.map(|b| [*a, b])).flat_map(|[a, b]| quarters.map(|c| [a, b, c]))
+    {
+        let clamp = format!(
+            "kind = \"clamp\"\nframe_rpy_deg = [{roll:?}, {pitch:?}, {yaw:?}]\nopening_m = [0.0, 0.05]\npad_centre_m = [0.0, 0.0]\n"
+        );
+        let robot = load(&description(&clamp)).unwrap();
+        let x_wl = robot.link_poses(&robot.positions(&[]));
+        let palm = x_wl[robot.link_index("palm").unwrap()].rotation;
+        let found = palm.inverse() * x_wl[robot.arms[0].gripper.frame_link].rotation;
+        let expected = UnitQuaternion::from_euler_angles(roll.to_radians(), pitch.to_radians(), yaw.to_radians());
+        // Rounding of quarter turns.
+        assert!(found.angle_to(&expected) < 1e-14, "{roll} {pitch} {yaw}: {found}");
+    }
+}
+
 #[test]
 fn all_faults_come_at_once() {
     let bad = description(LINKAGE)
@@ -341,6 +361,57 @@ fn a_xacro_is_told_how_to_be_expanded() {
     let error = load_with(&description(LINKAGE), &parts, &RobotOptions::default()).unwrap_err();
     assert!(error.contains("found 2 links that no joint carries, base, column"), "{error}");
     assert!(error.contains("expand the xacro first: `xacro FILE.xacro -o robot.urdf`"), "{error}");
+}
+
+/// Vendors rename joints and forget those that follow them.
+#[test]
+fn a_joint_that_follows_none_of_the_file_moves_by_itself() {
+    let lost = urdf().replace("joint=\"lift\" multiplier=\"0.5\"", "joint=\"hoist\" multiplier=\"0.5\"");
+    let robot = load_with(&description(LINKAGE), &lost, &RobotOptions::default()).unwrap();
+    let cable = robot.joints.iter().find(|joint| joint.name == "cable").unwrap();
+    assert!(cable.mimic.is_none() && cable.rest == 0.0, "{cable:?}");
+    let expected = "joint cable mimics hoist, which is no joint of the file; it is taken to move by itself";
+    assert_eq!(robot.notes, [expected]);
+    let endless = urdf().replace("multiplier=\"0.5\"", "multiplier=\"inf\"");
+    let error = load_with(&description(LINKAGE), &endless, &RobotOptions::default()).unwrap_err();
+    assert!(error.contains("joint cable: found a mimic with the multiplier inf"), "{error}");
+}
+
+/// The links between the axes of one joint often have no mass.
+#[test]
+fn a_link_between_joints_has_a_mass() {
+    let text = urdf();
+    let start = text.find("<link name=\"carriage\">").unwrap();
+    let end = start + text[start..].find("</link>").unwrap();
+    let light = format!("{}<link name=\"carriage\">{}", &text[..start], &text[end..]);
+    let robot = load_with(&description(LINKAGE), &light, &RobotOptions::default()).unwrap();
+    let carriage = &robot.links[robot.link_index("carriage").unwrap()];
+    assert!(carriage.mass_kg > 0.0 && carriage.mass_kg < 0.01);
+    assert!(carriage.inertia_l.symmetric_eigenvalues().min() > 0.0);
+    assert!(
+        matches!(&robot.notes[..], [note] if note.starts_with("link carriage: it has no mass")),
+        "{:?}",
+        robot.notes
+    );
+    assert_eq!(rail().notes, Vec::<String>::new());
+}
+
+/// A wrong number in the origin of a collision puts a link beside the robot.
+#[test]
+fn a_displaced_collision_is_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("box.stl"), stl_of_box([0.05, 0.05, 0.05], 0.0)).unwrap();
+    let mesh = |origin: &str| format!("<origin xyz=\"{origin}\"/><geometry><mesh filename=\"box.stl\"/></geometry>");
+    let place = "<link name=\"idler\">";
+    for (origin, is_noted) in [("0 0.1 0", false), ("0 1.57 0", true)] {
+        let shapes = format!("{place}<visual>{}</visual><collision>{}</collision>", mesh("0 0 0"), mesh(origin));
+        std::fs::write(folder.path().join("rail.urdf"), urdf().replace(place, &shapes)).unwrap();
+        std::fs::write(folder.path().join("robot.toml"), description(LINKAGE)).unwrap();
+        let robot = Robot::load("robot.toml", folder.path()).unwrap();
+        let expected =
+            "link idler: its collision mesh box.stl is 1.57 m from where the same mesh is drawn; look at its origin";
+        assert_eq!(robot.notes.iter().any(|note| note == expected), is_noted, "{:?}", robot.notes);
+    }
 }
 
 #[test]

@@ -36,5 +36,10 @@ pub fn draw_grasp(
 ) -> Option<EdgeGrasp> {
     (0..GRASP_ATTEMPTS)
         .map(|_| domain::draw_grasp(edge, &robot.board, arm.depth_m, random))
-        .find(|grasp| robot.fits(arm, grasp) && accepts(&grasp.x_og(&robot.board)))
+        // The clearance of the palm takes longest.
+        .find(|grasp| {
+            robot.has_pads_on_board(arm, grasp)
+                && accepts(&grasp.x_og(&robot.board))
+                && robot.keeps_palm_clear(arm, grasp)
+        })
 }

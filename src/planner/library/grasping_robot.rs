@@ -127,10 +127,19 @@ impl GraspingRobot {
 
     /// True if the pads of an arm's gripper lie on the board and its palm is clear of it.
     pub fn fits(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
+        self.has_pads_on_board(arm, grasp) && self.keeps_palm_clear(arm, grasp)
+    }
+
+    /// True if the pads of an arm's gripper lie on the board.
+    pub fn has_pads_on_board(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
+        domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, &self.board)
+    }
+
+    /// True if the palm of an arm's gripper is clear of the board.
+    pub fn keeps_palm_clear(&self, arm: &GraspingArm, grasp: &EdgeGrasp) -> bool {
         let x_go = || grasp.x_og(&self.board).inverse();
         let is_clear = |palm: &Palm| palm.is_clear(&self.collision, &self.board_body, &x_go(), self.clearance_m);
-        domain::pads_on_board(&self.robot.arms[arm.index].gripper, grasp, &self.board)
-            && arm.palm.as_ref().is_none_or(is_clear)
+        arm.palm.as_ref().is_none_or(is_clear)
     }
 
     /// Of the edges that the search grasps the one most opposite to another.
@@ -162,12 +171,5 @@ fn moved_by(robot: &Robot) -> Vec<Option<(usize, usize)>> {
             |arm: usize| robot.arms[arm].joints.iter().position(|&own| own == joint).map(|number| (arm, number));
         (0..robot.arms.len()).find_map(of_arm)
     };
-    let mut moved_by: Vec<Option<(usize, usize)>> = Vec::with_capacity(robot.links.len());
-    // Parents come before children.
-    for link in &robot.links {
-        let by =
-            link.parent_joint.and_then(|joint| driven(joint).or_else(|| moved_by[robot.joints[joint].parent_link]));
-        moved_by.push(by);
-    }
-    moved_by
+    robot.nearest_above(driven)
 }

@@ -25,8 +25,9 @@ pub struct Palm {
 impl Palm {
     /// True if the palm keeps its clearance, m, from a board at this pose in G.
     pub fn is_clear(&self, model: &CollisionModel, board: &BoardBody, x_go: &Pose, clearance_m: f64) -> bool {
-        let distances = self.links.iter().map(|(link, x_gl)| model.link_to_board_m(*link, x_gl, board, x_go));
-        distances.fold(f64::INFINITY, f64::min) > clearance_m
+        self.links.iter().all(|(link, x_gl)| {
+            !model.is_near_board(*link, x_gl, board, x_go, model.board_clearance_m(*link, clearance_m))
+        })
     }
 
     /// The depths that a gripper can have at any of these edges of a board, m: [`DEPTH_M`], from less where its pads lie on the

@@ -1,6 +1,6 @@
 //! Grippers: frame, pads, fingers, opening.
 
-use nalgebra::{Isometry3, Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use toml::Spanned;
 
 use super::Assembler;
@@ -8,10 +8,10 @@ use crate::{
     model::frames::Pose,
     robot::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
-        faces::{mean_y, nearest_face},
+        faces::Face,
         geometry::{PlacedShape, Shape, Visual, VisualGeometry},
         holding::Holding,
-        tree::{Finger, Gripper, JointKind, Linkage, Pad},
+        tree::{Finger, Gripper, Joint, JointKind, Linkage, Pad},
     },
 };
 
@@ -38,9 +38,29 @@ struct Hand {
     holding: Holding,
 }
 
+/// Where the face of a sliding finger is.
+struct SlidingFace {
+    /// Side of the plane y_G = 0, 1 or -1.
+    side: f64,
+    /// 1 if the joint's position increases as the finger opens, else -1.
+    opening_sign: f64,
+    /// The joint's position when closed, m.
+    closed_m: f64,
+    /// Distance of the face from the plane y_G = 0 when closed, m.
+    offset_m: f64,
+}
+
 impl Hand {
     fn pad(&self, name: &str, link: usize, offset_m: f64) -> Pad {
         Pad { name: name.into(), link, size_m: self.pad_size_m, centre_m: self.pad_centre_m, offset_m }
+    }
+
+    /// Where the pads are, along x and z of G, m.
+    fn rectangle(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|axis| {
+            let (centre_m, half_m) = (self.pad_centre_m[axis], self.pad_size_m[axis] / 2.0);
+            [centre_m - half_m, centre_m + half_m]
+        })
     }
 
     fn gripper(&self, fingers: [Finger; 2], linkage: Option<Linkage>) -> Gripper {
@@ -167,7 +187,7 @@ impl Assembler<'_> {
         let half_m = [hand.pad_size_m[0] / 2.0, JAW_THICKNESS_M / 2.0, hand.pad_size_m[1] / 2.0];
         let x_palm_g = hand.x_wl[hand.palm_link].inverse() * self.frame_pose(hand);
         let fingers = [("upper", 1.0), ("lower", -1.0)].map(|(name, side)| {
-            let turn = nalgebra::UnitQuaternion::from_axis_angle(
+            let turn = UnitQuaternion::from_axis_angle(
                 &Vector3::z_axis(),
                 if side > 0.0 { 0.0 } else { std::f64::consts::PI },
             );
@@ -244,10 +264,10 @@ impl Assembler<'_> {
         fingers: &Spanned<Exactly<FingerEntry, 2>>,
     ) -> Option<Gripper> {
         let [first, second] = &fingers.get_ref().0;
-        let (first_link, second_link) =
-            (self.link("pad_link", &first.pad_link), self.link("pad_link", &second.pad_link));
-        let pad_links = [first_link?, second_link?];
-        let linkage = Linkage::new(&self.robot, [hand.frame_link, hand.palm_link], pad_links)
+        let (first_links, second_links) = (self.pad_links(first), self.pad_links(second));
+        let pads = [first_links?, second_links?];
+        let pad_links = [pads[0][0], pads[1][0]];
+        let linkage = Linkage::new(&self.robot, [hand.frame_link, hand.palm_link], pads, Some(hand.rectangle()))
             .and_then(|linkage| linkage.range_m(&self.robot, hand.frame_link).map(|range_m| (linkage, range_m)));
         let (linkage, range_m) = match linkage {
             Ok(found) => found,
@@ -267,6 +287,13 @@ impl Assembler<'_> {
         };
         let fingers = [finger(first, pad_links[0]), finger(second, pad_links[1])];
         Some(hand.gripper(fingers, Some(linkage)))
+    }
+
+    /// The links of a linkage's pad.
+    fn pad_links(&mut self, entry: &FingerEntry) -> Option<Vec<usize>> {
+        let named = std::iter::once(self.link("pad_link", &entry.pad_link));
+        let others: Vec<_> = entry.beside.iter().map(|name| self.link("beside", name)).collect();
+        named.chain(others).collect()
     }
 
     /// Checks the opening against the gaps that the joints allow.
@@ -295,13 +322,21 @@ impl Assembler<'_> {
             self.fault(name.span(), "joint", &joint.name, expected);
             return None;
         }
+        if let Some(other) = finger.beside.first() {
+            self.fault(
+                other.span(),
+                "beside",
+                other.get_ref(),
+                "no such key: one joint carries all of a sliding finger",
+            );
+            return None;
+        }
         if self.carriers[link] != Some(joint_index) || self.robot.links[link].shapes.is_empty() {
             let expected = format!("a link with collision geometry that {} moves", joint.name);
             self.fault(finger.pad_link.span(), "pad_link", finger.pad_link.get_ref(), expected);
             return None;
         }
         let x_gw = hand.x_wl[hand.frame_link].inverse();
-        let x_gl = x_gw * hand.x_wl[link];
         let axis_g = (x_gw * hand.x_wl[hand.palm_link] * joint.x_pj) * joint.axis_j;
         if axis_g.xz().norm() > AXIS_TOLERANCE {
             let found = format!(
@@ -312,18 +347,28 @@ impl Assembler<'_> {
             self.fault(name.span(), "joint", found, expected);
             return None;
         }
-        // `x_wl` has the finger at rest; its side is determined half open.
-        let here = joint.rest;
-        let along_y = axis_g.y.signum();
-        let middle = (joint.lower + joint.upper) / 2.0 - here;
-        let side = (mean_y(&self.robot, link, &x_gl) + along_y * middle).signum();
-        let opening_sign = side * along_y;
-        let closed_m = if opening_sign > 0.0 { joint.lower } else { joint.upper };
-        let offset_m = nearest_face(&self.robot, link, &x_gl, side) + opening_sign * (closed_m - here);
+        let SlidingFace { side, opening_sign, closed_m, offset_m } =
+            self.sliding_face(hand, link, &joint, axis_g.y.signum());
         let pad =
             Pad { name: finger.name.clone(), link, size_m: hand.pad_size_m, centre_m: hand.pad_centre_m, offset_m };
         let max_travel_m = joint.upper - joint.lower;
         Some((Finger { joint: joint_index, closed_m, opening_sign, max_travel_m, pad }, side))
+    }
+
+    /// The face of a finger whose joint moves it along y_G, in the sense of `along_y`, 1 or -1.
+    fn sliding_face(&self, hand: &Hand, link: usize, joint: &Joint, along_y: f64) -> SlidingFace {
+        let x_gw = hand.x_wl[hand.frame_link].inverse();
+        // `x_wl` has the finger at rest; its side is determined half open.
+        let here = joint.rest;
+        let middle = (joint.lower + joint.upper) / 2.0 - here;
+        let of_link = Face::of_links(&self.robot, &[link]);
+        let side = (of_link.mean_y(&self.robot, &hand.x_wl, &x_gw) + along_y * middle).signum();
+        let face = of_link.across(&self.robot, &hand.x_wl, &x_gw, &hand.rectangle());
+        let opening_sign = side * along_y;
+        let closed_m = if opening_sign > 0.0 { joint.lower } else { joint.upper };
+        let nearest_m = face.nearest_m(&self.robot, &hand.x_wl, &x_gw, side);
+        let offset_m = nearest_m + opening_sign * (closed_m - here);
+        SlidingFace { side, opening_sign, closed_m, offset_m }
     }
 }
 
@@ -333,9 +378,14 @@ fn opening_span(entry: &GripperEntry) -> std::ops::Range<usize> {
 }
 
 /// The rotation of a pose; angles in degrees that are quarter turns give exact axes.
-fn squared(pose: &Pose) -> nalgebra::UnitQuaternion<f64> {
+fn squared(pose: &Pose) -> UnitQuaternion<f64> {
     let matrix = pose.rotation.to_rotation_matrix();
     let rounded = matrix.matrix().map(f64::round);
     let is_square = (matrix.matrix() - rounded).amax() < AXIS_TOLERANCE * AXIS_TOLERANCE;
-    if is_square { nalgebra::UnitQuaternion::from_matrix(&rounded) } else { pose.rotation }
+    // Not `UnitQuaternion::from_matrix`: its search for the nearest rotation begins at none and does not leave half turns.
+    if is_square {
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rounded))
+    } else {
+        pose.rotation
+    }
 }

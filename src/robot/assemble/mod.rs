@@ -8,7 +8,7 @@ mod suction;
 
 use std::{collections::BTreeMap, fmt, ops::Range, sync::Arc};
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion};
 use toml::Spanned;
 
 use super::{
@@ -40,6 +40,7 @@ pub(super) fn assemble(
     if !faults.is_empty() {
         return None;
     }
+    weigh_links_between_joints(&mut robot);
     if robot.arms.iter().any(|arm| arm.gripper.linkage.is_some()) {
         robot.with_linkages = Some(Arc::new(robot.clone()));
         let jaws = robot.arms.iter().filter(|arm| arm.gripper.cup.is_none());
@@ -47,6 +48,39 @@ pub(super) fn assemble(
         robot = robot.at_gap(widest_m / 2.0);
     }
     Some(robot)
+}
+
+/// Mass, kg, and radius, m, of the ball that stands for a link without mass between two joints of an arm: less than any part
+/// of an arm, and enough for the engine.
+const BETWEEN_JOINTS_KG: f64 = 1e-3;
+const BETWEEN_JOINTS_M: f64 = 0.01;
+
+/// Gives a mass to links that joints of arms and grippers move and that have none, with what is fixed to them: URDFs describe a
+/// joint with several axes by such links.
+fn weigh_links_between_joints(robot: &mut Robot) {
+    let carriers = robot.active_carriers();
+    let active = robot.active_joints();
+    for joint in (0..robot.joints.len()).filter(|&joint| active[joint]) {
+        let carried = robot.links.iter().zip(&carriers).filter(|(_, carrier)| **carrier == Some(joint));
+        let carried: Vec<_> = carried.map(|(link, _)| link).collect();
+        if carried.iter().any(|link| link.mass_kg > 0.0) {
+            continue;
+        }
+        if let Some(part) = carried.iter().find(|link| !link.shapes.is_empty()) {
+            let name = &part.name;
+            robot
+                .notes
+                .push(format!("link {name}: it has no mass, nor has what is fixed to it; a simulation needs its mass"));
+            continue;
+        }
+        let link = &mut robot.links[robot.joints[joint].child_link];
+        link.mass_kg = BETWEEN_JOINTS_KG;
+        link.inertia_l = Matrix3::identity() * (0.4 * BETWEEN_JOINTS_KG * BETWEEN_JOINTS_M * BETWEEN_JOINTS_M);
+        robot.notes.push(format!(
+            "link {}: it has no mass, nor has what is fixed to it; {BETWEEN_JOINTS_KG} kg is taken since a joint moves it",
+            link.name
+        ));
+    }
 }
 
 /// A robot without arms.

@@ -8,6 +8,12 @@ use crate::{model::frames::Pose, robot::chain::Chain};
 /// removes the resulting error of the angles.
 const STRUCTURE_TOLERANCE: f64 = 1e-5;
 
+/// The nearest rotation has entries this near to axes within [`STRUCTURE_TOLERANCE`]; a turn that was not found has not.
+const NEAR_AXES: f64 = 1e-3;
+
+/// Steps of the search for a rotation: its error falls with a power of two at least in each, to that of rounding.
+const MOST_STEPS: usize = 64;
+
 /// Minimum shoulder offset of the closed form, m.
 const MIN_SHOULDER_OFFSET_M: f64 = 1e-3;
 
@@ -96,7 +102,37 @@ impl Geometry {
 
 /// A frame with these axes.
 fn frame(origin: Vector3<f64>, axes: [Vector3<f64>; 3]) -> Pose {
-    // Orthonormalises axes that are normal only within the tolerance.
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&Matrix3::from_columns(&axes)));
-    Isometry3::from_parts(origin.into(), rotation)
+    // Orthonormalises axes that are normal only within the tolerance. The search for the nearest rotation begins at the identity,
+    // and does not leave it for half turns; then it begins at the axes.
+    let axes = Matrix3::from_columns(&axes);
+    let mut rotation = Rotation3::from_matrix(&axes);
+    if (rotation.matrix() - axes).amax() > NEAR_AXES {
+        let start = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+        rotation = Rotation3::from_matrix_eps(&axes, f64::EPSILON, MOST_STEPS, start.to_rotation_matrix());
+    }
+    Isometry3::from_parts(origin.into(), UnitQuaternion::from_rotation_matrix(&rotation))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Unit;
+
+    use super::*;
+
+    #[test]
+    fn a_frame_has_its_axes_for_half_turns_too() {
+        let directions = [Vector3::x(), Vector3::y(), Vector3::z(), Vector3::new(1.0, -2.0, 3.0)];
+        for (number, direction) in directions.into_iter().enumerate() {
+            for angle_rad in [0.0, 1.0, std::f64::consts::PI] {
+                let turn = Rotation3::from_axis_angle(&Unit::new_normalize(direction), angle_rad);
+                let axes = [0, 1, 2].map(|axis| turn.matrix().column(axis).into_owned());
+                let found = frame(Vector3::zeros(), axes).rotation.to_rotation_matrix();
+                // Rounding of products of numbers up to 1.
+                assert!(
+                    (found.matrix() - turn.matrix()).amax() < 1e-14,
+                    "direction {number}, {angle_rad} rad: {found}"
+                );
+            }
+        }
+    }
 }

@@ -56,8 +56,22 @@ fn read_limits(joint: &urdf_rs::Joint) -> Result<Option<[f64; 2]>, String> {
     }
 }
 
-/// Sets which joints follow which. Where the leader of one follows another itself, both steps become one.
-pub(super) fn resolve_mimics(robot: &urdf_rs::Robot, joints: &mut [Joint]) -> Result<(), String> {
+/// Sets which joints follow which. Where the leader of one follows another itself, both steps become one. A joint whose leader
+/// the file does not have moves by itself, with a note.
+pub(super) fn resolve_mimics(
+    robot: &urdf_rs::Robot,
+    joints: &mut [Joint],
+    notes: &mut Vec<String>,
+) -> Result<(), String> {
+    for joint in &robot.joints {
+        let leader = joint.mimic.as_ref().map(|mimic| &mimic.joint);
+        if let Some(leader) = leader.filter(|leader| robot.joints.iter().all(|other| other.name != **leader)) {
+            let name = &joint.name;
+            notes.push(format!(
+                "joint {name} mimics {leader}, which is no joint of the file; it is taken to move by itself"
+            ));
+        }
+    }
     for index in 0..joints.len() {
         let (mut multiplier, mut offset, mut at) = (1.0, 0.0, index);
         // As many steps as there are joints: more would be a circle.
@@ -65,19 +79,19 @@ pub(super) fn resolve_mimics(robot: &urdf_rs::Robot, joints: &mut [Joint]) -> Re
             let name = &joints[at].name;
             let mimic = robot.joints.iter().find(|joint| joint.name == *name).and_then(|joint| joint.mimic.as_ref());
             let Some(mimic) = mimic.filter(|_| joints[at].kind != JointKind::Fixed) else { break };
-            let leader = joints.iter().position(|joint| joint.name == mimic.joint);
+            let Some(leader) = joints.iter().position(|joint| joint.name == mimic.joint) else { break };
             let [own_multiplier, own_offset] = [mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0)];
-            let Some(leader) = leader.filter(|_| own_multiplier.is_finite() && own_offset.is_finite()) else {
-                let found = &mimic.joint;
+            if !(own_multiplier.is_finite() && own_offset.is_finite()) {
                 return Err(format!(
-                    "joint {name}: found a joint that mimics \"{found}\", expected a joint of this file and finite numbers"
+                    "joint {name}: found a mimic with the multiplier {own_multiplier} and the offset {own_offset}, expected finite \
+                     numbers"
                 ));
-            };
+            }
             offset += multiplier * own_offset;
             multiplier *= own_multiplier;
             at = leader;
         }
-        if joints[at].kind != JointKind::Fixed && is_follower(robot, &joints[at].name) {
+        if joints[at].kind != JointKind::Fixed && is_follower(robot, joints, &joints[at].name) {
             return Err(format!("joint {}: found joints that mimic each other in a circle", joints[index].name));
         }
         if at != index {
@@ -87,6 +101,7 @@ pub(super) fn resolve_mimics(robot: &urdf_rs::Robot, joints: &mut [Joint]) -> Re
     Ok(())
 }
 
-fn is_follower(robot: &urdf_rs::Robot, name: &str) -> bool {
-    robot.joints.iter().any(|joint| joint.name == name && joint.mimic.is_some())
+fn is_follower(robot: &urdf_rs::Robot, joints: &[Joint], name: &str) -> bool {
+    let is_known = |mimic: &urdf_rs::Mimic| joints.iter().any(|joint| joint.name == mimic.joint);
+    robot.joints.iter().any(|joint| joint.name == name && joint.mimic.as_ref().is_some_and(is_known))
 }

@@ -29,6 +29,9 @@ const MENDED_INERTIA: f64 = 0.1;
 /// Eigenvalues below this are those of a part of some grams, which no result depends on, kg m^2.
 const NEGLIGIBLE_INERTIA_KG_M2: f64 = 1e-6;
 
+/// A collision mesh this far from where the same mesh is drawn is displaced by mistake, m.
+const DISPLACED_M: f64 = 0.3;
+
 /// A shape with its pose in a frame.
 type PosedShape = (Isometry3<f64>, Shape);
 
@@ -83,6 +86,7 @@ impl Reader<'_> {
                 Err(problem) => read.problems.push(at(problem)),
             }
         }
+        read.notes.extend(link.collision.iter().find_map(|collision| displaced(collision, &link.visual)).map(at));
         for visual in &link.visual {
             match self.visual(visual) {
                 Ok(visuals) => read.link.visuals.extend(visuals),
@@ -130,6 +134,18 @@ impl Reader<'_> {
         let path = self.packages.resolve(filename).map_err(|problem| format!("mesh: {problem}"))?;
         Ok(MeshFile { path, scale })
     }
+}
+
+/// A note on a collision that has the mesh of a visual far from it: an origin with a wrong number.
+fn displaced(collision: &urdf_rs::Collision, visuals: &[urdf_rs::Visual]) -> Option<String> {
+    let Geometry::Mesh { filename, .. } = &collision.geometry else { return None };
+    let same = |visual: &&urdf_rs::Visual| matches!(&visual.geometry, Geometry::Mesh { filename: other, .. } if other == filename);
+    let away_m =
+        |visual: &urdf_rs::Visual| (Vector3::from(collision.origin.xyz.0) - Vector3::from(visual.origin.xyz.0)).norm();
+    let least_m = visuals.iter().filter(same).map(away_m).min_by(f64::total_cmp)?;
+    (least_m > DISPLACED_M).then(|| {
+        format!("its collision mesh {filename} is {least_m:.2} m from where the same mesh is drawn; look at its origin")
+    })
 }
 
 /// The convex primitives of a geometry that is no mesh, each with its pose. A capsule is a cylinder with a sphere at either end.

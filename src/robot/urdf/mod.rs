@@ -76,7 +76,7 @@ fn read_tree(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tree> {
         let problem = format!("link {}: found no chain of joints from the root {root}, expected one tree", lost.name);
         faults.add_to(source.file, problem);
     }
-    let mimics = joints::resolve_mimics(&robot, &mut tree.joints);
+    let mimics = joints::resolve_mimics(&robot, &mut tree.joints, &mut tree.notes);
     faults.keep(source.file, mimics)?;
     Some(tree)
 }

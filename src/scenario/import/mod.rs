@@ -1,10 +1,11 @@
-//! Grasps in the files of grasp planners: `isaac_grasp` and `moveit_msgs/Grasp`, in YAML.
+//! Grasps in the files of grasp planners: `isaac_grasp` and `moveit_msgs/Grasp` in YAML, and bare 4x4 matrices.
 //!
 //! A file states poses of a gripper in a frame of its own; which frame of the board and of the robot that is, the user says.
 //! The opening of the gripper is not read: our fingers close on the board's thickness.
 
 mod grasp;
 mod isaac;
+mod matrices;
 mod moveit;
 mod yaml;
 
@@ -46,20 +47,7 @@ impl ForeignGrasps {
 /// # Errors
 /// If the file cannot be read, is of no known format, or has a pose that is not rigid or a name twice.
 pub fn read_grasps(path: &Path) -> Result<ForeignGrasps, InputError> {
-    let text = read_text(path)?;
-    let keys = yaml::top_keys(path, &text)?;
-    let has = |key: &str| keys.iter().any(|found| found == key);
-    let grasps = if has("grasps") {
-        isaac::grasps(path, &text)?
-    } else if has("grasp_pose") {
-        moveit::grasps(path, &text)?
-    } else {
-        let found = if keys.is_empty() { "no keys".to_owned() } else { format!("the keys {}", keys.join(", ")) };
-        let expected =
-            "`format: isaac_grasp` with `grasps`, or messages of moveit_msgs/Grasp with `grasp_pose`".to_owned();
-        return Err(InputError::file(path, InputErrorKind::Value { found, expected }));
-    };
-    let found = ForeignGrasps { path: path.to_owned(), grasps };
+    let found = ForeignGrasps { path: path.to_owned(), grasps: grasps_of(path, &read_text(path)?)? };
     let Some(_) = found.grasps.first() else {
         let (found, expected) = ("no grasp".to_owned(), "at least one".to_owned());
         return Err(InputError::file(path, InputErrorKind::Value { found, expected }));
@@ -70,6 +58,24 @@ pub fn read_grasps(path: &Path) -> Result<ForeignGrasps, InputError> {
         }
     }
     Ok(found)
+}
+
+fn grasps_of(path: &Path, text: &str) -> Result<Vec<ForeignGrasp>, InputError> {
+    if matrices::is_matrices(text) {
+        return matrices::grasps(path, text);
+    }
+    let keys = yaml::top_keys(path, text)?;
+    let has = |key: &str| keys.iter().any(|found| found == key);
+    if has("grasps") {
+        return isaac::grasps(path, text);
+    }
+    if has("grasp_pose") {
+        return moveit::grasps(path, text);
+    }
+    let found = if keys.is_empty() { "no keys".to_owned() } else { format!("the keys {}", keys.join(", ")) };
+    let expected =
+        "`format: isaac_grasp` with `grasps`, messages of moveit_msgs/Grasp with `grasp_pose`, or 4x4 matrices";
+    Err(InputError::file(path, InputErrorKind::Value { found, expected: expected.into() }))
 }
 
 #[cfg(test)]

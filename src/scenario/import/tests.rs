@@ -93,6 +93,54 @@ fn messages_of_moveit() {
     );
 }
 
+/// The same two poses in all forms.
+#[test]
+fn bare_matrices() {
+    let isaac = read(ISAAC).unwrap();
+    let expected = [isaac.grasps[0].x_fh, isaac.grasps[1].x_fh];
+    let turned = ["1 0 0 0.1", "0 -1 0 0.2", "0 0 -1 3e-1", "0 0 0 1"];
+    let unmoved = ["1.0,0,0,0", "0,1,0,0", "0,0,1,0", "0,0,0,1"];
+    let list = |rows: [&str; 4]| format!("[{}]", rows.map(|row| format!("[{}]", row.replace(' ', ","))).join(", "));
+    let texts = [
+        format!("# from a planner\n{}\n\n{}\n", turned.join("\n"), unmoved.join("\n")),
+        format!("{}\n{}\n", turned.join("\t"), unmoved.join(",")),
+        format!("[{},\n {}]", list(turned), list(unmoved)),
+        format!("[\n  {},\n  {}\n]\n", list(turned), list(unmoved)),
+    ];
+    for text in &texts {
+        let grasps = read(text).unwrap().grasps;
+        assert_eq!(
+            grasps.iter().map(|grasp| grasp.name.as_str()).collect::<Vec<_>>(),
+            ["grasp_0", "grasp_1"],
+            "{text}"
+        );
+        assert!(grasps.iter().all(|grasp| grasp.frame == "object" && grasp.confidence.is_none()));
+        for (grasp, expected) in grasps.iter().zip(&expected) {
+            assert!((grasp.x_fh.to_homogeneous() - expected.to_homogeneous()).amax() < 1e-15, "{text}");
+        }
+    }
+    assert_eq!(read(&list(turned)).unwrap().grasps[0].x_fh.translation, expected[0].translation);
+    let rows = &texts[0];
+    for (replace, with, message) in [
+        (
+            "0 -1 0 0.2",
+            "0 -1 0",
+            "grasps.yaml:3: matrix: found 3 numbers, expected rows of 4 numbers, four a matrix, or of 16",
+        ),
+        ("0 -1 0 0.2", "0 -1 x 0.2", "grasps.yaml:3: matrix: found \"x\", expected a number"),
+        ("0 -1 0 0.2", "0 -2 0 0.2", "grasps.yaml:2: grasp_0: "),
+        (
+            "0 0 0 1\n",
+            "",
+            "grasps.yaml:7: matrix: found a matrix with 12 of 16 numbers, expected four rows of 4 numbers",
+        ),
+    ] {
+        let error = read(&rows.replacen(replace, with, 1)).unwrap_err();
+        assert!(error.starts_with(message), "{error}\n{message}");
+    }
+    assert!(read("[[1, 0, 0, 0], [0, 1, 0]]").unwrap_err().starts_with("grasps.yaml:1: "));
+}
+
 #[test]
 fn errors_name_the_line_and_the_key() {
     for (text, replace, with, message) in [
@@ -134,11 +182,13 @@ fn errors_name_the_line_and_the_key() {
     for (text, message) in [
         (
             "",
-            "grasps.yaml: found no keys, expected `format: isaac_grasp` with `grasps`, or messages of moveit_msgs/Grasp with `grasp_pose`",
+            "grasps.yaml: found no keys, expected `format: isaac_grasp` with `grasps`, messages of moveit_msgs/Grasp with \
+             `grasp_pose`, or 4x4 matrices",
         ),
         (
             "poses: 3\n",
-            "grasps.yaml: found the keys poses, expected `format: isaac_grasp` with `grasps`, or messages of moveit_msgs/Grasp with `grasp_pose`",
+            "grasps.yaml: found the keys poses, expected `format: isaac_grasp` with `grasps`, messages of moveit_msgs/Grasp with \
+             `grasp_pose`, or 4x4 matrices",
         ),
         ("format: isaac_grasp\ngrasps: {}\n", "grasps.yaml: found no grasp, expected at least one"),
     ] {

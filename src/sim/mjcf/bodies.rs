@@ -10,7 +10,7 @@ use super::{
         pad_springs::PadSpring,
     },
     exported_arm::ExportedArm,
-    scenery,
+    scenery::{self, DrawnRobot},
     xml::{Xml, empty, geom, mesh_geom, numbers, pose_attributes, site, with},
 };
 use crate::{
@@ -27,12 +27,13 @@ const BOARD_RGBA: [f64; 4] = [0.82, 0.65, 0.42, 1.0];
 /// order of MuJoCo's coordinates.
 pub(super) fn children(
     xml: &mut Xml,
-    robot: &Robot,
+    drawn: &DrawnRobot<'_>,
     arm: &ExportedArm<'_>,
     [drive_kg, timestep_s]: [f64; 2],
     parent: Option<usize>,
     positions: &mut Vec<f64>,
 ) -> io::Result<()> {
+    let robot = drawn.robot;
     let (hand_body, x_bc) = arm.hand();
     if hand_body == parent {
         site(xml, &format!("{} hand", arm.hold.name), &x_bc)?;
@@ -53,11 +54,11 @@ pub(super) fn children(
                 pad_springs(xml, &arm.hold.name, springs, timestep_s)?;
                 positions.extend([0.0; 6]);
             }
-            scenery::moving(xml, robot, arm, index)?;
+            scenery::moving(xml, drawn, arm, index)?;
             if let Some(k) = finger {
                 pads(xml, robot, arm, k, body)?;
             }
-            children(xml, robot, arm, [drive_kg, timestep_s], Some(index), positions)
+            children(xml, drawn, arm, [drive_kg, timestep_s], Some(index), positions)
         })?;
     }
     Ok(())

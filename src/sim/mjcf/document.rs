@@ -17,7 +17,7 @@ use super::{
     contacts::{contact_pairs, couplings, option, timestep_s},
     data::{custom, largest_wrench_o},
     exported_arm::ExportedArm,
-    scenery,
+    scenery::{self, DrawnRobot},
     xml::{Xml, empty, numbers, pose_numbers},
 };
 use crate::{
@@ -78,13 +78,14 @@ fn document(xml: &mut Xml, exported: &Exported<'_>) -> io::Result<()> {
         // The part of the scene that a viewer shows at first.
         empty(xml, "statistic", &[("center", numbers(board_w_m.as_slice())), ("extent", "1".into())])?;
         plate_mesh(xml, object)?;
-        scenery::assets(xml, robot)?;
+        let drawn = DrawnRobot::new(robot);
+        scenery::assets(xml, &drawn)?;
         let mut positions = Vec::new();
         let inertia = [drive_inertia_kg(object), timestep_s(&conditions.settings)];
         xml.create_element("worldbody").write_inner_content(|xml| {
-            scenery::fixed(xml, robot, arms, &board_w_m)?;
+            scenery::fixed(xml, &drawn, arms, &board_w_m)?;
             for arm in arms {
-                children(xml, robot, arm, inertia, None, &mut positions)?;
+                children(xml, &drawn, arm, inertia, None, &mut positions)?;
             }
             board(xml, object, arms, &plan.operation.x_ot.translation.vector)
         })?;

@@ -22,10 +22,28 @@ const PLAIN_RGBA: [f64; 4] = [0.6, 0.6, 0.6, 1.0];
 /// Half sides of the floor, m, and the spacing of its grid.
 const FLOOR_M: [f64; 3] = [3.0, 3.0, 0.1];
 
+/// A robot and what is drawn of each of its links, whose meshes are read once.
+pub(super) struct DrawnRobot<'a> {
+    pub robot: &'a Robot,
+    parts: Vec<Vec<DrawnPart>>,
+}
+
+impl<'a> DrawnRobot<'a> {
+    /// Reads the meshes.
+    pub fn new(robot: &'a Robot) -> Self {
+        Self { robot, parts: (0..robot.links.len()).map(|link| robot.drawn(link)).collect() }
+    }
+
+    /// All links and what is drawn of them.
+    fn links(&self) -> impl Iterator<Item = (&Link, &[DrawnPart])> {
+        self.robot.links.iter().zip(self.parts.iter().map(Vec::as_slice))
+    }
+}
+
 /// Floor, light, camera, and the links that no arm of the plan moves.
 pub(super) fn fixed(
     xml: &mut Xml,
-    robot: &Robot,
+    robot: &DrawnRobot<'_>,
     arms: &[ExportedArm<'_>],
     board_w_m: &Vector3<f64>,
 ) -> io::Result<()> {
@@ -36,33 +54,33 @@ pub(super) fn fixed(
     let mut camera: Vec<_> = camera.into_iter().map(|(key, value)| (key, value.to_owned())).collect();
     camera.push(("pos", numbers(eye_m.as_slice())));
     empty(xml, "camera", &camera)?;
-    let x_wf = Isometry3::translation(0.0, 0.0, robot.floor_z_m);
+    let x_wf = Isometry3::translation(0.0, 0.0, robot.robot.floor_z_m);
     geom(xml, "floor", ("plane", &FLOOR_M), &x_wf, (SEEN_GROUP, [0.8, 0.8, 0.8, 1.0]))?;
     let Some(first) = arms.first() else { return Ok(()) };
-    for (index, link) in robot.links.iter().enumerate() {
+    for (index, (link, parts)) in robot.links().enumerate() {
         if arms.iter().all(|arm| arm.bodies.placements[index].body.is_none()) {
-            drawn(xml, link, &robot.drawn(index), &first.bodies.placements[index].x_bl)?;
+            drawn(xml, link, parts, &first.bodies.placements[index].x_bl)?;
         }
     }
     Ok(())
 }
 
 /// What is drawn of all links that are fixed to a moving body.
-pub(super) fn moving(xml: &mut Xml, robot: &Robot, arm: &ExportedArm<'_>, body: usize) -> io::Result<()> {
-    let links = robot.links.iter().zip(&arm.bodies.placements).enumerate();
-    for (index, (link, placement)) in links.filter(|(_, (_, placement))| placement.body == Some(body)) {
-        drawn(xml, link, &robot.drawn(index), &placement.x_bl)?;
+pub(super) fn moving(xml: &mut Xml, robot: &DrawnRobot<'_>, arm: &ExportedArm<'_>, body: usize) -> io::Result<()> {
+    let links = robot.links().zip(&arm.bodies.placements);
+    for ((link, parts), placement) in links.filter(|(_, placement)| placement.body == Some(body)) {
+        drawn(xml, link, parts, &placement.x_bl)?;
     }
     Ok(())
 }
 
 /// The meshes that the geoms of the robot name. MuJoCo needs no volume of what has no mass.
-pub(super) fn assets(xml: &mut Xml, robot: &Robot) -> io::Result<()> {
-    let meshes = robot.links.iter().enumerate().flat_map(|(index, link)| {
-        let parts = robot.drawn(index).into_iter().enumerate();
-        parts.filter_map(|(number, part)| surface(&part.form).map(|surface| (part_name(link, number), surface.clone())))
+pub(super) fn assets(xml: &mut Xml, robot: &DrawnRobot<'_>) -> io::Result<()> {
+    let meshes = robot.links().flat_map(|(link, parts)| {
+        let parts = parts.iter().enumerate();
+        parts.filter_map(|(number, part)| surface(&part.form).map(|surface| (part_name(link, number), surface)))
     });
-    let meshes: Vec<(String, TriangleMesh)> = meshes.collect();
+    let meshes: Vec<(String, &TriangleMesh)> = meshes.collect();
     if meshes.is_empty() {
         return Ok(());
     }
