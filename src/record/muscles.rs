@@ -48,16 +48,16 @@ pub(super) fn log_bellies(messages: &mut Messages, bellies: &[MuscleBelly]) -> R
 
 /// Logs the chart: a bar for each of the busiest muscles over an axis in the colours of the scale.
 pub(super) fn log_chart(messages: &mut Messages, work: &MuscleWork) -> Result<(), RecordError> {
-    let bar = |row: usize, muscle: &BusyMuscle| strip(row_y(row) + 0.3 * ROW, [0.0, muscle.activation]);
+    let bar = |row: usize, muscle: &BusyMuscle| strip(row_y(row) + 0.72 * ROW, [0.0, muscle.activation]);
     let rows = || work.busiest.iter().enumerate();
     let bars = LineStrips2D::new(rows().map(|(row, muscle)| bar(row, muscle)))
         .with_radii([BAR_RADIUS])
         .with_colors(work.busiest.iter().map(|muscle| palette::activation(muscle.activation)));
     messages.log_static(&entity(&[CHART, "bars"]), &bars)?;
-    let names = rows().map(|(row, muscle)| (row_y(row), 0.25, format!("{muscle}, {}", muscle.region)));
+    let names = rows().map(|(row, muscle)| (row_y(row), FULL_ACTIVATION / 2.0, muscle.to_string()));
     messages.log_static(&entity(&[CHART, "names"]), &texts(names))?;
 
-    let axis_y = row_y(work.busiest.len()) + 0.2 * ROW;
+    let axis_y = row_y(work.busiest.len()) + 0.3 * ROW;
     let piece = |index: usize| index as f64 / AXIS_PIECES as f64 * FULL_ACTIVATION;
     let axis = LineStrips2D::new((0..AXIS_PIECES).map(|index| strip(axis_y, [piece(index), piece(index + 1)])))
         .with_radii([BAR_RADIUS / 2.0])
@@ -67,13 +67,13 @@ pub(super) fn log_chart(messages: &mut Messages, work: &MuscleWork) -> Result<()
     let endless = LineStrips2D::new([endless]).with_radii([0.15]).with_colors([palette::points()]);
     messages.log_static(&entity(&[CHART, "endless"]), &endless)?;
     let ticks = [(0.01, "0"), (ENDLESS_ACTIVATION, "15 %: for hours"), (0.3, "30 %"), (0.48, "50 %")];
-    let ticks = ticks.map(|(activation, text)| (axis_y + 0.2 * ROW, activation, text.to_owned()));
+    let ticks = ticks.map(|(activation, text)| (axis_y + 0.15 * ROW, activation, text.to_owned()));
     messages.log_static(&entity(&[CHART, "ticks"]), &texts(ticks.into_iter()))
 }
 
 /// The part of the chart's plane to show: its ranges to the right and down.
 pub(super) fn bounds(work: &MuscleWork) -> [[f64; 2]; 2] {
-    [[-0.05 * WIDTH, 1.05 * WIDTH], [-0.5 * ROW, row_y(work.busiest.len()) + 1.2 * ROW]]
+    [[-0.05 * WIDTH, 1.05 * WIDTH], [-0.3 * ROW, row_y(work.busiest.len()) + 1.2 * ROW]]
 }
 
 /// Top of a row.

@@ -34,10 +34,10 @@ pub(super) fn sentence(work: &MuscleWork) -> String {
 }
 
 /// Width of the chart, px.
-const WIDTH_PX: f64 = 700.0;
+const WIDTH_PX: f64 = 730.0;
 
 /// Left and right edge of the bars, px. Names are to the left, regions to the right.
-const BARS_PX: [f64; 2] = [250.0, 520.0];
+const BARS_PX: [f64; 2] = [290.0, 550.0];
 
 /// Bottom edge of the chart's title and of the line below it, px.
 const HEAD_PX: f64 = 46.0;

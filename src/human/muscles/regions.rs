@@ -81,3 +81,97 @@ impl Anchor {
         distal.lerp(&proximal, share) + rotation * Vector3::new(x, y, 0.0) * radius_m
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Isometry3, Point3};
+
+    use crate::{
+        human::{
+            ArmAngles, BodyPart, Human, Side,
+            testing::{HANDS, generator, leaning, random_angles, worker},
+        },
+        model::{frames::Pose, muscle_work::MuscleBelly, operation::OperationKind, scenario::Hand, wrench::Wrench},
+    };
+
+    fn bellies_w(human: &Human, x_wb: &Pose, q_rad: &ArmAngles) -> Vec<MuscleBelly> {
+        let effort = human.muscle_program(q_rad, x_wb, &Wrench::default()).solve().unwrap();
+        human.muscle_bellies_w(x_wb, q_rad, &effort)
+    }
+
+    fn ends_w(human: &Human, x_wb: &Pose, q_rad: &ArmAngles) -> Vec<Point3<f64>> {
+        bellies_w(human, x_wb, q_rad).iter().flat_map(|belly| belly.ends_w).collect()
+    }
+
+    /// The middle of the spindle of a region of an upright person, in B, m.
+    fn middle_b(q_rad: &ArmAngles, name: &str) -> Point3<f64> {
+        let human = worker(Hand::Right, OperationKind::Drill);
+        let bellies = bellies_w(&human, &Pose::identity(), q_rad);
+        let [from, to] = &bellies.iter().find(|belly| belly.region == name).unwrap().ends_w;
+        nalgebra::center(from, to)
+    }
+
+    #[test]
+    fn each_region_is_on_the_side_of_the_arm_that_its_name_tells() {
+        // A hanging right arm: forward is x, outward is -y.
+        let at = |name| middle_b(&[0.0; 7], name);
+        let [front, side, back] = ["front", "side", "back"].map(|part| at(&*format!("{part} of the shoulder")));
+        assert!(front.x > side.x + 0.01 && side.x > back.x + 0.01 && side.y < front.y.min(back.y));
+        assert!(at("front of the upper arm").x > at("back of the upper arm").x + 0.05);
+        assert!(at("chest").x > 0.05 && at("back").x < -0.04 && at("rotator cuff").x < -0.02);
+        // Forearm and hand neither turned nor bent: the palm faces the body, the thumb is in front.
+        let [palm, back, thumb] =
+            ["palm side", "back", "thumb side"].map(|part| at(&*format!("{part} of the forearm")));
+        assert!(palm.y > back.y + 0.04 && thumb.x > palm.x.max(back.x) + 0.01);
+        // The forearm held forward, its palm turned down and up: the wrist's end of the flexors follows.
+        let height = |turn_rad| middle_b(&[0.0, 0.0, 0.0, 1.5, turn_rad, 0.0, 0.0], "palm side of the forearm").z;
+        let heights = [1.3, 0.0, -1.3].map(height);
+        let turns_the_same_way = (heights[0] - heights[1]) * (heights[1] - heights[2]) > 0.0;
+        assert!(turns_the_same_way && (heights[0] - heights[2]).abs() > 0.02, "{heights:?}");
+    }
+
+    #[test]
+    fn spindles_of_the_arm_touch_it_and_all_move_with_the_body() {
+        let mut rng = generator(19);
+        let human = leaning(Hand::Right, 10.0);
+        let x_wb = Isometry3::new([0.4, -0.3, 0.2].into(), [0.1, 0.2, 2.0].into());
+        for _ in 0..50 {
+            let q_rad = random_angles(human.arm(), &mut rng);
+            let bellies = bellies_w(&human, &Pose::identity(), &q_rad);
+            let moved = bellies_w(&human, &x_wb, &q_rad);
+            let capsules = human.capsules_w(&Pose::identity(), &q_rad);
+            let arm = [BodyPart::UpperArm(Side::Working), BodyPart::Forearm(Side::Working)];
+            let arm: Vec<_> = capsules.iter().filter(|capsule| arm.contains(&capsule.name)).collect();
+            for (belly, moved) in bellies.iter().zip(&moved) {
+                for (end, moved_end) in belly.ends_w.iter().zip(&moved.ends_w) {
+                    assert!((x_wb * end - moved_end).norm() < 1e-12, "{}", belly.region);
+                }
+                if !belly.region.ends_with("arm") {
+                    continue;
+                }
+                for end in &belly.ends_w {
+                    let outside_m = |capsule: &&crate::human::Capsule| {
+                        let axis = capsule.p1_w - capsule.p0_w;
+                        let along = ((end - capsule.p0_w).dot(&axis) / axis.norm_squared()).clamp(0.0, 1.0);
+                        (end - (capsule.p0_w + axis * along)).norm() - capsule.radius_m
+                    };
+                    let least_m = arm.iter().map(outside_m).fold(f64::INFINITY, f64::min);
+                    assert!(least_m < 1e-9, "{}: an end is {least_m} m outside of the arm", belly.region);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_left_arm_has_the_mirror_image_of_a_right_one() {
+        let mut rng = generator(20);
+        let [right, left] = HANDS.map(|hand| worker(hand, OperationKind::Drill));
+        for _ in 0..20 {
+            let q_rad = random_angles(right.arm(), &mut rng);
+            let [of_right, of_left] = [&right, &left].map(|human| ends_w(human, &Pose::identity(), &q_rad));
+            for (right, left) in of_right.iter().zip(&of_left) {
+                assert!((Point3::new(right.x, -right.y, right.z) - left).norm() < 1e-12);
+            }
+        }
+    }
+}
