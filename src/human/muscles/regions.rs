@@ -114,14 +114,13 @@ mod tests {
     #[test]
     fn each_region_is_on_the_side_of_the_arm_that_its_name_tells() {
         // A hanging right arm: forward is x, outward is -y.
-        let at = |name| middle_b(&[0.0; 7], name);
-        let [front, side, back] = ["front", "side", "back"].map(|part| at(&*format!("{part} of the shoulder")));
+        let at = |name: &str| middle_b(&[0.0; 7], name);
+        let [front, side, back] = ["front", "side", "back"].map(|part| at(&format!("{part} of the shoulder")));
         assert!(front.x > side.x + 0.01 && side.x > back.x + 0.01 && side.y < front.y.min(back.y));
         assert!(at("front of the upper arm").x > at("back of the upper arm").x + 0.05);
         assert!(at("chest").x > 0.05 && at("back").x < -0.04 && at("rotator cuff").x < -0.02);
         // Forearm and hand neither turned nor bent: the palm faces the body, the thumb is in front.
-        let [palm, back, thumb] =
-            ["palm side", "back", "thumb side"].map(|part| at(&*format!("{part} of the forearm")));
+        let [palm, back, thumb] = ["palm side", "back", "thumb side"].map(|part| at(&format!("{part} of the forearm")));
         assert!(palm.y > back.y + 0.04 && thumb.x > palm.x.max(back.x) + 0.01);
         // The forearm held forward, its palm turned down and up: the wrist's end of the flexors follows.
         let height = |turn_rad| middle_b(&[0.0, 0.0, 0.0, 1.5, turn_rad, 0.0, 0.0], "palm side of the forearm").z;
