@@ -48,7 +48,7 @@ pub(super) fn log_bellies(messages: &mut Messages, bellies: &[MuscleBelly]) -> R
 
 /// Logs the chart: a bar for each of the busiest muscles over an axis in the colours of the scale.
 pub(super) fn log_chart(messages: &mut Messages, work: &MuscleWork) -> Result<(), RecordError> {
-    let bar = |row: usize, muscle: &BusyMuscle| strip(row_y(row) + 0.72 * ROW, [0.0, muscle.activation]);
+    let bar = |row: usize, muscle: &BusyMuscle| strip(row_y(row) + 0.82 * ROW, [0.0, muscle.activation]);
     let rows = || work.busiest.iter().enumerate();
     let bars = LineStrips2D::new(rows().map(|(row, muscle)| bar(row, muscle)))
         .with_radii([BAR_RADIUS])
@@ -57,23 +57,28 @@ pub(super) fn log_chart(messages: &mut Messages, work: &MuscleWork) -> Result<()
     let names = rows().map(|(row, muscle)| (row_y(row), FULL_ACTIVATION / 2.0, muscle.to_string()));
     messages.log_static(&entity(&[CHART, "names"]), &texts(names))?;
 
-    let axis_y = row_y(work.busiest.len()) + 0.3 * ROW;
+    let axis_y = row_y(work.busiest.len()) + 0.4 * ROW;
     let piece = |index: usize| index as f64 / AXIS_PIECES as f64 * FULL_ACTIVATION;
     let axis = LineStrips2D::new((0..AXIS_PIECES).map(|index| strip(axis_y, [piece(index), piece(index + 1)])))
         .with_radii([BAR_RADIUS / 2.0])
         .with_colors((0..AXIS_PIECES).map(|index| palette::activation(piece(index))));
     messages.log_static(&entity(&[CHART, "axis"]), &axis)?;
     let endless = [strip_point(0.0, ENDLESS_ACTIVATION), strip_point(axis_y, ENDLESS_ACTIVATION)];
-    let endless = LineStrips2D::new([endless]).with_radii([0.15]).with_colors([palette::points()]);
+    let endless = LineStrips2D::new([endless]).with_radii([0.15]).with_colors([palette::chart()]);
     messages.log_static(&entity(&[CHART, "endless"]), &endless)?;
-    let ticks = [(0.01, "0"), (ENDLESS_ACTIVATION, "15 %: for hours"), (0.3, "30 %"), (0.48, "50 %")];
-    let ticks = ticks.map(|(activation, text)| (axis_y + 0.15 * ROW, activation, text.to_owned()));
+    let tick = |activation: f64, note| {
+        // Texts are centred; those at the ends stay inside.
+        let inside = activation.clamp(0.02 * FULL_ACTIVATION, 0.96 * FULL_ACTIVATION);
+        (axis_y + 0.15 * ROW, inside, format!("{:.0} %{note}", 100.0 * activation))
+    };
+    let ticks = [(0.0, ""), (ENDLESS_ACTIVATION, ": for hours"), (2.0 * ENDLESS_ACTIVATION, ""), (FULL_ACTIVATION, "")];
+    let ticks = ticks.map(|(activation, note)| tick(activation, note));
     messages.log_static(&entity(&[CHART, "ticks"]), &texts(ticks.into_iter()))
 }
 
 /// The part of the chart's plane to show: its ranges to the right and down.
 pub(super) fn bounds(work: &MuscleWork) -> [[f64; 2]; 2] {
-    [[-0.05 * WIDTH, 1.05 * WIDTH], [-0.3 * ROW, row_y(work.busiest.len()) + 1.2 * ROW]]
+    [[-0.05 * WIDTH, 1.05 * WIDTH], [-0.3 * ROW, row_y(work.busiest.len()) + 1.3 * ROW]]
 }
 
 /// Top of a row.
@@ -94,5 +99,5 @@ fn strip(y: f64, activations: [f64; 2]) -> [[f32; 2]; 2] {
 fn texts(rows: impl Iterator<Item = (f64, f64, String)>) -> Points2D {
     let (points, texts): (Vec<_>, Vec<_>) =
         rows.map(|(y, activation, text)| (strip_point(y, activation), text)).unzip();
-    Points2D::new(points).with_radii([0.01]).with_colors([palette::points()]).with_labels(texts).with_show_labels(true)
+    Points2D::new(points).with_radii([0.01]).with_colors([palette::chart()]).with_labels(texts).with_show_labels(true)
 }

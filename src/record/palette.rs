@@ -78,6 +78,11 @@ pub(super) fn points() -> Color {
     Color::from_rgb(255, 255, 255)
 }
 
+/// Lines and texts of the chart of muscles.
+pub(super) fn chart() -> Color {
+    Color::from_rgb(230, 230, 230)
+}
+
 /// A muscle with this activation.
 pub(super) fn activation(activation: f64) -> Color {
     let [r, g, b] = activation_rgb(activation);

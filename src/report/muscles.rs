@@ -27,7 +27,7 @@ pub(super) fn sentence(work: &MuscleWork) -> String {
     let source = match (work.missing_nm, work.endurance_s) {
         (Some(_), _) => "the muscles of the model are too weak for this posture under its load",
         (None, Some(_)) => "by the busiest muscle's activation, Rohmert 1960, an estimate",
-        (None, None) => "no muscle is above 15 %, Rohmert 1960, an estimate",
+        (None, None) => "no muscle is beyond the line in the chart, Rohmert 1960, an estimate",
     };
     let effort = format!("Muscles of the working arm: effort {:.3} (sum of squared activations)", work.effort);
     format!("{effort}; {} ({source}).", work.endurance_in_words())
@@ -37,7 +37,10 @@ pub(super) fn sentence(work: &MuscleWork) -> String {
 const WIDTH_PX: f64 = 730.0;
 
 /// Left and right edge of the bars, px. Names are to the left, regions to the right.
-const BARS_PX: [f64; 2] = [290.0, 550.0];
+const BARS_PX: [f64; 2] = [290.0, 530.0];
+
+/// Distance of the regions from the bars, px: a percentage fits between a full bar and its region.
+const REGION_GAP_PX: f64 = 50.0;
 
 /// Bottom edge of the chart's title and of the line below it, px.
 const HEAD_PX: f64 = 46.0;
@@ -47,8 +50,7 @@ const ROW_PX: f64 = 24.0;
 const BAR_PX: f64 = 14.0;
 
 /// The activations of the busiest muscles as SVG: a bar each with its name, percentage and region, and the line up to which an
-/// activation can be held for hours. Bars have the colours of the
-/// recording.
+/// activation can be held for hours. Bars have the colours of the recording.
 pub(super) fn svg(work: &MuscleWork) -> String {
     let [left, right] = BARS_PX;
     let top = work.chart_top();
@@ -56,14 +58,8 @@ pub(super) fn svg(work: &MuscleWork) -> String {
     let height_px = HEAD_PX + ROW_PX * work.busiest.len() as f64 + 8.0;
     let mut body = String::new();
     label(&mut body, "title", 0.0, 14.0, "start", "activation of the busiest muscles of the working arm");
-    label(
-        &mut body,
-        "tick",
-        x_px(ENDLESS_ACTIVATION),
-        HEAD_PX - 10.0,
-        "middle",
-        "15 %: can be held for hours up to here",
-    );
+    let endless = format!("{:.0} %: can be held for hours up to here", 100.0 * ENDLESS_ACTIVATION);
+    label(&mut body, "tick", x_px(ENDLESS_ACTIVATION), HEAD_PX - 10.0, "middle", &endless);
     for (row, muscle) in work.busiest.iter().enumerate() {
         let middle_px = HEAD_PX + ROW_PX * (row as f64 + 0.5);
         let BusyMuscle { name, region, activation } = muscle;
@@ -79,7 +75,7 @@ pub(super) fn svg(work: &MuscleWork) -> String {
             right - left
         );
         label(&mut body, "key", end_px + 5.0, middle_px + 4.0, "start", &format!("{:.1} %", 100.0 * activation));
-        label(&mut body, "tick", right + 12.0, middle_px + 4.0, "start", region);
+        label(&mut body, "tick", right + REGION_GAP_PX, middle_px + 4.0, "start", region);
     }
     let (x, above, below) = (x_px(ENDLESS_ACTIVATION), HEAD_PX - 4.0, height_px - 6.0);
     let _ = write!(body, "<line class=\"limit\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{above}\" y2=\"{below:.1}\"/>");
