@@ -63,6 +63,23 @@ for short, full in (("FDS", "flexor digitorum superficialis"), ("FDP", "flexor d
     FULL_NAMES.update({short + digit: f"{full} of the {finger}" for digit, finger in FINGERS.items()})
 
 
+# The part of the arm at which each muscle is drawn; docs/method.md#416-muscles.
+REGIONS = {
+    "chest": "PECM1 PECM2 PECM3",
+    "back": "LAT1 LAT2 LAT3 TMAJ",
+    "rotator cuff": "SUPSP INFSP SUBSC TMIN",
+    "front of the shoulder": "DELT1 CORB",
+    "side of the shoulder": "DELT2",
+    "back of the shoulder": "DELT3",
+    "front of the upper arm": "BIClong BICshort BRA",
+    "back of the upper arm": "TRIlong TRIlat TRImed ANC",
+    "thumb side of the forearm": "BRD ECRL ECRB",
+    "palm side of the forearm": "PT PQ FCR FCU PL FPL FDS2 FDS3 FDS4 FDS5 FDP2 FDP3 FDP4 FDP5",
+    "back of the forearm": "SUP ECU EDC2 EDC3 EDC4 EDC5 EDM EIP EPL EPB APL",
+}
+REGION_OF = {name: region for region, names in REGIONS.items() for name in names.split()}
+
+
 def turn(axis, angle):
     return Rotation.from_rotvec(np.eye(3)["xyz".index(axis)] * angle).as_matrix()
 
@@ -360,6 +377,7 @@ def write(arguments, myo, shoulder, beyond):
             continue
         low, high = myo.parameters[i, 4:6]
         lines += ["", "[[muscles]]", f'name = "{FULL_NAMES[name]}" # {name}']
+        lines.append(f'region = "{REGION_OF[name]}"')
         lines.append(f"force_n = {myo.force_n[i]:.6g}")
         lines.append(f"fibre_m = {myo.scale_m[i]:.6g}")
         lines.append(f"fibre_range = {numbers([low, high])}")

@@ -10,9 +10,9 @@ use super::{
 };
 use crate::{
     collision::Scene,
-    human::Standing,
+    human::{MuscleEffort, Standing},
     model::{
-        muscle_work::MuscleWork,
+        muscle_work::{MuscleBelly, MuscleWork},
         plan::{PostureConstraint, PostureFigures, exceeded_scores},
         scenario::Limits,
     },
@@ -35,9 +35,23 @@ impl CheckedPlan<'_> {
     /// What the muscles of the person's working arm do; `None` without a person.
     #[must_use]
     pub fn muscles(&self) -> Option<MuscleWork> {
+        self.muscle_effort().map(|effort| effort.work())
+    }
+
+    /// The muscles as they are drawn, with their activations; empty without a person.
+    #[must_use]
+    pub fn muscle_bellies_w(&self) -> Vec<MuscleBelly> {
+        let (Some(CheckedPerson { posture, human }), Some(effort)) = (self.person(), self.muscle_effort()) else {
+            return Vec::new();
+        };
+        human.muscle_bellies_w(&posture.x_wb, &posture.q_rad, &effort)
+    }
+
+    /// The activations of the muscles under the operation; `None` without a person.
+    fn muscle_effort(&self) -> Option<MuscleEffort> {
         let (CheckedPerson { posture, human }, plan) = (self.person()?, self.plan());
         let wrench_w = plan.operation.wrench_w(&plan.object.x_wo);
-        human.muscle_work(&posture.q_rad, &posture.x_wb, &wrench_w)
+        human.muscle_program(&posture.q_rad, &posture.x_wb, &wrench_w).solve()
     }
 
     /// Why the person would not stand so, not see the work, or not stand there, as a reason in words: each flaw after its name.

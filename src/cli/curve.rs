@@ -11,7 +11,7 @@ use super::{
 use crate::{
     collision::CollisionModel,
     comfort::curve::{Curve, Cut, POINTS, muscular_curve},
-    human::Human,
+    human::{Human, muscular::formula_in_words},
     report,
     reproduce::paper,
     scenario::{self, LoadedScenario},
@@ -72,7 +72,9 @@ fn summary(curve: &Curve, out: &Path) -> String {
     });
     format!(
         "{free} of {POINTS} points can be cut standing anywhere, {fixed} from one place{place}\n\
+         muscular comfort: {1}\n\
          written: {0}/muscular_curve.csv, {0}/muscular_curve.svg\n",
-        out.display()
+        out.display(),
+        formula_in_words(curve.metric)
     )
 }

@@ -9,6 +9,7 @@ use super::{
     plan::{infeasible, load_for_planning, stop_on_interrupt},
 };
 use crate::{
+    model::scenario::MuscularMetric,
     planner::{Front, FrontPoint, Outcome, Planner},
     report::{self, front::Row},
 };
@@ -26,7 +27,7 @@ pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
     let planner = Planner::new(&loaded.robot);
     match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).front()? {
         Outcome::Found(front) => {
-            write(&front, args)?;
+            write(&front, loaded.scenario.comfort.muscular, args)?;
             Ok(if interrupt::requested() { Exit::Interrupted } else { Exit::Met })
         }
         Outcome::Infeasible(why) => Ok(infeasible(&loaded, &why)),
@@ -44,7 +45,7 @@ fn outputs(folder: &Path) -> Vec<PathBuf> {
     existing.filter(is_output).collect()
 }
 
-fn write(front: &Front, args: &FrontArgs) -> Result<(), CliError> {
+fn write(front: &Front, metric: MuscularMetric, args: &FrontArgs) -> Result<(), CliError> {
     let row = |point: &FrontPoint, own| {
         let [muscular, peripersonal_m] = point.comforts();
         Row { share: point.share, muscular, peripersonal_m, own }
@@ -57,7 +58,7 @@ fn write(front: &Front, args: &FrontArgs) -> Result<(), CliError> {
     report::file::write_whole(&own, report::json::plan(&front.own.plan).as_bytes())?;
     let mut rows: Vec<Row> = front.points.iter().map(|point| row(point, false)).collect();
     rows.push(row(&front.own, true));
-    report::file::write_whole(&svg, report::front::svg(&rows, front.optima).as_bytes())?;
+    report::file::write_whole(&svg, report::front::svg(&rows, front.optima, metric).as_bytes())?;
     report::file::write_whole(&csv, report::front::csv(&rows, front.optima).as_bytes())?;
     output::print(&report::front::table(&rows, front.optima))
 }

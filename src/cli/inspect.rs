@@ -62,7 +62,9 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
             (judgement.verdict, judgement.reason) = (verdict.verdict, verdict.reason.clone());
         }
     }
-    Ok(judgement.to_verdict(&verdict.name, expect.verdict, verdict.seed, versions()))
+    // The muscles depend on the planned posture, not on the limits.
+    let muscles = verdict.muscles.clone();
+    Ok(Verdict { muscles, ..judgement.to_verdict(&verdict.name, expect.verdict, verdict.seed, versions()) })
 }
 
 fn with(limits: Limits, given: LimitArgs) -> Limits {

@@ -63,6 +63,9 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
             if let Some(clearance) = &plan.clearance {
                 table.push_str(&format!("clearance of the robot: {clearance}\n"));
             }
+            if let Some(work) = &plan.muscles {
+                table.push_str(&report::muscles::table(work));
+            }
             match output {
                 Some(path) => {
                     report::file::write_whole(path, text.as_bytes())?;

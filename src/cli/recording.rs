@@ -4,7 +4,7 @@ use super::{exit::CliError, pipeline::Run};
 use crate::{
     check::{CheckedPerson, CheckedPlan},
     human::BodyPart,
-    model::{operation::OperationKind, scenario::Scenario},
+    model::{muscle_work::MuscleBelly, operation::OperationKind, scenario::Scenario},
     record::{self, Capsule, PersonShape, RecordingInput},
     robot::Robot,
 };
@@ -16,7 +16,7 @@ use crate::{
 pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, CliError> {
     let (Some(plan), Some((trace, judgement))) = (&run.plan, &run.simulated) else { return Ok(None) };
     let checked = CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool)?;
-    let person = checked.person().map(|person| person_shape(person, plan.operation.kind));
+    let person = checked.person().map(|person| person_shape(person, plan.operation.kind, checked.muscle_bellies_w()));
     let input = RecordingInput {
         robot,
         scenario,
@@ -31,7 +31,11 @@ pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Ve
 }
 
 /// The person and the tool as they are drawn.
-fn person_shape(CheckedPerson { posture, human }: &CheckedPerson, kind: OperationKind) -> PersonShape {
+fn person_shape(
+    CheckedPerson { posture, human }: &CheckedPerson,
+    kind: OperationKind,
+    muscles: Vec<MuscleBelly>,
+) -> PersonShape {
     let (x_wb, q_rad) = (&posture.x_wb, &posture.q_rad);
     let body = human.capsules_w(x_wb, q_rad).into_iter().filter(|capsule| capsule.name != BodyPart::Tool);
     PersonShape {
@@ -42,6 +46,7 @@ fn person_shape(CheckedPerson { posture, human }: &CheckedPerson, kind: Operatio
         line_of_sight_w: human.line_of_sight_w(x_wb, q_rad),
         sector_w: human.sector_w(x_wb),
         tool: human.tool_parts_w(x_wb, q_rad, kind),
+        muscles,
         points_w: human.body_points_w(x_wb, q_rad).to_vec(),
     }
 }

@@ -23,7 +23,12 @@ use super::{
 use crate::{
     collision::{BoardBody, CollisionModel, Scene},
     human::{Human, Muscular},
-    model::{board::BoardShape, frames::Pose, operation::Operation, scenario::ComfortSettings},
+    model::{
+        board::BoardShape,
+        frames::Pose,
+        operation::Operation,
+        scenario::{ComfortSettings, MuscularMetric},
+    },
 };
 
 /// Number of points of the circle (docs/method.md#23-cutting).
@@ -84,6 +89,8 @@ pub struct CurvePoint {
 /// Best and worst muscular comfort along a circle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
+    /// The metric of the comforts.
+    pub metric: MuscularMetric,
     /// The board's pose: upright, its front face towards the person.
     pub x_wo: Pose,
     /// The one standing pose; `None` if no point can be reached.
@@ -123,7 +130,7 @@ pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
     let fixed = by_place.into_values().max_by(|(_, a), (_, b)| score(a).partial_cmp(&score(b)).unwrap_or(EQUAL));
     let (x_wb_fixed, fixed) = fixed.map_or((None, [None; POINTS]), |(x_wb, spans)| (Some(x_wb), spans));
     let points = std::array::from_fn(|i| CurvePoint { angle_rad: angle_rad(i), free: free[i], fixed: fixed[i] });
-    Curve { x_wo, x_wb_fixed, points }
+    Curve { metric: cut.settings.muscular, x_wo, x_wb_fixed, points }
 }
 
 /// Sums of comforts are never NaN, so they always compare.

@@ -69,7 +69,7 @@ use self::{mirror::Mirrored, muscular::Ability};
 use crate::model::{
     GRAVITY_W,
     frames::{Pose, rotation_from_xyzw},
-    muscle_work::MuscleWork,
+    muscle_work::{MuscleBelly, MuscleWork},
     scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StandingPlace, StrengthDirection, Tool},
     wrench::Wrench,
 };
@@ -319,6 +319,13 @@ impl Human {
         let x_wv = x_wb * self.x_bv;
         let (upper, legs) = (self.placed(&x_wv), self.placed(x_wb));
         self.body.capsules(&self.arm.frames(q_rad), p_ht_m, upper, legs)
+    }
+
+    /// The muscles of the working arm in W, as they are drawn.
+    #[must_use]
+    pub fn muscle_bellies_w(&self, x_wb: &Pose, q_rad: &ArmAngles, effort: &MuscleEffort) -> Vec<MuscleBelly> {
+        let x_wv = x_wb * self.x_bv;
+        effort.bellies(&self.body, &self.arm.frames(q_rad), q_rad, self.placed(&x_wv))
     }
 
     /// The wrench at the tool tip and gravity in V axes of the right-handed body.

@@ -25,6 +25,18 @@ pub(super) const RESTING: f64 = 0.01;
 /// Sum of squares of a resting tone of 2 % in each of 50 muscles. Bounds the comfort by 50.
 const MUSCLE_TONE: f64 = 0.02;
 
+/// The muscular comfort of a metric in words, as in the title of a plot: `1 / (sum of squared activations + 0.0175)`.
+#[must_use]
+pub fn formula_in_words(metric: MuscularMetric) -> String {
+    let (what, resting) = match metric {
+        MuscularMetric::Paper => ("activations", RESTING),
+        MuscularMetric::Intrinsic => ("activations", CO_CONTRACTION),
+        MuscularMetric::Muscles => ("muscle activations", MUSCLE_TONE),
+    };
+    // Rounded, since 7 times 0.05 squared is not quite 0.0175.
+    format!("1 / (sum of squared {what} + {})", (resting * 1e6).round() / 1e6)
+}
+
 /// Torques below this have no direction, since they are rounding errors, N m.
 const NO_SENSE_NM: f64 = 1e-9;
 
@@ -376,6 +388,9 @@ mod tests {
         let idle = Muscular::of([0.0; 7], RESTING);
         assert_eq!((idle.printed, idle.regularised), (f64::INFINITY, 100.0));
         // A resting co-contraction of 5 % in seven terms.
+        assert_eq!(formula_in_words(MuscularMetric::Paper), "1 / (sum of squared activations + 0.01)");
+        assert_eq!(formula_in_words(MuscularMetric::Intrinsic), "1 / (sum of squared activations + 0.0175)");
+        assert_eq!(formula_in_words(MuscularMetric::Muscles), "1 / (sum of squared muscle activations + 0.02)");
         let idle = Muscular::of([0.0; 7], CO_CONTRACTION);
         assert_eq!((idle.printed, idle.regularised), (f64::INFINITY, 1.0 / 0.0175));
     }

@@ -3,6 +3,7 @@
 //! This module depends on nalgebra, serde and schemars (for the JSON Schemas) and on no other module of this crate. It
 //! contains no planning, simulation or judging code.
 
+pub mod activation_colour;
 pub mod board;
 pub mod board_mesh;
 pub mod frames;

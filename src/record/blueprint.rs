@@ -11,6 +11,7 @@ use rerun::{
             archetypes::{
                 Background, ContainerBlueprint, EntityBehavior, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend,
                 ScalarAxis, TextLogColumns, TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
+                VisualBounds2D,
             },
             components::{BackgroundKind, ContainerKind, Corner2D, LoopMode, PanelState, PlayState, RootContainer},
             datatypes::{TextLogColumn, TextLogColumnKind},
@@ -25,7 +26,7 @@ use super::{
     error::RecordError,
     input::RecordingInput,
     messages::Messages,
-    palette,
+    muscles, palette,
     plots::{FAILURE, JOINTS_SHOWN, LIMIT, LOAD, PLOTS, by_torque, top},
     scene::POINTS,
 };
@@ -33,6 +34,9 @@ use crate::model::verdict::CheckKind;
 
 /// The scene is at least this wide, m: the camera then sees the person from head to feet.
 const LEAST_SPAN_M: f64 = 1.35;
+
+/// Share of the summary's column in the width.
+const RIGHT_SHARE: f32 = 0.24;
 
 /// A view or a container, with its share of the parent's size.
 struct Panel {
@@ -58,7 +62,7 @@ pub(super) fn messages(messages: Messages, input: &RecordingInput) -> Result<Vec
     }
     middle.push(layout.load()?);
     let middle = layout.container(ContainerKind::Vertical, &middle, 0.28)?;
-    let right = layout.view("TextDocument", "summary", &["+ /summary"], 0.24)?;
+    let right = layout.right(input)?;
     let root = layout.container(ContainerKind::Horizontal, &[left, middle, right], 1.0)?;
     layout.panels(root.id)?;
     let activation = BlueprintActivationCommand::make_active(layout.messages.store_id().clone());
@@ -157,6 +161,22 @@ impl Layout {
         self.legend(&view)?;
         self.range(&view, top(input, kind))?;
         Ok(view)
+    }
+
+    /// The summary; with a person the chart of the muscles below it.
+    fn right(&mut self, input: &RecordingInput) -> Result<Panel, RecordError> {
+        let Some(work) = &input.verdict.muscles else {
+            return self.view("TextDocument", "summary", &["+ /summary"], RIGHT_SHARE);
+        };
+        let summary = self.view("TextDocument", "summary", &["+ /summary"], 0.7)?;
+        let name = "activation of the busiest muscles";
+        let chart = self.view("2D", name, &[format!("+ /{}/**", muscles::CHART)], 0.3)?;
+        let [x, y] = muscles::bounds(work).map(rerun::datatypes::Range1D);
+        let bounds = VisualBounds2D::new(rerun::datatypes::Range2D { x_range: x, y_range: y });
+        self.log(&child(&chart.path, "VisualBounds2D"), &bounds)?;
+        let background = Background::new(BackgroundKind::SolidColor).with_color(palette::background());
+        self.log(&child(&chart.path, "Background"), &background)?;
+        self.container(ContainerKind::Vertical, &[summary, chart], RIGHT_SHARE)
     }
 
     /// The applied load factor.

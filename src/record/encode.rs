@@ -3,8 +3,8 @@
 use rerun::{EntityPath, StoreId, StoreKind};
 
 use super::{
-    blueprint, entity::APPLICATION, error::RecordError, input::RecordingInput, messages::Messages, plots, rrd, scene,
-    stored, summary,
+    blueprint, entity::APPLICATION, error::RecordError, input::RecordingInput, messages::Messages, muscles, plots, rrd,
+    scene, stored, summary,
 };
 use crate::model::verdict::Verdict;
 
@@ -19,6 +19,9 @@ pub fn encode(input: &RecordingInput) -> Result<Vec<u8>, RecordError> {
     scene::log(&mut recording, input)?;
     plots::log(&mut recording, input)?;
     summary::log(&mut recording, input)?;
+    if let Some(work) = &input.verdict.muscles {
+        muscles::log_chart(&mut recording, work)?;
+    }
     stored::log(&mut recording, input)?;
     let layout = Messages::new(StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-blueprint")));
     let layout = blueprint::messages(layout, input)?;

@@ -68,3 +68,10 @@ pub(super) fn quaternion(rotation: &UnitQuaternion<f64>) -> rerun::Quaternion {
     let [x, y, z, w] = rotation.coords.map(|v| v as f32).into();
     rerun::Quaternion::from_xyzw([x, y, z, w])
 }
+
+/// The smallest rotation of the z axis to a direction.
+pub(super) fn from_z(direction: &Vector3<f64>) -> UnitQuaternion<f64> {
+    // For -z the axis is any that is orthogonal to z.
+    UnitQuaternion::rotation_between(&Vector3::z(), direction)
+        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
+}

@@ -5,6 +5,7 @@ use nalgebra::Point3;
 use crate::{
     model::{
         measures::{Event, Measures},
+        muscle_work::MuscleBelly,
         plan::Plan,
         scenario::Scenario,
         tool_part::ToolPart,
@@ -49,6 +50,8 @@ pub struct PersonShape {
     pub sector_w: Vec<Point3<f64>>,
     /// The parts of the tool in the hand.
     pub tool: Vec<ToolPart>,
+    /// The muscles of the working arm; empty if their activations are not known.
+    pub muscles: Vec<MuscleBelly>,
     /// The body points of the peripersonal metric, in W, m.
     pub points_w: Vec<Point3<f64>>,
 }

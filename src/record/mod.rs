@@ -8,6 +8,8 @@
 //! |---|---|
 //! | `scene/...` | robot, board, operation, tool, pads and forces, in W |
 //! | `scene/person/...` | body, eyes, line of sight, the sector in front of the person, in W |
+//! | `scene/person/muscles/...` | the muscles of the working arm by region, coloured by activation |
+//! | `muscles/...` | chart of the busiest muscles |
 //! | `plots/...` | slip, rotation, deflection, torque ratios, each with its limit; load factor |
 //! | `phases`, `events` | phases of the simulation; limits crossed and other events |
 //! | `summary` | verdict and plan as Markdown |
@@ -26,6 +28,7 @@ mod error;
 mod frames;
 mod input;
 mod messages;
+mod muscles;
 mod palette;
 mod person;
 mod plate;

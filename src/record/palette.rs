@@ -1,8 +1,9 @@
-//! Colours with one meaning each, from the palette of Okabe and Ito, which colour-blind readers can tell apart.
+//! Colours with one meaning each, from the palette of Okabe and Ito, which colour-blind readers can tell apart; those of muscles
+//! are a scale.
 
 use rerun::Color;
 
-use crate::model::tool_part::ToolMaterial;
+use crate::model::{activation_colour::activation_rgb, tool_part::ToolMaterial};
 
 /// Background of the scene.
 pub(super) fn background() -> Color {
@@ -75,4 +76,15 @@ pub(super) fn not_judged() -> Color {
 /// The points of the peripersonal metric.
 pub(super) fn points() -> Color {
     Color::from_rgb(255, 255, 255)
+}
+
+/// Lines and texts of the chart of muscles.
+pub(super) fn chart() -> Color {
+    Color::from_rgb(230, 230, 230)
+}
+
+/// A muscle with this activation.
+pub(super) fn activation(activation: f64) -> Color {
+    let [r, g, b] = activation_rgb(activation);
+    Color::from_rgb(r, g, b)
 }

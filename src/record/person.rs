@@ -1,15 +1,15 @@
 //! The person in the scene: body, eyes, line of sight, the sector in front of them, and the tool in the hand.
 
-use nalgebra::{Point3, UnitQuaternion, Vector3};
+use nalgebra::{Point3, Vector3};
 use rerun::{Capsules3D, Color, Ellipsoids3D, FillMode, LineStrips3D, Mesh3D};
 
 use super::{
     entity::entity,
     error::RecordError,
-    frames::{quaternion, vec3},
+    frames::{from_z, quaternion, vec3},
     input::{Capsule, PersonShape},
     messages::Messages,
-    palette,
+    muscles, palette,
 };
 use crate::model::tool_part::ToolPart;
 
@@ -32,6 +32,7 @@ pub(super) fn log(messages: &mut Messages, person: &PersonShape) -> Result<(), R
     if !person.sector_w.is_empty() {
         messages.log_static(&entity(&["scene", "person", "sector"]), &line(&person.sector_w, palette::sight()))?;
     }
+    muscles::log_bellies(messages, &person.muscles)?;
     messages.log_static(&entity(&["scene", "tool"]), &mesh(&person.tool))
 }
 
@@ -45,17 +46,12 @@ fn line(points_w: &[Point3<f64>], colour: Color) -> LineStrips3D {
 
 fn capsules(capsules: &[Capsule]) -> Capsules3D {
     let along = |capsule: &Capsule| capsule.ends_w[1] - capsule.ends_w[0];
-    // For -z the axis of rotation is any that is orthogonal to z.
-    let from_z = |direction: Vector3<f64>| {
-        UnitQuaternion::rotation_between(&Vector3::z(), &direction)
-            .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
-    };
     Capsules3D::from_lengths_and_radii(
         capsules.iter().map(|capsule| along(capsule).norm() as f32),
         capsules.iter().map(|capsule| capsule.radius_m as f32),
     )
     .with_translations(capsules.iter().map(|capsule| vec3(&capsule.ends_w[0].coords)))
-    .with_quaternions(capsules.iter().map(|capsule| quaternion(&from_z(along(capsule)))))
+    .with_quaternions(capsules.iter().map(|capsule| quaternion(&from_z(&along(capsule)))))
     .with_colors([palette::person()])
     .with_fill_mode(FillMode::Solid)
 }

@@ -12,7 +12,12 @@ use super::{
     messages::Messages,
     scene::{ARROW_M_PER_N, operation_label},
 };
-use crate::model::{FORMAT, plan::Plan, verdict::Verdict};
+use crate::model::{
+    FORMAT,
+    muscle_work::{BusyMuscle, MuscleWork},
+    plan::Plan,
+    verdict::Verdict,
+};
 
 /// The entity of the format version.
 pub(super) const ABOUT: &str = "about";
@@ -54,12 +59,24 @@ pub(super) fn markdown(plan: &Plan, verdict: &Verdict) -> String {
     }
     checks(&mut text, verdict);
     figures(&mut text, plan);
-    colours(&mut text, plan);
+    if let Some(work) = &verdict.muscles {
+        muscles(&mut text, work);
+    }
+    colours(&mut text, plan, verdict.muscles.is_some());
     push(&mut text, format_args!("\n**Made by**: {}", versions(verdict)));
     text
 }
 
-fn colours(text: &mut String, plan: &Plan) {
+/// The busiest muscles of the working arm, effort and endurance.
+fn muscles(text: &mut String, work: &MuscleWork) {
+    push(text, format_args!("\n**Muscles of the working arm**: {work}"));
+    push(text, format_args!("\n| muscle | activation | where |\n|---|---:|---|"));
+    for BusyMuscle { name, region, activation } in &work.busiest {
+        push(text, format_args!("| {name} | {:.1} % | {region} |", 100.0 * activation));
+    }
+}
+
+fn colours(text: &mut String, plan: &Plan, with_muscles: bool) {
     let scale_mm = ARROW_M_PER_N * 1e3;
     push(text, format_args!("\n**Colours**"));
     // The colours of the palette for hands in order; further arms repeat them.
@@ -69,6 +86,15 @@ fn colours(text: &mut String, plan: &Plan) {
     push(text, format_args!("- yellow: board"));
     push(text, format_args!("- violet: tool and load"));
     push(text, format_args!("- green: person"));
+    if with_muscles {
+        push(
+            text,
+            format_args!(
+                "- cream, orange, dark red: muscles of the working arm at rest, at 15 %, at 50 % and above; a region has the \
+                 colour of its busiest muscle"
+            ),
+        );
+    }
     push(
         text,
         format_args!("- light green: line of sight from the eyes to the tool tip; the sector in front of the person"),

@@ -1,5 +1,7 @@
 //! A recording is written, read back, cut short and compared, byte by byte.
 
+mod muscles;
+
 use std::{collections::BTreeMap, fs, path::Path};
 
 use nalgebra::{Isometry3, Point3, Rotation3, UnitQuaternion, Vector3};
@@ -17,6 +19,7 @@ use crate::{
         frames::Pose,
         grasp::EdgeGrasp,
         measures::{Event, EventKind, HandMeasures, JointMeasures, Measures},
+        muscle_work::{BusyMuscle, MuscleBelly},
         operation::Operation,
         plan::{ArmHold, PlacedObject, Plan},
         plate::PlateRecord,
@@ -90,6 +93,7 @@ fn example() -> Example {
         line_of_sight_w: [[1.16, 0.0, 0.7].into(), tip_w],
         sector_w: sector_w(),
         tool: vec![bit(tip_w)],
+        muscles: bellies(),
         points_w: vec![Point3::new(1.2, 0.0, 0.3)],
     };
     let scenario = crate::scenario::default_for_plan(&plan, &robot);
@@ -104,6 +108,17 @@ fn sector_w() -> Vec<Point3<f64>> {
         person_w - 0.9 * Vector3::new(cos, sin, 0.0)
     };
     vec![person_w, at_w(-30.0), at_w(0.0), at_w(30.0), person_w]
+}
+
+/// Two spindles of the upper arm, with muscles at 12 % and at rest.
+fn bellies() -> Vec<MuscleBelly> {
+    let belly = |region: &str, name: &str, activation, x_m: f64| MuscleBelly {
+        region: region.into(),
+        ends_w: [Point3::new(x_m, 0.2, 0.45), Point3::new(x_m, 0.2, 0.25)],
+        radius_m: 0.03,
+        busiest: BusyMuscle { name: name.into(), region: region.into(), activation },
+    };
+    vec![belly("back of the upper arm", "anconeus", 0.0, 1.3), belly("front of the upper arm", "brachialis", 0.12, 1.2)]
 }
 
 /// A bit along x_W, square and 0.1 m long, that ends with an edge of its last section at the tip.

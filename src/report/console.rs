@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::{Outcome, Status, columns::aligned, explanation, number_of, posture};
+use super::{Outcome, Status, columns::aligned, explanation, muscles, number_of, posture};
 use crate::model::{
     plan::PostureFigures,
     verdict::{Check, CheckKind, Verdict},
@@ -53,7 +53,7 @@ pub fn table(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
 }
 
 /// The details of one verdict: every check with value, limit and margin, the person's posture, the joints with the highest
-/// torque ratios, and the path of the recording.
+/// torque ratios, the work of the person's muscles, and the path of the recording.
 #[must_use]
 pub fn details(verdict: &Verdict, posture: Option<&PostureFigures>, recording: Option<&Path>) -> String {
     let mut text = format!("{}: {}, expected {}: {}\n", verdict.name, verdict.verdict, verdict.expected, met(verdict));
@@ -71,6 +71,9 @@ pub fn details(verdict: &Verdict, posture: Option<&PostureFigures>, recording: O
     }
     if let Some(joints) = highest_torques(verdict) {
         notes.push(vec!["torque peaks".to_owned(), joints]);
+    }
+    if let Some(work) = &verdict.muscles {
+        notes.extend(muscles::rows(work));
     }
     if let Some(path) = recording {
         notes.push(vec!["recording".to_owned(), path.display().to_string()]);

@@ -6,7 +6,10 @@ use super::{
     csv_text::csv_text,
     picture::{document, label, line},
 };
-use crate::comfort::curve::{Curve, CurvePoint, POINTS, Span};
+use crate::{
+    comfort::curve::{Curve, CurvePoint, POINTS, Span},
+    human::muscular::formula_in_words,
+};
 
 /// One way of standing: its name in the CSV, its legend, and the colour of its bars and their offset from the tick, px.
 struct Series {
@@ -92,8 +95,9 @@ pub fn svg(curve: &Curve) -> String {
     }
     legend(&mut body);
     label(&mut body, (left + right) / 2.0, bottom + 40.0, "middle", "cutting point, counter-clockwise from the right");
-    let title = "Muscular comfort 1 / (sum of squared activations + 0.01), from the worst to the best solution";
-    label(&mut body, left, 22.0, "start", title);
+    let formula = formula_in_words(curve.metric);
+    let title = format!("Muscular comfort {formula}, from the worst to the best solution");
+    label(&mut body, left, 22.0, "start", &title);
     document(&body, [800.0, 410.0])
 }
 
@@ -130,14 +134,14 @@ mod tests {
     use nalgebra::Isometry3;
 
     use super::*;
-    use crate::human::Muscular;
+    use crate::{human::Muscular, model::scenario::MuscularMetric};
 
     fn curve() -> Curve {
         let of = |activation| Muscular::of([activation; 7], 0.01);
         let span = Span { worst: of(0.5), best: of(0.1) };
         let mut points = [CurvePoint { angle_rad: 0.0, free: Some(span), fixed: Some(span) }; POINTS];
         points[3] = CurvePoint { angle_rad: std::f64::consts::FRAC_PI_2, free: Some(span), fixed: None };
-        Curve { x_wo: Isometry3::identity(), x_wb_fixed: None, points }
+        Curve { metric: MuscularMetric::Paper, x_wo: Isometry3::identity(), x_wb_fixed: None, points }
     }
 
     #[test]
@@ -157,6 +161,9 @@ mod tests {
         // The background and 31 bars; two strokes of the cross and two of the legend's.
         assert_eq!(text.matches("<rect").count(), 1 + 2 * POINTS - 1);
         assert_eq!(text.matches("stroke-width=\"2\"").count(), 4);
+        assert!(text.contains("Muscular comfort 1 / (sum of squared activations + 0.01), from"), "{text}");
+        let of_muscles = svg(&Curve { metric: MuscularMetric::Muscles, ..curve() });
+        assert!(of_muscles.contains("Muscular comfort 1 / (sum of squared muscle activations + 0.02), from"));
         // 12.5 on a scale up to 14 in steps of 2, over 296 px from 360 up.
         assert!(text.contains(&format!("y=\"{:.1}\"", 360.0 - 296.0 * 12.5 / 14.0)), "{text}");
     }

@@ -5,6 +5,7 @@ use super::{
     csv_text::csv_text,
     picture::{circle, document, label, line, number, ticks},
 };
+use crate::{human::muscular::formula_in_words, model::scenario::MuscularMetric};
 
 /// A plan on the front, or the plan for the scenario's own weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +67,7 @@ const FRONT: &str = "#0072b2";
 const OWN: &str = "#d55e00";
 
 /// The front as SVG: muscular comfort on the horizontal axis, peripersonal comfort on the vertical one.
-pub fn svg(rows: &[Row], optima: [f64; 2]) -> String {
+pub fn svg(rows: &[Row], optima: [f64; 2], metric: MuscularMetric) -> String {
     let [left, right, top, bottom] = AREA_PX;
     let range = |value: fn(&Row) -> f64| {
         let low = rows.iter().map(value).fold(f64::INFINITY, f64::min);
@@ -98,19 +99,14 @@ pub fn svg(rows: &[Row], optima: [f64; 2]) -> String {
         let (colour, radius_px) = if row.own { (OWN, 6.0) } else { (FRONT, 4.0) };
         circle(&mut body, x_px(row.muscular), y_px(row.peripersonal_m), radius_px, colour, row.own);
     }
-    legend(&mut body, rows, optima);
+    legend(&mut body, rows, optima, metric);
     document(&body, [640.0, 430.0])
 }
 
-fn legend(body: &mut String, rows: &[Row], optima: [f64; 2]) {
+fn legend(body: &mut String, rows: &[Row], optima: [f64; 2], metric: MuscularMetric) {
     let [left, right, top, bottom] = AREA_PX;
-    label(
-        body,
-        left,
-        20.0,
-        "start",
-        "Peripersonal comfort, m, over muscular comfort 1 / (sum of squared activations + 0.01)",
-    );
+    let title = format!("Peripersonal comfort, m, over muscular comfort {}", formula_in_words(metric));
+    label(body, left, 20.0, "start", &title);
     label(body, (left + right) / 2.0, bottom + 40.0, "middle", "muscular comfort");
     circle(body, left + 8.0, top - 17.0, 4.0, FRONT, false);
     label(body, left + 18.0, top - 13.0, "start", "front");
@@ -144,7 +140,8 @@ mod tests {
 
     #[test]
     fn the_picture_has_every_plan_inside_its_axes() {
-        let text = svg(&rows(), [80.0, 1.25]);
+        let text = svg(&rows(), [80.0, 1.25], MuscularMetric::Intrinsic);
+        assert!(text.contains("over muscular comfort 1 / (sum of squared activations + 0.0175)<"), "{text}");
         // Three plans of the front and the scenario's own, and one of each in the legend.
         assert_eq!(text.matches("<circle").count(), 6);
         // Two steps between three plans.

@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{
-    Outcome, Status, console,
+    Outcome, Status, console, muscles,
     plot::{Line, Plot},
     posture,
     summary::recording_link,
@@ -115,6 +115,10 @@ fn section(outcome: &Outcome) -> Markup {
                 @if let Some(confirmation) = &verdict.confirmation { p { "Confirmation: " (confirmation) } }
                 @if let Some(figures) = posture { (person(figures)) }
                 @if let Some(scores) = scores { p { "Posture: " (scores) } }
+                @if let Some(work) = &verdict.muscles {
+                    p { (muscles::sentence(work)) }
+                    (PreEscaped(muscles::svg(work)))
+                }
                 @if let Some(clearance) = clearance { p { "Planned clearance of the robot: " (clearance) } }
                 @if let Some(measures) = measures { (plots(verdict, measures)) }
                 p.quiet { (origin(verdict)) }

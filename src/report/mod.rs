@@ -14,6 +14,7 @@ pub mod html;
 pub mod json;
 #[cfg(feature = "cli")]
 pub mod junit;
+pub mod muscles;
 mod picture;
 pub mod plans;
 mod plot;

@@ -174,13 +174,14 @@ pub(super) fn number(value: f64) -> String {
     if text.is_empty() || text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-fn label(body: &mut String, class: &str, x: f64, y: f64, anchor: &str, text: &str) {
+/// A text; `anchor` is the part of it that is at the point: `start`, `middle` or `end`.
+pub(super) fn label(body: &mut String, class: &str, x: f64, y: f64, anchor: &str, text: &str) {
     let text = escape(text);
     let _ = write!(body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
 }
 
 /// Text with the special characters of XML escaped.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

@@ -45,6 +45,8 @@ struct Entry<'a> {
     creep_mm_s: Option<f64>,
     torque_ratio: Option<f64>,
     predicted_load_factor: Option<f64>,
+    muscle_effort: Option<f64>,
+    largest_activation: Option<f64>,
     first_failure: Option<&'a Failure>,
     explanation: String,
     /// The recording's path relative to the folder of the summary.
@@ -73,6 +75,7 @@ pub fn json(outcomes: &[Outcome]) -> String {
 fn entry(outcome: &Outcome) -> Entry<'_> {
     let verdict = outcome.verdict();
     let [slip_mm, slip_deg, sag_mm, deflection_mm, creep_mm_s, torque_ratio] = figures(outcome);
+    let muscles = verdict.and_then(|verdict| verdict.muscles.as_ref());
     Entry {
         name: outcome.name(),
         status: outcome.status().name(),
@@ -85,6 +88,8 @@ fn entry(outcome: &Outcome) -> Entry<'_> {
         creep_mm_s,
         torque_ratio,
         predicted_load_factor: predicted_load_factor(outcome),
+        muscle_effort: muscles.map(|work| work.effort),
+        largest_activation: muscles.map(|work| work.largest_activation),
         first_failure: verdict.and_then(|verdict| verdict.first_failure.as_ref()),
         explanation: outcome.sentence(),
         recording: recording_link(outcome),
@@ -118,7 +123,10 @@ pub(super) fn recording_link(outcome: &Outcome) -> Option<String> {
 /// If the CSV writer fails.
 pub fn csv(outcomes: &[Outcome]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let (first, last) = (["scenario", "status", "verdict", "expected"], ["predicted_load_factor"]);
+    let (first, last) = (
+        ["scenario", "status", "verdict", "expected"],
+        ["predicted_load_factor", "muscle_effort", "largest_activation"],
+    );
     let failure = ["first_failure", "first_failure_s", "first_failure_load_factor", "explanation"];
     writer.write_record(first.into_iter().chain(FIGURES.map(|(name, _)| name)).chain(last).chain(failure))?;
     for outcome in outcomes {
@@ -132,6 +140,7 @@ fn record(outcome: &Outcome) -> Vec<String> {
     let text = |text: Option<String>| text.unwrap_or_default();
     let figure = |value: Option<f64>| text(value.map(|value| format!("{value:.4}")));
     let failure = verdict.and_then(|verdict| verdict.first_failure.as_ref());
+    let muscles = verdict.and_then(|verdict| verdict.muscles.as_ref());
     let mut cells = vec![
         outcome.name().to_owned(),
         outcome.status().name().to_owned(),
@@ -140,6 +149,8 @@ fn record(outcome: &Outcome) -> Vec<String> {
     ];
     cells.extend(figures(outcome).map(figure));
     cells.push(figure(predicted_load_factor(outcome)));
+    cells.push(figure(muscles.map(|work| work.effort)));
+    cells.push(figure(muscles.map(|work| work.largest_activation)));
     cells.push(text(failure.map(|failure| failure.check.to_string())));
     cells.push(figure(failure.map(|failure| failure.time_s)));
     cells.push(figure(failure.map(|failure| failure.load_factor)));

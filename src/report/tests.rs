@@ -3,7 +3,10 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use super::*;
-use crate::model::verdict::{Check, Failure};
+use crate::model::{
+    muscle_work::{BusyMuscle, MuscleWork},
+    verdict::{Check, Failure},
+};
 
 fn check(name: CheckKind, value: f64, limit: f64) -> Check {
     Check {
@@ -65,6 +68,19 @@ fn infeasible() -> Verdict {
         reason: Some("no candidate of 400 is stable".into()),
         notes: Vec::new(),
         ..holding()
+    }
+}
+
+/// A judged outcome without anything but its verdict.
+fn judged(verdict: Verdict) -> Outcome {
+    Outcome::Judged {
+        verdict: Box::new(verdict),
+        predicted_load_factor: None,
+        posture: None,
+        scores: None,
+        clearance: None,
+        measures: None,
+        recording: None,
     }
 }
 
@@ -197,4 +213,74 @@ fn a_limit_from_below_is_shown_as_one_everywhere() {
 fn the_page_states_the_scores_of_the_posture_where_there_are_any() {
     let page = html::page(&outcomes());
     assert_eq!(page.matches("Posture: RULA 3 (arm and wrist 4), REBA 5").count(), 1);
+}
+
+/// What the muscles do: the longest name of the file and one that ends a chart at 30 %.
+fn work() -> MuscleWork {
+    let muscle =
+        |name: &str, region: &str, activation| BusyMuscle { name: name.into(), region: region.into(), activation };
+    MuscleWork {
+        effort: 0.0689,
+        largest_activation: 0.24,
+        endurance_s: Some(351.7),
+        missing_nm: None,
+        busiest: vec![
+            muscle("brachialis", "front of the upper arm", 0.24),
+            muscle("flexor digitorum superficialis of the little finger", "palm side of the forearm", 0.06),
+        ],
+    }
+}
+
+#[test]
+fn the_details_tell_what_the_muscles_do() {
+    let verdict = Verdict { muscles: Some(work()), ..holding() };
+    let text = console::details(&verdict, None, None);
+    let lines = "muscles       effort 0.069, largest activation 24 %; can be held about 6 min (estimate)
+busiest       brachialis 24 %, flexor digitorum superficialis of the little finger 6 %\n";
+    assert!(text.ends_with(lines), "{text}");
+    let weak = MuscleWork { missing_nm: Some(1.28), ..work() };
+    assert!(
+        muscles::table(&weak).starts_with("muscles  effort 0.069, largest activation 24 %; cannot: 1.3 N m missing\n")
+    );
+}
+
+#[test]
+fn the_page_has_a_bar_as_long_as_the_activation_of_each_muscle() {
+    let text = muscles::svg(&work());
+    let chart = roxmltree::Document::parse(&text).unwrap();
+    let class = |class| chart.descendants().filter(move |node| node.attribute("class") == Some(class));
+    let number = |node: roxmltree::Node, name| node.attribute(name).unwrap().parse::<f64>().unwrap();
+    let [tracks, bars] =
+        ["track", "muscle"].map(|name| class(name).map(|bar| number(bar, "width")).collect::<Vec<_>>());
+    // The axis ends at 30 %. Coordinates have one digit.
+    for (activation, (track, bar)) in [0.24, 0.06].iter().zip(tracks.iter().zip(&bars)) {
+        assert!((bar / track - activation / 0.3).abs() < 0.1 / track, "{activation}: {bar} of {track}");
+    }
+    let limit = class("limit").next().unwrap();
+    let bar = class("muscle").next().unwrap();
+    assert!((number(limit, "x1") - number(bar, "x") - tracks[0] / 2.0).abs() < 0.1);
+    let child = |name: &str| chart.root_element().children().find(|node| node.has_tag_name(name)).unwrap().text();
+    assert_eq!(child("title"), Some("Activation of the busiest muscles"));
+    assert_eq!(child("desc"), Some(&*work().busiest_in_words()));
+
+    let page = |work: MuscleWork| html::page(&[judged(Verdict { muscles: Some(work), ..holding() })]);
+    assert!(page(work()).contains("effort 0.069 (sum of squared activations); can be held about 6 min (by the"));
+    let weak = MuscleWork { missing_nm: Some(1.28), ..work() };
+    assert!(page(weak).contains("cannot: 1.3 N m missing (the muscles"));
+    assert!(!html::page(&outcomes()).contains("class=\"muscles\""));
+}
+
+#[test]
+fn summaries_have_effort_and_largest_activation() {
+    let outcomes = [judged(Verdict { muscles: Some(work()), ..holding() }), judged(holding())];
+    let text = String::from_utf8(summary::csv(&outcomes).unwrap()).unwrap();
+    let mut rows = csv::Reader::from_reader(text.as_bytes());
+    let header = rows.headers().unwrap().clone();
+    let columns = ["muscle_effort", "largest_activation"].map(|name| header.iter().position(|h| h == name).unwrap());
+    let cells: Vec<_> =
+        rows.records().map(|row| columns.map(|column| row.as_ref().unwrap()[column].to_owned())).collect();
+    assert_eq!(cells, [["0.0689", "0.2400"], ["", ""]]);
+    let json: serde_json::Value = serde_json::from_str(&summary::json(&outcomes)).unwrap();
+    assert_eq!(json["outcomes"][0]["muscle_effort"], 0.0689);
+    assert!(json["outcomes"][1]["largest_activation"].is_null());
 }

@@ -2,17 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::tree::Robot;
+use super::tree::{Face, Robot};
 use crate::model::frames::Pose;
 
 /// A rectangle in the plane of a pad: ranges along x_G and z_G, m.
 pub(super) type Rectangle = [[f64; 2]; 2];
-
-/// Shapes of links that move as one, each as the index of its link and its place among the shapes of the link.
-#[derive(Clone, Debug)]
-pub struct Face {
-    shapes: Vec<[usize; 2]>,
-}
 
 impl Face {
     /// All shapes of links.

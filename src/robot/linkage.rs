@@ -9,8 +9,8 @@ use std::sync::Arc;
 use nalgebra::{Unit, Vector3};
 
 use super::{
-    faces::{Face, Rectangle},
-    tree::{Arm, ArmState, Drive, Finger, Gripper, JointKind, Linkage, Pad, Robot},
+    faces::Rectangle,
+    tree::{Arm, ArmState, Drive, Face, Finger, Gripper, JointKind, Linkage, Pad, Robot},
 };
 use crate::model::frames::Pose;
 

@@ -20,7 +20,6 @@ pub mod tree;
 mod urdf;
 
 pub use chain::Chain;
-pub use faces::Face;
 pub use faults::{Fault, Faults, RobotError};
 pub use geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry};
 pub use holding::{Holding, MeasuredGrip, PadGrip};
@@ -29,6 +28,6 @@ pub use load::BUILTIN;
 pub use mesh::{DrawnForm, DrawnPart, MeshPart};
 pub use packages::Packages;
 pub use tree::{
-    Arm, ArmState, BodyPoint, Cup, Finger, Gripper, Joint, JointKind, Link, Linkage, Mimic, Pad, Robot, RobotOptions,
-    SearchBox,
+    Arm, ArmState, BodyPoint, Cup, Face, Finger, Gripper, Joint, JointKind, Link, Linkage, Mimic, Pad, Robot,
+    RobotOptions, SearchBox,
 };

@@ -5,7 +5,6 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 use nalgebra::{Matrix3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::{
-    faces::Face,
     geometry::{PlacedShape, Visual},
     holding::Holding,
 };
@@ -171,6 +170,12 @@ pub struct Cup {
     pub link: usize,
     /// Radius of the lip, m.
     pub radius_m: f64,
+}
+
+/// Shapes of links that move as one, each as the index of its link and its place among the shapes of the link.
+#[derive(Clone, Debug)]
+pub struct Face {
+    pub(super) shapes: Vec<[usize; 2]>,
 }
 
 /// The mechanism of a gripper's fingers (docs/method.md#26-linkage-grippers).

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use super::{
     activation::MUSCLES,
     basis::{Basis, VARIABLES},
+    regions::REGIONS,
 };
 
 /// Outputs of the map of the angles beyond the shoulder: the correction of the upper arm, then four coordinates.
@@ -49,6 +50,7 @@ struct LengthsSection {
 #[derive(Deserialize)]
 struct MuscleEntry {
     name: String,
+    region: String,
     force_n: f64,
     fibre_m: f64,
     fibre_range: [f64; 2],
@@ -63,6 +65,8 @@ struct MuscleEntry {
 #[derive(Debug)]
 pub(super) struct Muscle {
     pub name: String,
+    /// Index of its region in [`REGIONS`].
+    pub region: usize,
     /// Isometric force at the best length, N.
     pub force_n: f64,
     /// Length of the fibres at which the force is largest, m.
@@ -106,7 +110,9 @@ impl Data {
         let muscle = |entry: MuscleEntry| {
             let lengths = [(&entry.shoulder_mm, shoulder.len()), (&entry.beyond_mm, beyond.len())];
             let fits = lengths.iter().all(|(values, count)| values.is_empty() || values.len() == *count);
+            let region = REGIONS.iter().position(|region| region.name == entry.region)?;
             fits.then(|| Muscle {
+                region,
                 shoulder_m: in_m(&entry.shoulder_mm),
                 beyond_m: in_m(&entry.beyond_mm),
                 constant_m: entry.constant_mm * 1e-3,
@@ -182,5 +188,7 @@ mod tests {
         names.sort();
         names.dedup();
         assert_eq!(names.len(), MUSCLES);
+        let has_muscles = |region| DATA.muscles.iter().any(|muscle| muscle.region == region);
+        assert!((0..REGIONS.len()).all(has_muscles));
     }
 }

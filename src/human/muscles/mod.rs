@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `basis` | polynomials of four variables |
 //! | `data` | the muscles' figures, force over length |
+//! | `regions` | where the muscles are on the arm, for pictures |
 //! | `path` | posture to moment arms, forces, moments, and their derivatives |
 //! | `activation` | the static optimisation |
 //! | `slopes` | derivatives of the effort |
@@ -15,25 +16,29 @@ mod activation;
 mod basis;
 mod data;
 mod path;
+mod regions;
 mod slopes;
 #[cfg(test)]
 mod tests;
 
 pub use self::activation::{MOMENTS, MUSCLES};
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 
 use self::{
     activation::{Moments, MuscleMoments, Optimum, optimum},
     data::DATA,
     path::{MusclePosture, moments_nm, pulls},
+    regions::{REGIONS, Region},
 };
 use super::{
+    arm::ArmFrames,
+    body::Body,
     ranges::ArmAngles,
     strength::{mean_female_ratio, percentile_factor},
 };
 use crate::model::{
-    muscle_work::{BusyMuscle, MuscleWork},
+    muscle_work::{BusyMuscle, ENDLESS_ACTIVATION, MuscleBelly, MuscleWork},
     scenario::{Person, Sex},
 };
 
@@ -45,9 +50,6 @@ const REFERENCE_HEIGHT_M: [f64; 2] = [1.75, 1.62];
 
 /// The muscles that a plan names.
 const NAMED: usize = 5;
-
-/// Activation that can be held for hours by Rohmert's curve.
-const ENDLESS: f64 = 0.15;
 
 /// The moments that an arm exerts about its joints' centres, and the directions of its parts: V axes, for a right arm.
 #[derive(Clone, Copy, Debug)]
@@ -165,19 +167,55 @@ impl MuscleEffort {
 
     /// What a plan states: effort, the busiest muscles, and how long they could hold.
     pub fn work(&self) -> MuscleWork {
-        let mut busiest: Vec<_> = self.activations().collect();
+        let mut order: [usize; MUSCLES] = std::array::from_fn(|muscle| muscle);
         // A stable sort: equal activations stay in the order of the file.
-        busiest.sort_by(|(_, left), (_, right)| right.total_cmp(left));
-        let named = |&(name, activation): &(&str, f64)| BusyMuscle { name: name.into(), activation };
-        let largest_activation = busiest[0].1;
+        order.sort_by(|&left, &right| self.activations[right].total_cmp(&self.activations[left]));
+        let busiest: Vec<_> = order[..NAMED].iter().map(|&muscle| self.muscle(muscle)).collect();
         let missing_nm = self.missing_nm.iter().map(|moment_nm| moment_nm.abs()).fold(0.0, f64::max);
         MuscleWork {
             effort: self.effort,
-            largest_activation,
+            largest_activation: busiest[0].activation,
             missing_nm: (missing_nm > MISSING_LIMIT_NM).then_some(missing_nm),
-            endurance_s: endurance_s(largest_activation),
-            busiest: busiest[..NAMED].iter().map(named).collect(),
+            endurance_s: endurance_s(busiest[0].activation),
+            busiest,
         }
+    }
+
+    /// A muscle with its activation.
+    fn muscle(&self, muscle: usize) -> BusyMuscle {
+        let of_data = &DATA.muscles[muscle];
+        BusyMuscle {
+            name: of_data.name.clone(),
+            region: REGIONS[of_data.region].name.to_owned(),
+            activation: self.activations[muscle],
+        }
+    }
+
+    /// The muscles as they are drawn, one spindle a region: of a right arm, placed by `to_w`.
+    pub(super) fn bellies(
+        &self,
+        body: &Body,
+        arm: &ArmFrames,
+        q_rad: &ArmAngles,
+        to_w: impl Fn(&Vector3<f64>) -> Point3<f64>,
+    ) -> Vec<MuscleBelly> {
+        let belly = |(index, region): (usize, &Region)| {
+            Some(MuscleBelly {
+                region: region.name.to_owned(),
+                ends_w: region.ends_v(body, arm, q_rad).map(|end_v| to_w(&end_v)),
+                radius_m: region.radius_m(body),
+                busiest: self.busiest_of(index)?,
+            })
+        };
+        REGIONS.iter().enumerate().filter_map(belly).collect()
+    }
+
+    /// The busiest muscle of a region; of equal ones the first of the file.
+    fn busiest_of(&self, region: usize) -> Option<BusyMuscle> {
+        let of_region = (0..MUSCLES).filter(|muscle| DATA.muscles[*muscle].region == region);
+        let busiest =
+            of_region.reduce(|first, next| if self.activations[next] > self.activations[first] { next } else { first });
+        busiest.map(|muscle| self.muscle(muscle))
     }
 }
 
@@ -185,5 +223,5 @@ impl MuscleEffort {
 /// share f of the maximum; `None` up to 15 %, where the curve has no end.
 fn endurance_s(activation: f64) -> Option<f64> {
     let f = activation;
-    (f > ENDLESS).then(|| 60.0 * (-1.5 + (2.1 + (-0.6 + 0.1 / f) / f) / f))
+    (f > ENDLESS_ACTIVATION).then(|| 60.0 * (-1.5 + (2.1 + (-0.6 + 0.1 / f) / f) / f))
 }

@@ -8,10 +8,9 @@ use crate::{
     model::frames::Pose,
     robot::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
-        faces::Face,
         geometry::{PlacedShape, Shape, Visual, VisualGeometry},
         holding::Holding,
-        tree::{Finger, Gripper, Joint, JointKind, Linkage, Pad},
+        tree::{Face, Finger, Gripper, Joint, JointKind, Linkage, Pad},
     },
 };
 
