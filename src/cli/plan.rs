@@ -63,6 +63,9 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
             if let Some(clearance) = &plan.clearance {
                 table.push_str(&format!("clearance of the robot: {clearance}\n"));
             }
+            if let Some(push) = plan.stability.as_ref().and_then(|stability| stability.lateral.as_ref()) {
+                table.push_str(&format!("sideways push: {push}, the worst direction\n"));
+            }
             match output {
                 Some(path) => {
                     report::file::write_whole(path, text.as_bytes())?;

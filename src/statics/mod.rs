@@ -8,6 +8,8 @@
 //! - [`StabilityWorkspace::compliant_load_factor`]: the largest multiple at which the equilibrium of the compliant arms
 //!   keeps every limit.
 //!
+//! [`LoadCases`] are the loads with a sideways push of unknown direction; the worst of them counts.
+//!
 //! Both are cone programs. clarabel is used in this module alone; equilibria, which planners solve by the thousand,
 //! have a faster solver of our own (`solvers::interior_point`), compared with clarabel by a test. [`LocalEquilibrium`]
 //! gives the first-order effect of small changes of the contact model. This module depends neither on how a grasp was
@@ -57,6 +59,7 @@ mod equilibrium;
 mod from_plan;
 mod hand;
 mod infeasibility;
+mod lateral;
 mod limit_crossing;
 mod load_factor;
 mod local_equilibrium;
@@ -79,10 +82,12 @@ pub use contact_model::{ContactModel, ContactModelError};
 pub use equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome};
 pub use hand::{HandModel, PadModel};
 pub use infeasibility::{Infeasibility, Mechanism};
+pub use lateral::LoadCases;
 pub use limit_crossing::LimitCrossing;
 pub use load_factor::{LoadFactor, LoadFactorOutcome};
 pub use local_equilibrium::LocalEquilibrium;
 pub use patch::mean_distance_from_centre_m;
+pub use prediction::{CaseAssessment, Prediction};
 pub use robust::{InternalForces, RobustLoadFactor, RobustOutcome, Variation};
 pub use sensitivity::{HandSensitivity, Sensitivity};
 pub use solvers::cone_program::MAX_LOAD_FACTOR;

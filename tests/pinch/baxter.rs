@@ -77,6 +77,7 @@ pub fn plan(robot: &Robot, operation: Operation, mass_kg: f64, grip_force_n: f64
         arms: vec![hold("left", Edge::PLUS_X), hold("right", Edge::MINUS_X)],
         human: None,
         comfort: None,
+        muscles: None,
         stability: None,
         clearance: None,
         planner: None,

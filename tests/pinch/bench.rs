@@ -163,6 +163,7 @@ pub fn plan(robot: &Robot, x_wg: Pose, grip: &Grip, wrench_g: Wrench) -> Plan {
         }],
         human: None,
         comfort: None,
+        muscles: None,
         stability: None,
         clearance: None,
         planner: None,

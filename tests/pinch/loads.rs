@@ -107,8 +107,7 @@ fn a_load_fixed_in_the_world_does_not_turn_with_the_board() {
     let robot = common::baxter();
     let plan = baxter::plan(robot, Operation::drill([0.1, 0.1], 20.0, THICKNESS_M), BOARD_KG, 30.0);
     let last_hold = |frame| {
-        let conditions =
-            Conditions { load: Load { frame, profile: ForceProfile::Ramp }, ..Conditions::new(0.6, SHORT) };
+        let conditions = Conditions { load: Load { frame, ..Load::default() }, ..Conditions::new(0.6, SHORT) };
         last(&simulate(robot, &plan, &conditions).unwrap(), Phase::Hold).clone()
     };
     let planned_n = plan.object.x_wo.rotation * Vector3::new(0.0, 0.0, -20.0);
@@ -243,7 +242,7 @@ fn the_frame_of_a_slanted_world_load_is_the_planned_one() {
     let found = [0.0, 0.7].map(|turn| {
         let (robot, x_wg) = robot(turn);
         let plan = bench::plan(&robot, x_wg, &grip, force_along_x_g(20.0));
-        let load = Load { frame: ForceFrame::World, profile: ForceProfile::Ramp };
+        let load = Load { frame: ForceFrame::World, ..Load::default() };
         let trace = simulate(&robot, &plan, &Conditions { load, ..Conditions::new(0.6, SHORT) }).unwrap();
         last(&trace, Phase::Hold).arms[0].x_oc
     });
