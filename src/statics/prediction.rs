@@ -5,7 +5,7 @@ use super::{
     equilibrium::{CompliantResponse, ResponseOutcome},
     lateral::LoadCases,
     load_factor::LoadFactorOutcome,
-    workspace::StabilityWorkspace,
+    workspace::{AtRest, StabilityWorkspace},
 };
 use crate::model::{
     plan::Stability,
@@ -30,7 +30,7 @@ impl StabilityWorkspace {
         limits: &Limits,
         kind: StabilityKind,
     ) -> Result<f64, ContactModelError> {
-        self.assess_case(model, limits, kind).map(|(utilisation, _)| utilisation)
+        self.assess_case(model, limits, kind, &mut None).map(|(utilisation, _)| utilisation)
     }
 
     /// The case of the largest utilisation, see [`StabilityWorkspace::utilisation`]; the first without an equilibrium, if there is
@@ -45,11 +45,11 @@ impl StabilityWorkspace {
         kind: StabilityKind,
     ) -> Result<CaseAssessment, ContactModelError> {
         let mut worst = CaseAssessment { utilisation: f64::NEG_INFINITY, response: None, case: 0 };
-        let mut case = 0;
+        let (mut case, mut at_rest) = (0, None);
         cases.each(|model| {
             // Nothing is worse.
             if worst.utilisation < f64::INFINITY {
-                let (utilisation, response) = self.assess_case(model, limits, kind)?;
+                let (utilisation, response) = self.assess_case(model, limits, kind, &mut at_rest)?;
                 if utilisation > worst.utilisation {
                     worst = CaseAssessment { utilisation, response, case };
                 }
@@ -70,6 +70,7 @@ impl StabilityWorkspace {
         model: &ContactModel,
         limits: &Limits,
         kind: StabilityKind,
+        at_rest: &mut Option<AtRest>,
     ) -> Result<(f64, Option<CompliantResponse>), ContactModelError> {
         const UNSTABLE: (f64, Option<CompliantResponse>) = (f64::INFINITY, None);
         let least = limits.load_factor;
@@ -84,10 +85,12 @@ impl StabilityWorkspace {
         if kind == StabilityKind::Paper {
             return Ok((utilisation, None));
         }
-        let ResponseOutcome::Found(response) = self.response(model, least)? else { return Ok(UNSTABLE) };
+        let ResponseOutcome::Found(response) = self.response_from(model, least, at_rest)? else { return Ok(UNSTABLE) };
         utilisation = response.utilisation(model, limits).max(utilisation);
         if least < 1.0 {
-            let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(UNSTABLE) };
+            let ResponseOutcome::Found(response) = self.response_from(model, 1.0, at_rest)? else {
+                return Ok(UNSTABLE);
+            };
             utilisation = utilisation.max(response.deflection_mm() / limits.deflection_mm);
         }
         Ok((utilisation, Some(*response)))
