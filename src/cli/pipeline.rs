@@ -139,10 +139,8 @@ fn notes(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Vec<String> {
 
 /// The simulated sideways push in words.
 fn push_note(push: &LateralPush, load: &Load) -> String {
-    let percent = load.lateral_share * 100.0;
-    format!(
-        "the hand also pushes sideways with {percent:.3} % of the force, {push}, the worst of the directions by the statics"
-    )
+    let share = load.lateral_share;
+    format!("the hand also pushes sideways with {share} of the force, {push}, the worst direction by the statics")
 }
 
 /// The verdict on a scenario for which nothing was simulated.

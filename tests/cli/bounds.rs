@@ -50,6 +50,20 @@ fn values_beyond_their_bounds() {
              speed_m_s = 0.1\ncentre_m = [1e300, 0.0]\n",
             "bad.toml:16: load.centre_m: found [1e300, 0.0], expected numbers from -10 to 10 (m)",
         ),
+    ] {
+        assert_scenario_refused(replace, with, message);
+    }
+    let csv = "time_s,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm\n0,0,0,0,0,0,0\n0.1,0,0,-1e5,0,0,0\n";
+    let scenario = format!("{SCENARIO}\n[load]\nkind = \"measured\"\nfile = \"forces.csv\"\n");
+    let folder = folder(&[("forces.csv", csv), ("bad.toml", &scenario)]);
+    let message = "forces.csv:3: fz_n: found \"-1e5\", expected a number from -10000 to 10000";
+    assert_refused(&benchdog(folder.path(), &["run", "bad.toml"]), message);
+}
+
+/// A share of a force that is not there, or that has its sideways part already.
+#[test]
+fn a_sideways_push_beyond_its_bounds_or_of_no_force() {
+    for (replace, with, message) in [
         (
             "[grip]",
             "[load]\nlateral_share = 1.5\n\n[grip]",
@@ -66,13 +80,8 @@ fn values_beyond_their_bounds() {
     }
     let csv = "time_s,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm\n0,0,0,0,0,0,0\n0.1,1,0,-5,0,0,0\n";
     let scenario = format!("{SCENARIO}\n[load]\nkind = \"measured\"\nfile = \"forces.csv\"\nlateral_share = 0.13\n");
-    let folder_of_measured = folder(&[("forces.csv", csv), ("bad.toml", &scenario)]);
-    let message = "bad.toml:19: load.lateral_share: found 0.13, expected 0 with a measured force, which has its sideways part already";
-    assert_refused(&benchdog(folder_of_measured.path(), &["run", "bad.toml"]), message);
-    let csv = "time_s,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm\n0,0,0,0,0,0,0\n0.1,0,0,-1e5,0,0,0\n";
-    let scenario = format!("{SCENARIO}\n[load]\nkind = \"measured\"\nfile = \"forces.csv\"\n");
     let folder = folder(&[("forces.csv", csv), ("bad.toml", &scenario)]);
-    let message = "forces.csv:3: fz_n: found \"-1e5\", expected a number from -10000 to 10000";
+    let message = "bad.toml:19: load.lateral_share: found 0.13, expected 0 with a measured force, which has its sideways part already";
     assert_refused(&benchdog(folder.path(), &["run", "bad.toml"]), message);
 }
 
