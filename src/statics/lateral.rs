@@ -71,7 +71,7 @@ impl LoadCases {
         ContactModel { load: *load, ..self.model }
     }
 
-    /// The case with the direction of a push; the first if there is none, or without a push.
+    /// The case with the direction of a push; the first without such a case or without a push.
     #[must_use]
     pub fn case_of(&self, push: Option<&LateralPush>) -> usize {
         let direction_deg = push.map(|push| push.direction_deg);
