@@ -1,4 +1,4 @@
-//! The sideways part of a person's push (`docs/method.md#614-sideways-push`).
+//! The sideways part of a person's push (`docs/method.md#613-sideways-push`).
 //!
 //! Nobody pushes exactly along a tool. Besides the operation's force `f` the hand exerts a share of it in the plane
 //! perpendicular to `f`, through the tool tip, in a direction that nobody knows beforehand.

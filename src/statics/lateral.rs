@@ -1,4 +1,4 @@
-//! Loads with a sideways push of unknown direction (docs/method.md#614-sideways-push).
+//! Loads with a sideways push of unknown direction (docs/method.md#613-sideways-push).
 //!
 //! The hands hold the board while the person pushes, so their forces differ from direction to direction: every direction is a
 //! load of its own, and the worst of them counts. The loads that a grasp resists at one load factor are a convex set, so the

@@ -14,7 +14,7 @@ use crate::{
     shared::{PLANNER, verified},
 };
 
-/// The share of the thrust that people push sideways with a hammer drill (docs/method.md#614-sideways-push).
+/// The share of the thrust that people push sideways with a hammer drill (docs/method.md#613-sideways-push).
 const SHARE: f64 = 0.13;
 
 /// Simulates a plan pushed in some direction; by default the worst.
