@@ -8,7 +8,8 @@ use crate::{
     judge::{Judgement, confirmed, judge},
     model::{
         FORMAT,
-        load::Uncertainty,
+        lateral::LateralPush,
+        load::{Load, Uncertainty},
         plan::{Plan, PostureFigures},
         scenario::Scenario,
         trace::Trace,
@@ -88,7 +89,7 @@ fn checked_and_judged(
     let plan = checked.plan();
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
-    Ok((Verdict { notes: notes(scenario, plan), ..verdict }, Some((trace, judgement))))
+    Ok((Verdict { notes: notes(checked, scenario), ..verdict }, Some((trace, judgement))))
 }
 
 /// The simulation of a plan and its judgement, confirmed at shorter time steps if it is near to a limit. A grasp that holds
@@ -126,11 +127,20 @@ fn cannot_carry_the_weight(checked: &CheckedPlan<'_>, scenario: &Scenario) -> bo
     }
 }
 
-/// The assumptions of the simulation that a plan strains.
-fn notes(scenario: &Scenario, plan: &Plan) -> Vec<String> {
+/// The sideways push of the simulation, and the assumptions that a plan strains.
+fn notes(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Vec<String> {
+    let push = Conditions::of(scenario).lateral_push(checked).map(|push| push_note(&push, &scenario.load));
     let material = &scenario.object.material;
     let properties = bending_properties(material);
-    properties.and_then(|properties| bending_note(plan, material, &properties, &scenario.limits)).into_iter().collect()
+    let bending =
+        properties.and_then(|properties| bending_note(checked.plan(), material, &properties, &scenario.limits));
+    push.into_iter().chain(bending).collect()
+}
+
+/// The simulated sideways push in words.
+fn push_note(push: &LateralPush, load: &Load) -> String {
+    let share = load.lateral_share;
+    format!("the hand also pushes sideways with {share} of the force, {push}, the worst direction by the statics")
 }
 
 /// The verdict on a scenario for which nothing was simulated.

@@ -66,6 +66,9 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
             if let Some(work) = &plan.muscles {
                 table.push_str(&report::muscles::table(work));
             }
+            if let Some(push) = plan.stability.as_ref().and_then(|stability| stability.lateral.as_ref()) {
+                table.push_str(&format!("sideways push: {push}, the worst direction\n"));
+            }
             match output {
                 Some(path) => {
                     report::file::write_whole(path, text.as_bytes())?;

@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use crate::{
     check::CheckedPlan,
-    model::scenario::Scenario,
+    model::{lateral::LateralPush, scenario::Scenario},
     statics::{
-        ContactModel, ContactModelError, HandModel, HandSensitivity, InternalForces, LoadFactor, LoadFactorOutcome,
-        RobustOutcome, StabilityWorkspace, Variation,
+        ContactModel, ContactModelError, HandModel, HandSensitivity, InternalForces, LoadCases, LoadFactor,
+        LoadFactorOutcome, RobustOutcome, StabilityWorkspace, Variation,
     },
 };
 
@@ -39,6 +39,9 @@ pub struct Predicted {
     pub compliant: f64,
     /// The limit that ends it.
     compliant_ended_by: Option<String>,
+    /// The sideways push in the direction with the smallest compliant prediction; only if the scenario has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lateral: Option<LateralPush>,
     /// What larger limits would add to `best_case`, largest first.
     gains: Vec<Gain>,
 }
@@ -63,13 +66,17 @@ struct Gain {
 
 /// The prediction for a plan at the friction that it assumes, or the reason for its absence.
 pub fn predicted(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Predicted, String> {
-    let model = ContactModel::of_plan(checked, scenario.grip.friction).map_err(|error| error.to_string())?;
-    of_model(&model, scenario).map_err(|error| error.to_string())?
+    let cases =
+        LoadCases::of_plan(checked, scenario.grip.friction, &scenario.load).map_err(|error| error.to_string())?;
+    of_cases(&cases, scenario).map_err(|error| error.to_string())?
 }
 
-fn of_model(model: &ContactModel, scenario: &Scenario) -> Result<Result<Predicted, String>, ContactModelError> {
+/// Each figure is that of the worst case of the loads.
+fn of_cases(cases: &LoadCases, scenario: &Scenario) -> Result<Result<Predicted, String>, ContactModelError> {
     let mut workspace = StabilityWorkspace::new();
-    let best_case = match workspace.load_factor(model)? {
+    let (case, best_case) = workspace.least_load_factor(cases)?;
+    let model = &cases.clone().into_case(case);
+    let best_case = match best_case {
         LoadFactorOutcome::Solved(best_case) => best_case,
         LoadFactorOutcome::GravityInfeasible { certificate } => {
             let proof = if certificate.proves_infeasible(model)? { "proven by its certificate" } else { "not proven" };
@@ -77,7 +84,7 @@ fn of_model(model: &ContactModel, scenario: &Scenario) -> Result<Result<Predicte
         }
         LoadFactorOutcome::Unknown { status } => return Ok(Err(format!("the solver stopped early: {status}"))),
     };
-    let compliant = workspace.compliant_load_factor(model, &scenario.limits)?;
+    let (compliant_case, compliant) = workspace.least_compliant_load_factor(cases, &scenario.limits)?;
     Ok(Ok(Predicted {
         best_case_bound: best_case.dual.upper_bound(model)?,
         robust: robust(&mut workspace, model, scenario)?,
@@ -86,10 +93,11 @@ fn of_model(model: &ContactModel, scenario: &Scenario) -> Result<Result<Predicte
         binding: best_case.binding,
         compliant: compliant.load_factor,
         compliant_ended_by: compliant.first_limit.map(|limit| limit.to_string()),
+        lateral: cases.push(compliant_case),
     }))
 }
 
-/// The load factor at nominal and scaled friction and grip force; `None` if the scenario scales neither, or without a
+/// The load factor of the worst case at nominal and scaled friction and grip force; `None` if the scenario scales neither, or without a
 /// result. The arms do not measure either, so their internal force is the same in both cases.
 fn robust(
     workspace: &mut StabilityWorkspace,
@@ -144,6 +152,9 @@ impl Predicted {
             text.push_str(&format!(
                 "robust load factor   {load_factor:7.3}  nominal, and friction x {friction_scale}, grip x {grip_force_scale}\n"
             ));
+        }
+        if let Some(push) = &self.lateral {
+            text.push_str(&format!("sideways push        {push}: the worst direction of the compliant prediction\n"));
         }
         if !self.gains.is_empty() {
             text.push_str("\nhand      change                          best case\n");

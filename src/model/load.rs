@@ -4,6 +4,8 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::omitted::is_default;
+
 /// The tool's load in a simulation (`docs/method.md#73-applied-load`).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -12,6 +14,10 @@ pub struct Load {
     pub frame: ForceFrame,
     /// The wrench as a function of time.
     pub profile: ForceProfile,
+    /// Sideways part of the person's push, in the plane perpendicular to the operation's force and in its worst direction, as a
+    /// share of that force; 0 by default.
+    #[serde(skip_serializing_if = "is_default")]
+    pub lateral_share: f64,
 }
 
 /// The frame in which the direction of the tool's wrench is constant. It acts at the same point of the board in both

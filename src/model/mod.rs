@@ -8,6 +8,7 @@ pub mod board;
 pub mod board_mesh;
 pub mod frames;
 pub mod grasp;
+pub mod lateral;
 pub mod load;
 pub mod measures;
 pub mod muscle_work;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     frames::{Pose, PoseForm, pose},
+    lateral::LateralPush,
     muscle_work::MuscleWork,
     omitted::is_default,
     operation::Operation,
@@ -477,6 +478,10 @@ pub struct Stability {
     pub joint_torque_nm: BTreeMap<String, Vec<f64>>,
     /// Displacement of the tool point in the compliant equilibrium at load factor 1, mm.
     pub predicted_deflection_mm: f64,
+    /// The sideways push of the direction with the least compliant load factor; the torques are those under it. Only with
+    /// `load.lateral_share`; all figures are then the worst of all directions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateral: Option<LateralPush>,
 }
 
 /// The least distance of the robot from itself and from the board (`docs/method.md#35-clearances`).

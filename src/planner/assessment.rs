@@ -3,22 +3,24 @@
 use rayon::prelude::*;
 
 use super::{
-    candidate::Candidate, contact::contact_model, library::BoardGrasp, load_shift::LoadShift, outcome::Rejection,
+    candidate::Candidate, contact::load_cases, library::BoardGrasp, load_shift::LoadShift, outcome::Rejection,
     problem::Problem,
 };
 use crate::{
     model::{frames::Pose, scenario::StabilityKind},
-    statics::{ContactModel, ContactModelError, ResponseOutcome, StabilityWorkspace},
+    statics::{CaseAssessment, ContactModel, ContactModelError, LoadCases, ResponseOutcome, StabilityWorkspace},
 };
 
-/// How a grasp resists its load.
+/// How a grasp resists its loads, by the worst of their cases.
 #[derive(Clone, Debug, Default)]
 pub struct Assessment {
     /// The share of the limits of stability that it uses, safety factor included: at most 1 if it is stable, infinite if there is
     /// no equilibrium.
     pub utilisation: f64,
-    /// Where the load at the required load factor moves arms and board; `None` unless the clearance is kept under the load.
+    /// Where the load of the worst case, at the required load factor, moves arms and board; `None` unless the clearance is kept under the load.
     pub shift: Option<LoadShift>,
+    /// The case of the loads from which both follow.
+    pub case: usize,
 }
 
 /// How a candidate's grasp resists its load.
@@ -28,24 +30,24 @@ pub fn assess(
     candidate: &Candidate,
     x_wo: &Pose,
 ) -> Assessment {
-    assess_model(problem, workspace, contact_model(problem, candidate, x_wo))
+    assess_cases(problem, workspace, load_cases(problem, candidate, x_wo))
 }
 
-/// How a contact model of a grasp resists its load.
-pub fn assess_model(
+/// How a grasp resists these loads.
+pub fn assess_cases(
     problem: &Problem<'_>,
     workspace: &mut StabilityWorkspace,
-    model: Result<ContactModel, ContactModelError>,
+    cases: Result<LoadCases, ContactModelError>,
 ) -> Assessment {
     let keeps_clear = problem.scenario.limits.clearance_mm > 0.0;
-    model
-        .and_then(|model| workspace.assess(&model, &problem.stability_limits(), problem.scenario.planner.stability))
-        .map(|(utilisation, response)| {
+    cases
+        .and_then(|cases| workspace.assess(&cases, &problem.stability_limits(), problem.scenario.planner.stability))
+        .map(|CaseAssessment { utilisation, response, case }| {
             let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
-            Assessment { utilisation, shift }
+            Assessment { utilisation, shift, case }
         })
         // A contact model is refused if, for example, a pad is off the board: such a grasp resists nothing.
-        .unwrap_or(Assessment { utilisation: f64::INFINITY, shift: None })
+        .unwrap_or(Assessment { utilisation: f64::INFINITY, ..Assessment::default() })
 }
 
 /// The utilisation of each grasp with the roll of the scenario's tool, see [`Assessment`].

@@ -1,4 +1,4 @@
-//! A candidate's grasp as a plan and the contact model have it.
+//! A candidate's grasp as a plan and the statics have it.
 
 use super::{candidate::Candidate, problem::Problem};
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
         plan::{ArmHold, PlacedObject},
         scenario::{Grip, Scenario},
     },
-    statics::{ContactModel, ContactModelError, HandModel},
+    statics::{ContactModel, ContactModelError, HandModel, LoadCases},
 };
 
 /// The arms of a candidate as a plan lists them.
@@ -29,22 +29,18 @@ pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
     scenario.object.placed(x_wo)
 }
 
-/// The contact model of a candidate's grasp.
-pub fn contact_model(
-    problem: &Problem<'_>,
-    candidate: &Candidate,
-    x_wo: &Pose,
-) -> Result<ContactModel, ContactModelError> {
-    contact_model_with(problem, candidate, x_wo, &problem.scenario.grip)
+/// The loads of a candidate's grasp with its contact model.
+pub fn load_cases(problem: &Problem<'_>, candidate: &Candidate, x_wo: &Pose) -> Result<LoadCases, ContactModelError> {
+    load_cases_with(problem, candidate, x_wo, &problem.scenario.grip)
 }
 
-/// The contact model of a candidate's grasp with another grip force or friction than the scenario's.
-pub fn contact_model_with(
+/// The loads of a candidate's grasp with another grip force or friction than the scenario's.
+pub fn load_cases_with(
     problem: &Problem<'_>,
     candidate: &Candidate,
     x_wo: &Pose,
     grip: &Grip,
-) -> Result<ContactModel, ContactModelError> {
+) -> Result<LoadCases, ContactModelError> {
     let object = placed_object(problem.scenario, *x_wo);
     let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
         .into_iter()
@@ -56,5 +52,6 @@ pub fn contact_model_with(
         })
         .collect();
     let operation = problem.scenario.operation.rolled(candidate.work.roll_rad);
-    Ok(ContactModel::from_hands(hands?, &object, &operation))
+    let model = ContactModel::from_hands(hands?, &object, &operation);
+    Ok(LoadCases::new(model, &operation, &problem.scenario.load))
 }

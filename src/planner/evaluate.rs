@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use super::{
     assessment::{self, Assessment, load_shift, test_stability},
     candidate::{Candidate, Placement},
-    contact::contact_model,
+    contact::load_cases,
     library::{GraspingArm, posture_muscular, within_strength},
     load_shift::Held,
     near_miss::NearMisses,
@@ -23,7 +23,7 @@ use crate::{
         plan::{ArmHold, Clearance, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
         scenario::StabilityKind,
     },
-    statics::{ContactModel, HandModel, LocalEquilibrium, StabilityWorkspace},
+    statics::{ContactModel, HandModel, LoadCases, LocalEquilibrium, Prediction, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
@@ -147,13 +147,13 @@ impl<'a> Evaluator<'a> {
         assessment::assess(&self.problem, &mut self.stability, candidate, x_wo)
     }
 
-    /// The equilibrium at a candidate, from which those nearby are cheap; `None` if stability is not compliant or there is no
+    /// The equilibrium at a candidate under the load of a case, from which those nearby are cheap; `None` if stability is not compliant or there is no
     /// equilibrium.
-    pub fn local_equilibrium(&self, candidate: &Candidate, x_wo: &Pose) -> Option<LocalEquilibrium> {
+    pub fn local_equilibrium(&self, candidate: &Candidate, x_wo: &Pose, case: usize) -> Option<LocalEquilibrium> {
         if self.problem.scenario.planner.stability != StabilityKind::Compliant {
             return None;
         }
-        let model = contact_model(&self.problem, candidate, x_wo).ok()?;
+        let model = load_cases(&self.problem, candidate, x_wo).ok()?.into_case(case);
         LocalEquilibrium::new(&model, self.problem.stability_limits().load_factor)
     }
 
@@ -170,8 +170,9 @@ impl<'a> Evaluator<'a> {
         };
         let hands: Result<Vec<_>, _> = arms.iter().zip(&robot.arms).map(hand).collect();
         let model = ContactModel::from_hands(hands.ok()?, object, operation);
-        let stability = self.stability.predict(&model, &scenario.limits).ok()??;
-        let shift = load_shift(&mut self.stability, &model, scenario.planner.stability);
+        let cases = LoadCases::new(model, operation, &scenario.load);
+        let Prediction { stability, case } = self.stability.predict(&cases, &scenario.limits).ok()??;
+        let shift = load_shift(&mut self.stability, &cases.into_case(case), scenario.planner.stability);
         let held = Held { robot: &robot.robot, collision: &robot.collision, arms, object };
         Some((stability, held.clearance(shift.as_ref())))
     }

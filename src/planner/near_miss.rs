@@ -2,9 +2,9 @@
 //! it stable enough.
 
 use super::{
-    assessment::assess_model,
+    assessment::assess_cases,
     candidate::Candidate,
-    contact::{contact_model, contact_model_with},
+    contact::{load_cases, load_cases_with},
     outcome::{MOST_FRICTION, NearMiss, Remedy},
     params::near_miss::{FRICTION_STEP, GRIP_STEP_N, KEPT, LOAD_STEPS},
     problem::Problem,
@@ -14,7 +14,7 @@ use crate::{
         frames::Pose,
         scenario::{Grip, Limits, StabilityKind},
     },
-    statics::{ContactModel, ContactModelError, LimitCrossing, LoadFactorOutcome, StabilityWorkspace},
+    statics::{ContactModelError, LimitCrossing, LoadCases, LoadFactorOutcome, StabilityWorkspace},
 };
 
 /// The candidates whose utilisation of stability is lowest among those that violate nothing else, the lowest first.
@@ -81,15 +81,15 @@ struct Solver<'p> {
 impl Solver<'_> {
     /// The multiple of the load that a grasp resists, and the limit that is crossed above it.
     fn resisted(&mut self, miss: &Miss) -> Option<(f64, String)> {
-        let model = contact_model(self.problem, &miss.candidate, &miss.x_wo).ok()?;
+        let cases = load_cases(self.problem, &miss.candidate, &miss.x_wo).ok()?;
         if self.problem.scenario.planner.stability == StabilityKind::Paper {
-            return match self.stability.load_factor(&model).ok()? {
+            return match self.stability.least_load_factor(&cases).ok()?.1 {
                 LoadFactorOutcome::Solved(solved) => Some((solved.load_factor, solved.binding.into_iter().next()?)),
                 LoadFactorOutcome::GravityInfeasible { .. } => Some((0.0, "the weight alone".to_owned())),
                 LoadFactorOutcome::Unknown { .. } => None,
             };
         }
-        let found = self.stability.compliant_load_factor(&model, &self.limits).ok()?;
+        let (_, found) = self.stability.least_compliant_load_factor(&cases, &self.limits).ok()?;
         let limit = match found.first_limit? {
             LimitCrossing::NoEquilibrium { binding } => {
                 binding.into_iter().next().unwrap_or_else(|| "the weight alone".to_owned())
@@ -126,7 +126,7 @@ impl Solver<'_> {
         let [few, many] = [now, most].map(|value| (value / step).floor() as u32);
         let enough = smallest(misses, [few, many], |miss, steps| {
             let grip = with(grip, f64::from(steps) * step);
-            self.is_stable(contact_model_with(problem, &miss.candidate, &miss.x_wo, &grip))
+            self.is_stable(load_cases_with(problem, &miss.candidate, &miss.x_wo, &grip))
         });
         enough.map(|enough| Remedy { now, enough: f64::from(enough) * step })
     }
@@ -136,16 +136,16 @@ impl Solver<'_> {
         let problem = self.problem;
         let share = |removed: u32| f64::from(LOAD_STEPS - removed) / f64::from(LOAD_STEPS);
         let removed = smallest(misses, [0, LOAD_STEPS - 1], |miss, removed| {
-            let model = contact_model(problem, &miss.candidate, &miss.x_wo);
-            self.is_stable(model.map(|model| ContactModel { load: model.load.scaled(share(removed)), ..model }))
+            let cases = load_cases(problem, &miss.candidate, &miss.x_wo);
+            self.is_stable(cases.map(|cases| cases.scaled(share(removed))))
         });
         removed.map(share)
     }
 
-    /// True if a grasp with this contact model resists the load. Whether the robot stays clear under it is not asked: a
+    /// True if a grasp resists these loads. Whether the robot stays clear under it is not asked: a
     /// grasp nearby may, and the limit that the message is about is that of stability.
-    fn is_stable(&mut self, model: Result<ContactModel, ContactModelError>) -> bool {
-        assess_model(self.problem, &mut self.stability, model).utilisation <= 1.0
+    fn is_stable(&mut self, cases: Result<LoadCases, ContactModelError>) -> bool {
+        assess_cases(self.problem, &mut self.stability, cases).utilisation <= 1.0
     }
 }
 

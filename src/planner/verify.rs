@@ -14,7 +14,7 @@ use crate::{
         scenario::{ResponseKind, Scenario, StabilityKind},
     },
     robot::Robot,
-    statics::{ContactModel, StabilityWorkspace},
+    statics::{LoadCases, Prediction, StabilityWorkspace},
 };
 
 /// The compliant load factor is found to a thousandth, from below.
@@ -157,13 +157,16 @@ fn mean_response(
 
 fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut Vec<Flaw>) {
     let Some(stated) = &checked.plan().stability else { return flaws.push(Flaw::Missing { key: "stability" }) };
-    let found = ContactModel::of_plan(checked, scenario.grip.friction)
-        .and_then(|model| StabilityWorkspace::new().predict(&model, &scenario.limits));
-    let found = match found {
-        Ok(Some(found)) => found,
+    let predicted = LoadCases::of_plan(checked, scenario.grip.friction, &scenario.load)
+        .and_then(|cases| StabilityWorkspace::new().predict(&cases, &scenario.limits));
+    let found = match predicted {
+        Ok(Some(Prediction { stability, .. })) => stability,
         Ok(None) => return flaws.push(Flaw::NoEquilibrium),
         Err(error) => return flaws.push(Flaw::ContactModel(error.to_string())),
     };
+    if found.lateral.is_some() && stated.lateral.is_none() {
+        flaws.push(Flaw::Missing { key: "stability.lateral" });
+    }
     let least = scenario.limits.load_factor;
     let mut limit = |is_kept: bool, key, found, limit| {
         if !is_kept {
@@ -187,12 +190,14 @@ fn verify_stability(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut 
     }
 }
 
-/// The clearance under the load, and the stated figures. That of the planned pose is among the contacts.
+/// The clearance under the load, with the push that the plan states, and the stated figures. That of the planned pose is among the contacts.
 fn verify_clearance(checked: &CheckedPlan<'_>, scenario: &Scenario, flaws: &mut Vec<Flaw>) {
     let plan = checked.plan();
-    let shift = ContactModel::of_plan(checked, scenario.grip.friction)
-        .ok()
-        .and_then(|model| load_shift(&mut StabilityWorkspace::new(), &model, scenario.planner.stability));
+    let push = plan.stability.as_ref().and_then(|stability| stability.lateral.as_ref());
+    let shift = LoadCases::of_plan(checked, scenario.grip.friction, &scenario.load).ok().and_then(|cases| {
+        let case = cases.case_of(push);
+        load_shift(&mut StabilityWorkspace::new(), &cases.into_case(case), scenario.planner.stability)
+    });
     let (robot, collision) = (checked.robot(), checked.collision());
     let held = Held { robot, collision, arms: &plan.arms, object: &plan.object };
     let required = Some(scenario.limits.clearance_m()).filter(|clearance_m| *clearance_m > 0.0);

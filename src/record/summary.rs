@@ -141,6 +141,9 @@ fn figures(text: &mut String, plan: &Plan) {
              deflection {deflection_mm:.2} mm"
             ),
         );
+        if let Some(lateral) = &stability.lateral {
+            push(text, format_args!("Sideways push: {lateral}, the worst direction"));
+        }
     }
     if let Some(clearance) = &plan.clearance {
         push(text, format_args!("Clearance of the robot: {clearance}"));

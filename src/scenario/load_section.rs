@@ -51,6 +51,9 @@ pub struct LoadSection {
     pub kind: LoadKind,
     /// The frame in which the wrench's direction is constant: `board`, the default, or `world`.
     pub frame: ForceFrame,
+    /// Sideways part of the person's push, as a share of the operation's force, 0 to 1: in the plane perpendicular to that
+    /// force, in its worst direction, for predictions, planners and simulation. 0 by default; not with `measured`.
+    pub lateral_share: Option<f64>,
     /// For `drill`: torque of the spindle on the board about the tool's axis z_T, N m; 0 by default.
     pub spindle_torque_nm: Option<f64>,
     /// For `drill`: amplitude of the thrust's vibration, N; 0 by default.
@@ -98,7 +101,7 @@ pub fn load(check: &Checker<'_>, section: &LoadSection, folder: &Path) -> Result
             ForceProfile::Measured { samples: measured(&folder.join(file))? }
         }
     };
-    Ok(Load { frame: section.frame, profile })
+    Ok(Load { frame: section.frame, profile, lateral_share: section.lateral_share.unwrap_or(0.0) })
 }
 
 fn check_keys(check: &Checker<'_>, section: &LoadSection) -> Result<(), InputError> {
@@ -178,6 +181,7 @@ fn unreadable(path: &Path, error: &csv::Error) -> InputError {
 /// Checks the load of a resolved scenario against its operation and phases.
 pub fn check_load(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError> {
     let kind = scenario.operation.kind;
+    check_lateral(check, scenario)?;
     match &scenario.load.profile {
         ForceProfile::Ramp => Ok(()),
         ForceProfile::Drill { spindle_torque_nm, vibration_n, vibration_hz, breakthrough_s } => {
@@ -203,6 +207,21 @@ pub fn check_load(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputE
             check.that(fine, "load.profile.samples", format!("{} rows", samples.len()), &expected)
         }
     }
+}
+
+/// Requires a sideways share of a force that there is. A measured wrench has its sideways part already.
+fn check_lateral(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError> {
+    const KEY: &str = "load.lateral_share";
+    let Load { profile, lateral_share, .. } = &scenario.load;
+    check.within(KEY, *lateral_share, 0.0, 1.0, "a share of the operation's force")?;
+    if *lateral_share == 0.0 {
+        return Ok(());
+    }
+    let found = lateral_share.to_string();
+    let is_measured = matches!(profile, ForceProfile::Measured { .. });
+    check.that(!is_measured, KEY, found.clone(), "0 with a measured force, which has its sideways part already")?;
+    let has_force = scenario.operation.wrench_o.force_n.norm() > 0.0;
+    check.that(has_force, KEY, found, "0 for an operation without a force")
 }
 
 /// Requires a knife that does not start at the circle's centre and stays on the board.

@@ -1,9 +1,14 @@
 //! The conditions of a simulation: everything that is not part of the plan.
 
 use super::error::SimError;
-use crate::model::{
-    load::{Load, Uncertainty},
-    scenario::{Scenario, SimulationSettings},
+use crate::{
+    check::CheckedPlan,
+    model::{
+        lateral::LateralPush,
+        load::{Load, Uncertainty},
+        scenario::{Limits, Scenario, SimulationSettings},
+    },
+    statics::{LoadCases, StabilityWorkspace},
 };
 
 /// The conditions of a simulation.
@@ -17,15 +22,33 @@ pub struct Conditions {
     pub load: Load,
     /// Factor of that wrench.
     pub load_scale: f64,
+    /// Direction of the push of `load.lateral_share`.
+    pub lateral_direction: LateralDirection,
     /// Deviations of the simulation from what the plan assumes.
     pub uncertainty: Uncertainty,
+}
+
+/// The direction of a sideways push.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LateralDirection {
+    /// That with the least predicted compliant load factor within these limits.
+    Worst(Limits),
+    /// This one, degrees, see [`LateralPush::direction_deg`].
+    Given(f64),
 }
 
 impl Conditions {
     /// A ramp of the operation's wrench, without deviations from the plan.
     #[must_use]
     pub fn new(friction: f64, settings: SimulationSettings) -> Self {
-        Self { friction, settings, load: Load::default(), load_scale: 1.0, uncertainty: Uncertainty::default() }
+        Self {
+            friction,
+            settings,
+            load: Load::default(),
+            load_scale: 1.0,
+            lateral_direction: LateralDirection::Given(0.0),
+            uncertainty: Uncertainty::default(),
+        }
     }
 
     /// The conditions of a scenario.
@@ -36,6 +59,7 @@ impl Conditions {
             settings: scenario.simulation,
             load: scenario.load.clone(),
             load_scale: 1.0,
+            lateral_direction: LateralDirection::Worst(scenario.limits),
             uncertainty: scenario.uncertainty,
         }
     }
@@ -44,6 +68,27 @@ impl Conditions {
     #[must_use]
     pub fn scaled(&self, load_scale: f64) -> Self {
         Self { load_scale, ..self.clone() }
+    }
+
+    /// The sideways push on a plan's board at load factor 1; `None` without one. Where the statics find no direction worse than
+    /// others, for example because the hands cannot carry the board's weight, it is that of 0 degrees.
+    #[must_use]
+    pub fn lateral_push(&self, checked: &CheckedPlan<'_>) -> Option<LateralPush> {
+        let (operation, share) = (&checked.plan().operation, self.load.lateral_share);
+        if let LateralDirection::Given(direction_deg) = self.lateral_direction {
+            return LateralPush::new(operation, share, direction_deg);
+        }
+        // Without a push there is no direction to look for.
+        let any = LateralPush::new(operation, share, 0.0)?;
+        self.worst_push(checked).or(Some(any))
+    }
+
+    /// The push with the least predicted compliant load factor.
+    fn worst_push(&self, checked: &CheckedPlan<'_>) -> Option<LateralPush> {
+        let LateralDirection::Worst(limits) = &self.lateral_direction else { return None };
+        let cases = LoadCases::of_plan(checked, self.friction, &self.load).ok()?;
+        let (case, _) = StabilityWorkspace::new().least_compliant_load_factor(&cases, limits).ok()?;
+        cases.push(case)
     }
 
     /// Friction coefficient in the simulation.

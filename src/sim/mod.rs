@@ -105,7 +105,7 @@ mod servo;
 mod tool_load;
 mod world;
 
-pub use conditions::Conditions;
+pub use conditions::{Conditions, LateralDirection};
 use distance_monitor::DistanceMonitor;
 pub use error::SimError;
 pub use mjcf::mjcf;
@@ -135,7 +135,7 @@ const LOST_AFTER_S: f64 = 0.1;
 /// # Errors
 /// If the settings or the load over time are invalid, or a moving part of the robot has no mass.
 pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Trace, SimError> {
-    let tool = ToolLoad::new(checked.plan(), conditions)?;
+    let tool = ToolLoad::new(checked, conditions)?;
     let timestep_s = conditions.settings.timestep_s;
     let mut scene = SimScene::new(checked, conditions)?;
     let mut distances = DistanceMonitor::of(checked, conditions);

@@ -97,7 +97,7 @@ impl SimScene {
         })
     }
 
-    /// One time step under `load_factor` times the operation's wrench.
+    /// One time step under `load_factor` times the operation's wrench, without a sideways push.
     pub fn step(&mut self, load_factor: f64) {
         let wrench_o = self.wrench_o.scaled(load_factor);
         self.step_under(ToolState { load_factor, wrench_o, p_ot_m: self.p_ot_m });

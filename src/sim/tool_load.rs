@@ -5,13 +5,15 @@ use std::f64::consts::TAU;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{conditions::Conditions, error::SimError, phases::PhaseSchedule};
-use crate::model::{
-    frames::Pose,
-    load::{BREAKTHROUGH_S, ForceFrame, ForceProfile},
-    operation::Operation,
-    plan::Plan,
-    trace::Phase,
-    wrench::Wrench,
+use crate::{
+    check::CheckedPlan,
+    model::{
+        frames::Pose,
+        load::{BREAKTHROUGH_S, ForceFrame, ForceProfile},
+        operation::Operation,
+        trace::Phase,
+        wrench::Wrench,
+    },
 };
 
 /// The state of the tool in one step.
@@ -30,6 +32,8 @@ pub(super) struct ToolLoad<'a> {
     phases: PhaseSchedule,
     profile: &'a ForceProfile,
     operation: &'a Operation,
+    /// The sideways push at load factor 1, if there is one: about the tool tip, O axes.
+    lateral_o: Option<Wrench>,
     scale: f64,
     timestep_s: f64,
     /// Magnitude of the largest row of a measured profile.
@@ -47,7 +51,8 @@ impl<'a> ToolLoad<'a> {
     ///
     /// # Errors
     /// [`SimError::Settings`] if phases or time step are invalid, [`SimError::Profile`] if the profile is.
-    pub fn new(plan: &'a Plan, conditions: &'a Conditions) -> Result<Self, SimError> {
+    pub fn new(checked: &'a CheckedPlan<'a>, conditions: &'a Conditions) -> Result<Self, SimError> {
+        let plan = checked.plan();
         let profile = &conditions.load.profile;
         check(profile, &plan.operation)?;
         let largest = match profile {
@@ -58,6 +63,7 @@ impl<'a> ToolLoad<'a> {
             phases: PhaseSchedule::new(&conditions.settings)?,
             profile,
             operation: &plan.operation,
+            lateral_o: conditions.lateral_push(checked).map(|push| push.wrench_o()),
             scale: conditions.load_scale,
             timestep_s: conditions.settings.timestep_s,
             largest,
@@ -84,20 +90,27 @@ impl<'a> ToolLoad<'a> {
         (phase, state)
     }
 
+    /// The operation's wrench with the sideways push, about the tool tip, O axes.
+    fn pushed_o(&self) -> Wrench {
+        let wrench_o = self.operation.wrench_o;
+        self.lateral_o.map_or(wrench_o, |lateral_o| wrench_o + lateral_o)
+    }
+
     fn acting(&self, ramp: f64, loaded_s: f64, held_s: f64) -> ToolState {
-        let Operation { wrench_o, x_ot, .. } = self.operation;
+        let x_ot = &self.operation.x_ot;
+        let force_n = self.operation.wrench_o.force_n;
+        let wrench_o = self.pushed_o();
         let p_ot_m = x_ot.translation.vector;
         let z_t = x_ot.rotation * Vector3::z();
         let (share, whole, p_ot_m) = match self.profile {
-            ForceProfile::Ramp => (ramp, *wrench_o, p_ot_m),
+            ForceProfile::Ramp => (ramp, wrench_o, p_ot_m),
             &ForceProfile::Drill { spindle_torque_nm, vibration_n, vibration_hz, breakthrough_s } => {
                 let shake_n = vibration_n * libm::sin(TAU * vibration_hz * loaded_s);
-                let whole = *wrench_o + Wrench::new(z_t * shake_n, z_t * spindle_torque_nm);
+                let whole = wrench_o + Wrench::new(z_t * shake_n, z_t * spindle_torque_nm);
                 let left = breakthrough_s.map_or(1.0, |at_s| 1.0 - (held_s - at_s) / BREAKTHROUGH_S);
                 (ramp * left.clamp(0.0, 1.0), whole, p_ot_m)
             }
             &ForceProfile::Path { speed_m_s, centre_m, normal_share } => {
-                let force_n = wrench_o.force_n;
                 let turned_rad = ForceProfile::travel_angle_rad(speed_m_s, centre_m, &p_ot_m, &force_n, held_s);
                 let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turned_rad);
                 let centre = Vector3::new(centre_m[0], centre_m[1], 0.0);

@@ -8,6 +8,8 @@
 //! - [`StabilityWorkspace::compliant_load_factor`]: the largest multiple at which the equilibrium of the compliant arms
 //!   keeps every limit.
 //!
+//! [`LoadCases`] are the loads with a sideways push of unknown direction; the worst of them counts.
+//!
 //! Both are cone programs. clarabel is used in this module alone; equilibria, which planners solve by the thousand,
 //! have a faster solver of our own (`solvers::interior_point`), compared with clarabel by a test. [`LocalEquilibrium`]
 //! gives the first-order effect of small changes of the contact model. This module depends neither on how a grasp was
@@ -58,6 +60,7 @@ mod from_plan;
 mod hand;
 mod hold;
 mod infeasibility;
+mod lateral;
 mod limit_crossing;
 mod load_factor;
 mod local_equilibrium;
@@ -82,11 +85,13 @@ pub use equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome, Respon
 pub use hand::HandModel;
 pub use hold::{HandWrench, Hold, MeasuredHold, PadPair};
 pub use infeasibility::{Infeasibility, Mechanism};
+pub use lateral::LoadCases;
 pub use limit_crossing::LimitCrossing;
 pub use load_factor::{LoadFactor, LoadFactorOutcome};
 pub use local_equilibrium::LocalEquilibrium;
 pub use pad_model::PadModel;
 pub use patch::mean_distance_from_centre_m;
+pub use prediction::{CaseAssessment, Prediction};
 pub use robust::{InternalForces, RobustLoadFactor, RobustOutcome, Variation};
 pub use sensitivity::{HandSensitivity, Sensitivity};
 pub use solvers::cone_program::MAX_LOAD_FACTOR;

@@ -3,8 +3,9 @@
 use super::{
     contact_model::{ContactModel, ContactModelError},
     equilibrium::{CompliantResponse, ResponseOutcome},
+    lateral::LoadCases,
     load_factor::LoadFactorOutcome,
-    workspace::StabilityWorkspace,
+    workspace::{AtRest, StabilityWorkspace},
 };
 use crate::model::{
     plan::Stability,
@@ -29,7 +30,34 @@ impl StabilityWorkspace {
         limits: &Limits,
         kind: StabilityKind,
     ) -> Result<f64, ContactModelError> {
-        self.assess(model, limits, kind).map(|(utilisation, _)| utilisation)
+        self.assess_case(model, limits, kind, &mut None).map(|(utilisation, _)| utilisation)
+    }
+
+    /// The case of the largest utilisation, see [`StabilityWorkspace::utilisation`]; the first without an equilibrium, if there is
+    /// one.
+    ///
+    /// # Errors
+    /// If the contact model is invalid.
+    pub fn assess(
+        &mut self,
+        cases: &LoadCases,
+        limits: &Limits,
+        kind: StabilityKind,
+    ) -> Result<CaseAssessment, ContactModelError> {
+        let mut worst = CaseAssessment { utilisation: f64::NEG_INFINITY, response: None, case: 0 };
+        let (mut case, mut at_rest) = (0, None);
+        cases.each(|model| {
+            // Nothing is worse.
+            if worst.utilisation < f64::INFINITY {
+                let (utilisation, response) = self.assess_case(model, limits, kind, &mut at_rest)?;
+                if utilisation > worst.utilisation {
+                    worst = CaseAssessment { utilisation, response, case };
+                }
+            }
+            case += 1;
+            Ok(())
+        })?;
+        Ok(worst)
     }
 
     /// As [`StabilityWorkspace::utilisation`], with the response at `limits.load_factor` from which it follows; no response
@@ -37,11 +65,12 @@ impl StabilityWorkspace {
     ///
     /// # Errors
     /// If the contact model is invalid.
-    pub fn assess(
+    fn assess_case(
         &mut self,
         model: &ContactModel,
         limits: &Limits,
         kind: StabilityKind,
+        at_rest: &mut Option<AtRest>,
     ) -> Result<(f64, Option<CompliantResponse>), ContactModelError> {
         const UNSTABLE: (f64, Option<CompliantResponse>) = (f64::INFINITY, None);
         let least = limits.load_factor;
@@ -56,29 +85,55 @@ impl StabilityWorkspace {
         if kind == StabilityKind::Paper {
             return Ok((utilisation, None));
         }
-        let ResponseOutcome::Found(response) = self.response(model, least)? else { return Ok(UNSTABLE) };
+        let ResponseOutcome::Found(response) = self.response_from(model, least, at_rest)? else { return Ok(UNSTABLE) };
         utilisation = response.utilisation(model, limits).max(utilisation);
         if least < 1.0 {
-            let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(UNSTABLE) };
+            let ResponseOutcome::Found(response) = self.response_from(model, 1.0, at_rest)? else {
+                return Ok(UNSTABLE);
+            };
             utilisation = utilisation.max(response.deflection_mm() / limits.deflection_mm);
         }
         Ok((utilisation, Some(*response)))
     }
 
-    /// The stability figures of a plan; `None` without a load factor or without a compliant equilibrium at load 1.
+    /// The stability figures of a plan, over all cases the worst of each; `None` without a load factor or without a compliant
+    /// equilibrium at load 1.
     ///
     /// # Errors
     /// If the contact model is invalid.
-    pub fn predict(&mut self, model: &ContactModel, limits: &Limits) -> Result<Option<Stability>, ContactModelError> {
-        let LoadFactorOutcome::Solved(best_case) = self.load_factor(model)? else { return Ok(None) };
-        let ResponseOutcome::Found(response) = self.response(model, 1.0)? else { return Ok(None) };
-        let torques = model.hands.iter().zip(&response.equilibrium.joint_torque_nm);
-        Ok(Some(Stability {
+    pub fn predict(&mut self, cases: &LoadCases, limits: &Limits) -> Result<Option<Prediction>, ContactModelError> {
+        let (_, LoadFactorOutcome::Solved(best_case)) = self.least_load_factor(cases)? else { return Ok(None) };
+        let Some(responses) = self.responses(cases, 1.0)? else { return Ok(None) };
+        let (case, compliant) = self.least_compliant_load_factor(cases, limits)?;
+        let torques = cases.hand_names().zip(&responses[case].equilibrium.joint_torque_nm);
+        let stability = Stability {
             load_factor: best_case.load_factor,
-            compliant_load_factor: self.compliant_load_factor(model, limits)?.load_factor,
+            compliant_load_factor: compliant.load_factor,
             binding: best_case.binding,
-            joint_torque_nm: torques.map(|(hand, nm)| (hand.name.clone(), nm.as_slice().to_vec())).collect(),
-            predicted_deflection_mm: response.deflection_mm(),
-        }))
+            joint_torque_nm: torques.map(|(hand, nm)| (hand.to_owned(), nm.as_slice().to_vec())).collect(),
+            predicted_deflection_mm: responses.iter().map(CompliantResponse::deflection_mm).fold(0.0, f64::max),
+            lateral: cases.push(case),
+        };
+        Ok(Some(Prediction { stability, case }))
     }
+}
+
+/// The case of a grasp's loads that uses most of its limits.
+#[derive(Clone, Debug)]
+pub struct CaseAssessment {
+    /// Its utilisation of the limits.
+    pub utilisation: f64,
+    /// The response from which it follows; none for the criterion `paper` or without an equilibrium.
+    pub response: Option<CompliantResponse>,
+    /// Its number.
+    pub case: usize,
+}
+
+/// The predicted stability of a plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// The figures.
+    pub stability: Stability,
+    /// The case with the smallest compliant load factor, in which the torques and the push are stated.
+    pub case: usize,
 }

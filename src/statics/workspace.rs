@@ -21,6 +21,15 @@ pub struct StabilityWorkspace {
     equilibrium: ReusedSolver,
 }
 
+/// What of a response does not depend on the load: it is the same for all loads of a grasp.
+pub(super) struct AtRest {
+    welded: Option<WeldedStiffness>,
+    /// Computed where the closed form does not do.
+    energies: Option<Vec<HandEnergy>>,
+    /// The equilibrium under the weight alone, once it is found.
+    unloaded: Option<Equilibrium>,
+}
+
 /// A solver of the equilibrium program. Both find the same equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EquilibriumSolver {
@@ -83,26 +92,39 @@ impl StabilityWorkspace {
     /// # Errors
     /// If the contact model is invalid.
     pub fn response(&mut self, model: &ContactModel, load_factor: f64) -> Result<ResponseOutcome, ContactModelError> {
+        self.response_from(model, load_factor, &mut None)
+    }
+
+    /// As [`StabilityWorkspace::response`], with what does not depend on the load; it is filled in if it is `None`.
+    pub(super) fn response_from(
+        &mut self,
+        model: &ContactModel,
+        load_factor: f64,
+        at_rest: &mut Option<AtRest>,
+    ) -> Result<ResponseOutcome, ContactModelError> {
         model.check()?;
-        let welded = WeldedStiffness::new(model);
-        let mut energies = None;
+        let AtRest { welded, energies, unloaded } = at_rest.get_or_insert_with(|| AtRest {
+            welded: WeldedStiffness::new(model),
+            energies: None,
+            unloaded: None,
+        });
         let mut equilibrium_at = |lambda: f64| {
             if let Some(found) = welded.as_ref().and_then(|welded| elastic::equilibrium(model, welded, lambda)) {
-                return EquilibriumOutcome::Found(found);
+                return Ok(found);
             }
             let energies = energies.get_or_insert_with(|| HandEnergy::of_hands(model));
-            self.solve_equilibrium(model, energies, lambda)
-        };
-        let mut equilibria = Vec::with_capacity(2);
-        for lambda in [0.0, load_factor] {
-            match equilibrium_at(lambda) {
-                EquilibriumOutcome::Found(found) => equilibria.push(found),
-                EquilibriumOutcome::NoEquilibrium => return Ok(ResponseOutcome::NoEquilibrium { load_factor: lambda }),
-                EquilibriumOutcome::Unknown { status } => return Ok(ResponseOutcome::Unknown { status }),
+            match self.solve_equilibrium(model, energies, lambda) {
+                EquilibriumOutcome::Found(found) => Ok(found),
+                EquilibriumOutcome::NoEquilibrium => Err(ResponseOutcome::NoEquilibrium { load_factor: lambda }),
+                EquilibriumOutcome::Unknown { status } => Err(ResponseOutcome::Unknown { status }),
             }
-        }
-        let loaded = equilibria.remove(1);
-        Ok(ResponseOutcome::Found(Box::new(CompliantResponse::between(model, &equilibria[0], loaded))))
+        };
+        let found = unloaded.take().map_or_else(|| equilibrium_at(0.0), Ok);
+        let loaded = found.and_then(|found| {
+            let unloaded = unloaded.insert(found);
+            equilibrium_at(load_factor).map(|loaded| CompliantResponse::between(model, unloaded, loaded))
+        });
+        Ok(loaded.map_or_else(|failed| failed, |response| ResponseOutcome::Found(Box::new(response))))
     }
 
     /// The equilibrium by the interior point, or by clarabel if that does not converge.

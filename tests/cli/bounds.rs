@@ -60,6 +60,31 @@ fn values_beyond_their_bounds() {
     assert_refused(&benchdog(folder.path(), &["run", "bad.toml"]), message);
 }
 
+/// A share of a force that is not there, or that has its sideways part already.
+#[test]
+fn a_sideways_push_beyond_its_bounds_or_of_no_force() {
+    for (replace, with, message) in [
+        (
+            "[grip]",
+            "[load]\nlateral_share = 1.5\n\n[grip]",
+            "bad.toml:13: load.lateral_share: found 1.5, expected a number from 0 to 1 (a share of the operation's force)",
+        ),
+        (
+            "kind = \"drill\"\npoint_m = [0.0, 0.0]\nforce_n = 15.0\n",
+            "kind = \"wrench\"\nwrench_o = [0.0, 0.0, 0.0, 0.0, 2.0, 0.0]\n\
+             x_ot = { translation_m = [0.0, 0.0, 0.0], rotation_xyzw = [0.0, 0.0, 0.0, 1.0] }\n\n[load]\nlateral_share = 0.1\n",
+            "bad.toml:13: load.lateral_share: found 0.1, expected 0 for an operation without a force",
+        ),
+    ] {
+        assert_scenario_refused(replace, with, message);
+    }
+    let csv = "time_s,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm\n0,0,0,0,0,0,0\n0.1,1,0,-5,0,0,0\n";
+    let scenario = format!("{SCENARIO}\n[load]\nkind = \"measured\"\nfile = \"forces.csv\"\nlateral_share = 0.13\n");
+    let folder = folder(&[("forces.csv", csv), ("bad.toml", &scenario)]);
+    let message = "bad.toml:19: load.lateral_share: found 0.13, expected 0 with a measured force, which has its sideways part already";
+    assert_refused(&benchdog(folder.path(), &["run", "bad.toml"]), message);
+}
+
 /// TOML would drop what is too much.
 #[test]
 fn arrays_that_are_too_long_or_too_short() {

@@ -8,7 +8,7 @@ use benchdog::{
         scenario::{Limits, SimulationSettings},
     },
     robot::{Chain, Robot},
-    scenario::read_plan,
+    scenario::{load_plan, read_plan},
     sim::{Conditions, mjcf},
 };
 use quick_xml::{Reader, events::Event};
@@ -16,7 +16,7 @@ use serde_json::Value;
 
 use crate::{
     common::{checked, root},
-    process::{argument, benchdog, stderr},
+    process::{argument, benchdog, folder, json, stderr},
 };
 
 /// Runs benchdog in the repository; returns all that it prints, and the exit code.
@@ -143,6 +143,13 @@ impl Exported {
     fn field(&self, name: &str) -> Vec<f64> {
         numbers(get(self.named("numeric", name), "data"))
     }
+
+    /// The tool's wrenches, six numbers a sample.
+    fn tool_wrenches_o(&self) -> Vec<f64> {
+        let fields = self.all("numeric").into_iter();
+        let tables = fields.filter(|numeric| get(numeric, "name").starts_with("tool_wrench_o "));
+        tables.flat_map(|numeric| numbers(get(numeric, "data"))).collect()
+    }
 }
 
 fn get<'a>(attributes: &'a [(String, String)], key: &str) -> &'a str {
@@ -168,8 +175,7 @@ fn an_exported_scene_has_the_masses_joints_gains_and_load_of_the_plan() {
     assert_eq!(scene.all("motor").len(), 4 + 6);
 
     // The full load in the middle of the hold: 0.5 s settle, 1 s ramp, 0.5 s hold at 2 ms.
-    let load = scene.all("numeric").into_iter().filter(|numeric| get(numeric, "name").starts_with("tool_wrench_o "));
-    let rows: Vec<f64> = load.flat_map(|numeric| numbers(get(numeric, "data"))).collect();
+    let rows = scene.tool_wrenches_o();
     let wrench: [f64; 6] = plan.operation.wrench_o.into();
     assert_eq!(rows[6 * 1000..6 * 1001], wrench);
     assert_eq!(rows[6 * 250..6 * 251], [0.0; 6]);
@@ -177,6 +183,36 @@ fn an_exported_scene_has_the_masses_joints_gains_and_load_of_the_plan() {
     let positions = numbers(get(scene.named("key", "planned"), "qpos"));
     assert_eq!(positions.len(), 25);
     assert_eq!(positions[..7], plan.arms[0].q_rad[..]);
+}
+
+/// Verdict, export and library name the same force, in the worst direction.
+#[test]
+fn a_sideways_push_is_in_the_verdict_and_in_the_exported_scene() {
+    let plan = "scenarios/plans/cut-rim.json";
+    let text = fs::read_to_string(root().join("scenarios/cut-rim.toml")).unwrap() + "\n[load]\nlateral_share = 0.2\n";
+    let folder = folder(&[("pushed.toml", &text)]);
+    let (scenario, out) = (folder.path().join("pushed.toml"), folder.path().join("out"));
+    let given = ["--scenario", argument(&scenario)];
+
+    let loaded = load_plan(&root().join(plan), Some(&scenario)).unwrap();
+    let checked = checked(&loaded.robot, &loaded.plan);
+    let push = Conditions::of(&loaded.scenario).lateral_push(&checked).unwrap();
+    // 0.2 of 30 N, perpendicular to a cut along y_O.
+    let [x_n, y_n, z_n] = push.force_o_n;
+    assert!((x_n.hypot(z_n) - 6.0).abs() < 1e-9 && y_n.abs() < 1e-9, "{push}");
+
+    let rows = Exported::of(plan, &given).tool_wrenches_o();
+    let mut wrench: [f64; 6] = loaded.plan.operation.wrench_o.into();
+    wrench[..3].iter_mut().zip(push.force_o_n).for_each(|(of_tool, of_push)| *of_tool += of_push);
+    assert_eq!(rows[6 * 1000..6 * 1001], wrench);
+
+    let (said, code) = printed(&[&["simulate", plan, "--out", argument(&out)], &given[..]].concat());
+    assert!([Some(0), Some(1)].contains(&code), "{said}");
+    let note =
+        format!("the hand also pushes sideways with 0.2 of the force, {push}, the worst direction by the statics");
+    assert!(said.contains(&note), "{said}");
+    let written = json(&out.join("cut-rim/verdict.json"));
+    assert!(written["notes"].as_array().unwrap().contains(&Value::String(note)), "{written}");
 }
 
 #[test]

@@ -134,7 +134,8 @@ fn random_load(draw: &mut impl FnMut(f64, f64) -> f64) -> Load {
                 .collect(),
         },
     };
-    Load { frame: if draw(0.0, 1.0) < 0.5 { ForceFrame::Board } else { ForceFrame::World }, profile }
+    let frame = if draw(0.0, 1.0) < 0.5 { ForceFrame::Board } else { ForceFrame::World };
+    Load { frame, profile, ..Load::default() }
 }
 
 #[test]

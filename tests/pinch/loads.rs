@@ -10,7 +10,7 @@ use benchdog::{
         wrench::Wrench,
     },
     robot::Robot,
-    sim::{Conditions, SimError},
+    sim::{Conditions, LateralDirection, SimError},
     statics::{ContactModel, WeldedStiffness},
 };
 use nalgebra::{UnitQuaternion, Vector3};
@@ -84,6 +84,34 @@ fn a_knife_travels_around_the_circle_with_its_force_along_the_tangent() {
     assert!(at(&trace, 0.4).p_ot_m.y < -0.05);
 }
 
+/// The share in words of the operation: 2 N of 10 N. A drill's 90 degrees are along -y_O; a cut's 0 degrees are left of it, and turn
+/// with the path.
+#[test]
+fn a_sideways_push_grows_with_the_load_and_turns_with_a_path() {
+    let robot = common::baxter();
+    let pushed = |operation: Operation, profile, direction_deg| {
+        let load = Load { profile, lateral_share: 0.2, ..Load::default() };
+        let lateral_direction = LateralDirection::Given(direction_deg);
+        let conditions = Conditions { load, lateral_direction, ..Conditions::new(0.6, SHORT) };
+        simulate(robot, &baxter::plan(robot, operation, BOARD_KG, 30.0), &conditions).unwrap()
+    };
+    let trace = pushed(drill(10.0), ForceProfile::Ramp, 90.0);
+    for (time_s, share) in [(0.15, 0.5), (0.3, 1.0)] {
+        // The board turns by microradians between the start of the step, when the wrench is applied, and its end.
+        let found_n = wrench_o(at(&trace, time_s)).force_n;
+        assert!((found_n - Vector3::new(0.0, -2.0, -10.0) * share).norm() < 1e-3, "{time_s} s: {found_n}");
+    }
+    let radius_m = 0.12;
+    let profile = ForceProfile::Path { speed_m_s: 0.3, centre_m: [0.0, 0.0], normal_share: 0.0 };
+    let trace = pushed(Operation::cut([radius_m, 0.0], Vector3::y(), 10.0, THICKNESS_M), profile, 0.0);
+    for (time_s, held_s) in [(0.2, 0.0), (0.4, 0.2)] {
+        let (sin, cos) = f64::sin_cos(0.3 * held_s / radius_m);
+        let expected_n = Vector3::new(-10.0 * sin - 2.0 * cos, 10.0 * cos - 2.0 * sin, 0.0);
+        let found_n = wrench_o(at(&trace, time_s)).force_n;
+        assert!((found_n - expected_n).norm() < 5e-3, "{time_s} s: {found_n}");
+    }
+}
+
 #[test]
 fn a_measured_load_is_linear_between_its_rows_and_constant_beyond() {
     let robot = common::baxter();
@@ -107,8 +135,7 @@ fn a_load_fixed_in_the_world_does_not_turn_with_the_board() {
     let robot = common::baxter();
     let plan = baxter::plan(robot, Operation::drill([0.1, 0.1], 20.0, THICKNESS_M), BOARD_KG, 30.0);
     let last_hold = |frame| {
-        let conditions =
-            Conditions { load: Load { frame, profile: ForceProfile::Ramp }, ..Conditions::new(0.6, SHORT) };
+        let conditions = Conditions { load: Load { frame, ..Load::default() }, ..Conditions::new(0.6, SHORT) };
         last(&simulate(robot, &plan, &conditions).unwrap(), Phase::Hold).clone()
     };
     let planned_n = plan.object.x_wo.rotation * Vector3::new(0.0, 0.0, -20.0);
@@ -243,7 +270,7 @@ fn the_frame_of_a_slanted_world_load_is_the_planned_one() {
     let found = [0.0, 0.7].map(|turn| {
         let (robot, x_wg) = robot(turn);
         let plan = bench::plan(&robot, x_wg, &grip, force_along_x_g(20.0));
-        let load = Load { frame: ForceFrame::World, profile: ForceProfile::Ramp };
+        let load = Load { frame: ForceFrame::World, ..Load::default() };
         let trace = simulate(&robot, &plan, &Conditions { load, ..Conditions::new(0.6, SHORT) }).unwrap();
         last(&trace, Phase::Hold).arms[0].x_oc
     });

@@ -37,7 +37,7 @@ fn clearance(plan: &Plan) -> Clearance {
 }
 
 /// Operations anywhere on the board, in any direction, by persons of any height.
-fn drawn(count: usize) -> Vec<Scenario> {
+pub fn drawn(count: usize) -> Vec<Scenario> {
     let mut random = Pcg64::seed_from_u64(5);
     let mut draw = |number: usize| {
         let mut within = |range: f64| random.random_range(-range..range);

@@ -11,6 +11,7 @@ mod check;
 mod clearance;
 mod comfort;
 mod infeasible;
+mod lateral;
 mod many_arms;
 mod muscles;
 mod natural;

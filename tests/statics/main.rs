@@ -5,6 +5,7 @@ mod closed_forms;
 mod compliance;
 mod fixtures;
 mod independent;
+mod lateral;
 mod measured;
 mod pad_compliance;
 mod properties;

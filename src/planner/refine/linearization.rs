@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::{
     super::{
         candidate::Candidate,
-        contact::contact_model,
+        contact::load_cases,
         domain::ANGLE_RAD,
         evaluate::{Configuration, Evaluator, Feasible},
         load_shift::LoadShift,
@@ -186,14 +186,15 @@ impl Linearization {
         }
     }
 
-    /// The gradient of the utilisation by differences, unless it is known.
+    /// The gradient of the utilisation by differences, unless it is known; that of the worst case of the loads.
     fn stability_gradient(&mut self, evaluator: &mut Evaluator<'_>, here: &Feasible) -> DVector<f64> {
         if let Some(known) = &self.stability {
             return known.clone();
         }
         let count = self.variables.count();
         // Around a compliant equilibrium a whole gradient costs less than one equilibrium.
-        let local = evaluator.local_equilibrium(&here.candidate, &here.configuration.placement.x_wo);
+        let case = here.stability.case;
+        let local = evaluator.local_equilibrium(&here.candidate, &here.configuration.placement.x_wo, case);
         let limits = evaluator.problem.stability_limits();
         let mut gradient = DVector::zeros(count);
         for number in 0..count {
@@ -204,8 +205,8 @@ impl Linearization {
             let there = local
                 .as_ref()
                 .and_then(|local| {
-                    let model = contact_model(&evaluator.problem, &candidate, &x_wo).ok()?;
-                    local.utilisation(&model, &limits)
+                    let cases = load_cases(&evaluator.problem, &candidate, &x_wo).ok()?;
+                    local.utilisation(&cases.into_case(case), &limits)
                 })
                 .unwrap_or_else(|| evaluator.assess(&candidate, &x_wo).utilisation);
             // Where there is no equilibrium the difference says nothing: a positive entry keeps the step away.

@@ -54,7 +54,7 @@ pub fn mjcf(checked: &CheckedPlan<'_>, conditions: &Conditions, limits: &Limits)
     let arms = checked.arms().iter().zip(feed_forward(checked, conditions.friction));
     let exported = Exported {
         arms: arms.map(|(arm, fed)| ExportedArm::new(checked, arm, fed, conditions, softness_s2)).collect(),
-        tool: ToolLoad::new(plan, conditions)?,
+        tool: ToolLoad::new(checked, conditions)?,
         robot,
         plan,
         conditions,
