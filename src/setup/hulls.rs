@@ -67,7 +67,7 @@ fn near_boards(robot: &Robot) -> BTreeMap<usize, f64> {
     let mut near = BTreeMap::new();
     for arm in &robot.arms {
         let gripper = &arm.gripper;
-        let (board, x_go) = board_between_pads(robot, arm);
+        let Some((board, x_go)) = board_between_pads(robot, arm) else { continue };
         let x_wo = x_wl[gripper.frame_link] * x_go;
         let hand = (0..robot.links.len()).filter(|&link| carriers[link] == carriers[gripper.frame_link]);
         for link in hand.filter(|&link| !robot.links[link].shapes.is_empty()) {
