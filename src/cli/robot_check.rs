@@ -5,11 +5,10 @@ use std::path::Path;
 use super::{
     args::DoctorArgs,
     exit::{CliError, Exit},
-    inputs, output,
+    output,
 };
 use crate::{
     collision::CollisionModel,
-    report::file,
     robot::{Chain, Finger, Gripper, Holding, InverseKinematics, MeasuredGrip, Robot, RobotError},
     setup::{Overlaps, middle, positions},
 };
@@ -121,8 +120,8 @@ fn assumed(files: &[std::path::PathBuf]) -> Vec<String> {
 #[cfg(feature = "recording")]
 fn record(robot: &Robot, joint_positions: &[f64], description: &Path, args: &DoctorArgs) -> Result<(), CliError> {
     let Some(path) = &args.record else { return Ok(()) };
-    inputs::protect(&[robot.files.clone(), vec![description.to_owned()]].concat(), [path.clone()])?;
-    file::write_whole(path, &crate::record::encode_posture(robot, joint_positions)?)?;
+    super::inputs::protect(&[robot.files.clone(), vec![description.to_owned()]].concat(), [path.clone()])?;
+    crate::report::file::write_whole(path, &crate::record::encode_posture(robot, joint_positions)?)?;
     output::print(&format!("wrote {}; look at it with: benchdog view {0}\n", path.display()))
 }
 

@@ -9,7 +9,9 @@ use std::{
 
 use serde_json::Value;
 
-use crate::process::{benchdog, command, json, printed_json, slipping_scenario, stderr};
+#[cfg(feature = "recording")]
+use crate::process::printed_json;
+use crate::process::{benchdog, command, json, slipping_scenario, stderr};
 
 const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
 
