@@ -1,14 +1,14 @@
 //! Grippers: frame, pads, fingers, opening.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 use toml::Spanned;
 
-use super::Assembler;
+use super::{Assembler, solid::Solid};
 use crate::{
     model::frames::Pose,
     robot::{
         description::{Exactly, FingerEntry, GripperEntry, GripperKind},
-        geometry::{PlacedShape, Shape, Visual, VisualGeometry},
+        geometry::Shape,
         holding::Holding,
         tree::{Face, Finger, Gripper, Joint, JointKind, Linkage, Pad},
     },
@@ -197,21 +197,9 @@ impl Assembler<'_> {
             let centre = Vector3::new(side * x_m, JAW_THICKNESS_M / 2.0, z_m);
             let sides = half_m.map(|half| 2.0 * half);
             let of = |a: f64, b: f64| JAW_MASS_KG * (a * a + b * b) / 12.0;
-            let jaw = &mut self.robot.links[link];
-            (jaw.mass_kg, jaw.com_l) = (JAW_MASS_KG, centre);
-            jaw.inertia_l = Matrix3::from_diagonal(&Vector3::new(
-                of(sides[1], sides[2]),
-                of(sides[0], sides[2]),
-                of(sides[0], sides[1]),
-            ));
-            let x_ls = Isometry3::from(nalgebra::Translation3::from(centre));
-            let shape = Shape::Box { half_m };
-            jaw.visuals.push(Visual {
-                x_lv: x_ls,
-                geometry: VisualGeometry::Primitive(shape.clone()),
-                rgba: Some(JAW_RGBA),
-            });
-            jaw.shapes.push(PlacedShape { x_ls, shape, rgba: JAW_RGBA });
+            let inertia = [of(sides[1], sides[2]), of(sides[0], sides[2]), of(sides[0], sides[1])];
+            let solid = Solid { shape: Shape::Box { half_m }, mass_kg: JAW_MASS_KG, inertia, rgba: JAW_RGBA };
+            solid.add_to(&mut self.robot.links[link], centre);
             let joint = self.robot.links[link].parent_joint.unwrap_or_default();
             Finger {
                 joint,

@@ -4,6 +4,7 @@ mod arms;
 mod gripper;
 mod holding;
 mod lists;
+mod solid;
 mod suction;
 
 use std::{collections::BTreeMap, fmt, ops::Range, sync::Arc};

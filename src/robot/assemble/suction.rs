@@ -2,13 +2,13 @@
 
 use std::ops::RangeInclusive;
 
-use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};
+use nalgebra::Vector3;
 use toml::Spanned;
 
-use super::Assembler;
+use super::{Assembler, solid::Solid};
 use crate::robot::{
     description::GripperEntry,
-    geometry::{PlacedShape, Shape, Visual, VisualGeometry},
+    geometry::Shape,
     holding::Holding,
     tree::{Cup, Gripper},
 };
@@ -47,16 +47,8 @@ impl Assembler<'_> {
             CUP_MASS_KG * radius_m * radius_m / 2.0,
         );
         let shape = Shape::Cylinder { radius_m, half_length_m: height_m / 2.0 };
-        let x_ls = Isometry3::from(Translation3::from(centre));
-        let cup = &mut self.robot.links[link];
-        (cup.mass_kg, cup.com_l) = (CUP_MASS_KG, centre);
-        cup.inertia_l = Matrix3::from_diagonal(&Vector3::new(across, across, along));
-        cup.visuals.push(Visual {
-            x_lv: x_ls,
-            geometry: VisualGeometry::Primitive(shape.clone()),
-            rgba: Some(CUP_RGBA),
-        });
-        cup.shapes.push(PlacedShape { x_ls, shape, rgba: CUP_RGBA });
+        let solid = Solid { shape, mass_kg: CUP_MASS_KG, inertia: [across, across, along], rgba: CUP_RGBA };
+        solid.add_to(&mut self.robot.links[link], centre);
         Some(Gripper {
             frame_link,
             palm_link,
