@@ -95,44 +95,13 @@ pub(super) fn muscular_gradient(
         frames,
         wrench_b: load.wrench_b,
     };
-    let joints = |muscular: &Muscular| JointActivations { torques, q_rad: *q_rad, activations: muscular.activations };
-    let muscular = || torques.muscular(q_rad, &point.frames.r_bu, ability, settings);
     match settings.muscular {
-        MuscularMetric::Paper => {
-            let (strength, muscular) = (&ability.strength, muscular());
-            let (senses, of) = (torques.senses(q_rad, strength, settings.direction), joints(&muscular));
-            let slopes = std::array::from_fn(|joint| point.activation_slopes(joint, &of, strength, senses[joint]));
-            MuscularGradient::of_activations(muscular, slopes)
-        }
-        MuscularMetric::Intrinsic => {
-            let (strength, muscular) = (&ability.strength, muscular());
-            let (shoulder, of) = (point.shoulder_slopes(&torques, strength), joints(&muscular));
-            let slopes = std::array::from_fn(|row| match shoulder.get(row) {
-                Some(slopes) => *slopes,
-                None => point.activation_slopes(row, &of, strength, torques.own_sense(row)),
-            });
-            MuscularGradient::of_activations(muscular, slopes)
-        }
         MuscularMetric::Muscles => point.gradient_of_muscles(&torques, q_rad, &ability.muscles),
+        MuscularMetric::Paper | MuscularMetric::Intrinsic => {
+            let muscular = torques.muscular(q_rad, &point.frames.r_bu, ability, settings);
+            point.gradient_of_strengths(&torques, q_rad, &ability.strength, muscular, settings)
+        }
     }
-}
-
-impl MuscularGradient {
-    /// The gradient of `1 / (||alpha||^2 + eps)` from that of the activations.
-    fn of_activations(muscular: Muscular, activations: [[f64; 7]; 7]) -> Self {
-        let regularised = std::array::from_fn(|j| {
-            let effort_slope: f64 = (0..7).map(|i| 2.0 * muscular.activations[i] * activations[i][j]).sum();
-            -muscular.regularised.powi(2) * effort_slope
-        });
-        Self { muscular, regularised, activations }
-    }
-}
-
-/// The joints' torques and activations in a posture.
-struct JointActivations {
-    torques: JointTorques,
-    q_rad: ArmAngles,
-    activations: [f64; 7],
 }
 
 /// A posture under a load.
@@ -144,9 +113,46 @@ struct Point<'a> {
 }
 
 impl Point<'_> {
+    /// The comfort by one of the metrics of joint strengths and its derivatives by all joints.
+    fn gradient_of_strengths(
+        &self,
+        torques: &JointTorques,
+        q_rad: &ArmAngles,
+        strength: &Strength,
+        muscular: Muscular,
+        settings: &ComfortSettings,
+    ) -> MuscularGradient {
+        let of_joint = |joint: usize, sense: Sense| {
+            let (total_nm, activation) = (torques.total_nm()[joint], muscular.activations[joint]);
+            self.activation_slopes(joint, q_rad[joint], total_nm, activation, strength, sense)
+        };
+        let activations: [[f64; 7]; 7] = if settings.muscular == MuscularMetric::Intrinsic {
+            let shoulder = self.shoulder_slopes(torques, strength);
+            std::array::from_fn(|row| match shoulder.get(row) {
+                Some(slopes) => *slopes,
+                None => of_joint(row, torques.own_sense(row)),
+            })
+        } else {
+            let senses = torques.senses(q_rad, strength, settings.direction);
+            std::array::from_fn(|joint| of_joint(joint, senses[joint]))
+        };
+        let regularised = std::array::from_fn(|j| {
+            let effort_slope: f64 = (0..7).map(|i| 2.0 * muscular.activations[i] * activations[i][j]).sum();
+            -muscular.regularised.powi(2) * effort_slope
+        });
+        MuscularGradient { muscular, regularised, activations }
+    }
+
     /// Derivatives of a joint's activation `|tau| / tau_max(q)` by all joints, 1/rad.
-    fn activation_slopes(&self, i: usize, of: &JointActivations, strength: &Strength, sense: Sense) -> [f64; 7] {
-        let (q_rad, total_nm, activation) = (of.q_rad[i], of.torques.total_nm()[i], of.activations[i]);
+    fn activation_slopes(
+        &self,
+        i: usize,
+        q_rad: f64,
+        total_nm: f64,
+        activation: f64,
+        strength: &Strength,
+        sense: Sense,
+    ) -> [f64; 7] {
         let limit_nm = strength.torque_nm(i, q_rad, sense);
         let strength_slope = strength.slope_nm_rad(i, q_rad, sense);
         let Self { frames, p_bt_m, weights, wrench_b } = self;

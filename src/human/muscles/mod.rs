@@ -94,7 +94,7 @@ impl Muscles {
     /// What the muscles can do in a posture, and what it demands of them.
     pub(super) fn program(&self, load: &ArmLoad<'_>) -> MuscleProgram {
         let (posture, _) = MusclePosture::new(load.r_vu, beyond_rad(load.q_rad));
-        let of_muscles = moments_nm(&pulls(&posture), self.factor);
+        let of_muscles = moments_nm(&pulls(&posture, &posture.shoulder_monomials()), self.factor);
         MuscleProgram { of_muscles, demanded_nm: demanded_nm(&posture, load.moments_nm) }
     }
 }

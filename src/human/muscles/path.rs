@@ -71,14 +71,19 @@ impl MusclePosture {
         [[-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]]
     }
 
+    /// The monomials of the shoulder at this posture.
+    pub fn shoulder_monomials(&self) -> Vec<Row> {
+        DATA.shoulder.rows(&self.quaternion)
+    }
+
     /// The monomials of the shoulder as functions of its rotation.
-    fn shoulder_rows(&self) -> Vec<ShoulderRow> {
+    fn by_rotation(&self, shoulder_monomials: &[Row]) -> Vec<ShoulderRow> {
         let rates = self.quaternion_rates();
         let of_rotation = |row: &Row| {
             let slope = |k: usize| (0..VARIABLES).map(|c| row[1 + c] * rates[k][c]).sum();
             [row[0], slope(0), slope(1), slope(2)]
         };
-        DATA.shoulder.rows(&self.quaternion).iter().map(of_rotation).collect()
+        shoulder_monomials.iter().map(of_rotation).collect()
     }
 }
 
@@ -136,9 +141,9 @@ fn weighted_sum<const N: usize>(coefficients: &[f64], rows: &[[f64; N]]) -> [f64
     sum
 }
 
-/// All muscles at a posture.
-pub(super) fn pulls(posture: &MusclePosture) -> [Pull; MUSCLES] {
-    let (shoulder, beyond) = (posture.shoulder_rows(), DATA.beyond.rows(&posture.coordinates_rad));
+/// All muscles at a posture, with its monomials of the shoulder.
+pub(super) fn pulls(posture: &MusclePosture, shoulder_monomials: &[Row]) -> [Pull; MUSCLES] {
+    let (shoulder, beyond) = (posture.by_rotation(shoulder_monomials), DATA.beyond.rows(&posture.coordinates_rad));
     std::array::from_fn(|muscle| Pull::new(&DATA.muscles[muscle], &shoulder, &beyond))
 }
 
@@ -164,7 +169,8 @@ pub(super) struct RateSlopes {
 }
 
 impl Curvature {
-    pub fn new(posture: &MusclePosture) -> Self {
+    /// The curvature at a posture, with its monomials of the shoulder.
+    pub fn new(posture: &MusclePosture, shoulder_rows: Vec<Row>) -> Self {
         // After a small rotation about e_l the quaternion's rate by a rotation about e_k is 1/4 (0, e_k) (0, e_l) q more.
         let second_rate = |k: usize, l: usize| {
             let half = |axis: usize| Quaternion::from_imag(Vector3::ith(axis, 0.5));
@@ -175,7 +181,7 @@ impl Curvature {
         Self {
             quaternion_rates: posture.quaternion_rates(),
             second_rates: std::array::from_fn(|k| std::array::from_fn(|l| second_rate(k, l))),
-            shoulder_rows: DATA.shoulder.rows(&posture.quaternion),
+            shoulder_rows,
             shoulder_hessians: DATA.shoulder.hessians(&posture.quaternion),
             beyond_hessians: DATA.beyond.hessians(&posture.coordinates_rad),
         }

@@ -39,10 +39,11 @@ impl Muscles {
         slopes_nm: &[[Vector3<f64>; 3]; 7],
     ) -> Option<EffortSlopes> {
         let (posture, beyond_rates) = MusclePosture::new(load.r_vu, beyond_rad(load.q_rad));
-        let pulls = pulls(&posture);
+        let shoulder_monomials = posture.shoulder_monomials();
+        let pulls = pulls(&posture, &shoulder_monomials);
         let of_muscles = moments_nm(&pulls, self.factor);
         let found = optimum(&of_muscles, &demanded_nm(&posture, load.moments_nm))?;
-        let curvature = Curvature::new(&posture);
+        let curvature = Curvature::new(&posture, shoulder_monomials);
         let sensitivity = Sensitivity {
             by_activation: self.moment_slopes(&found, &pulls, &curvature),
             by_drive: self.drive_slopes(&found, &pulls, &curvature),
