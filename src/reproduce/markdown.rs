@@ -12,7 +12,7 @@ use crate::{
     model::{
         operation::OperationKind,
         plan::PostureFigures,
-        scenario::{MuscularMetric, PlannerKind},
+        scenario::PlannerKind,
         verdict::{CheckKind, VerdictKind},
     },
     report::explanation,
@@ -34,7 +34,7 @@ pub fn report(reproduction: &Reproduction) -> String {
     }
     table_one(&mut text, reproduction);
     claims_section(&mut text, reproduction);
-    raw(&mut text, reproduction, MuscularMetric::Paper);
+    raw(&mut text, reproduction, PAPERS_METRIC);
     seeds(&mut text, reproduction);
     physics(&mut text, reproduction);
     best_case(&mut text, reproduction);
@@ -62,7 +62,7 @@ pub fn natural_report(reproduction: &Reproduction) -> String {
     }
     table_one(&mut text, reproduction);
     claims_section(&mut text, reproduction);
-    raw(&mut text, reproduction, MuscularMetric::Intrinsic);
+    raw(&mut text, reproduction, INTRINSIC_METRIC);
     postures(&mut text, reproduction);
     seeds(&mut text, reproduction);
     physics(&mut text, reproduction);
@@ -138,18 +138,14 @@ fn claims_section(text: &mut String, reproduction: &Reproduction) {
     }
 }
 
-fn raw(text: &mut String, reproduction: &Reproduction, metric: MuscularMetric) {
-    text.push_str(match metric {
-        MuscularMetric::Paper => {
-            "\n## Raw values\n\nMuscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of `1 / ||alpha||^2`.\n"
-        }
-        MuscularMetric::Muscles => {
-            "\n## Raw values\n\nMuscular comfort is that of the muscles, `1 / (sum a^2 + 0.02)`; `printed` is the median of the paper's metric.\n"
-        }
-        MuscularMetric::Intrinsic => {
-            "\n## Raw values\n\nMuscular comfort is the intrinsic one, `1 / (||alpha||^2 + 0.0175)`; `printed` is the median of the paper's metric.\n"
-        }
-    });
+/// What the raw values of the paper's person are.
+const PAPERS_METRIC: &str = "Muscular comfort is the regularised one, `1 / (||alpha||^2 + 0.01)`; `printed` is the median of `1 / ||alpha||^2`.";
+
+/// What those of the natural person are.
+const INTRINSIC_METRIC: &str = "Muscular comfort is the intrinsic one, `1 / (||alpha||^2 + 0.0175)`; `printed` is the median of the paper's metric.";
+
+fn raw(text: &mut String, reproduction: &Reproduction, of_metric: &str) {
+    let _ = write!(text, "\n## Raw values\n\n{of_metric}\n");
     text.push_str(
         "\
          Peripersonal comfort is the sum over 64 body points, as in the captions of the paper; the figures in brackets are those\n\
