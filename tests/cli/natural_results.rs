@@ -3,10 +3,10 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use benchdog::model::scenario::PostureLimits;
+use benchdog::{model::scenario::PostureLimits, reproduce::paper};
 
 use crate::{
-    common::root,
+    common::{best_known, root},
     process::{argument, benchdog, stderr},
 };
 
@@ -76,34 +76,14 @@ fn every_plan_holds_in_simulation() {
     }
 }
 
-/// The best known objectives, found with the budget `exhaustive` and other seeds, and without the robot's clearance: that of
-/// 5 mm, which the plans keep, lowers an optimum by up to half a per cent. The operations of a pair are equal up to half a turn
-/// of the board.
-const BEST_KNOWN: [(&str, &str, f64); 13] = [
-    ("cut-01", "cut-09", 86.733),
-    ("cut-02", "cut-10", 89.802),
-    ("cut-03", "cut-11", 89.419),
-    ("cut-04", "cut-12", 88.369),
-    ("cut-05", "cut-13", 89.670),
-    ("cut-06", "cut-14", 91.539),
-    ("cut-07", "cut-15", 86.033),
-    ("cut-08", "cut-16", 85.534),
-    ("drill-1", "drill-9", 96.832),
-    ("drill-2", "drill-8", 96.677),
-    ("drill-3", "drill-7", 96.256),
-    ("drill-4", "drill-6", 96.066),
-    ("drill-5", "drill-5", 95.695),
-];
-
 #[test]
 fn every_comfort_plan_is_near_the_best_known() {
     let plans = committed("plans.csv");
-    for (one, other, best_known) in BEST_KNOWN {
-        for operation in [one, other] {
-            let row = plans.iter().find(|row| row["operation"] == operation && row["planner"] == "comfort").unwrap();
-            let share = row["objective"].parse::<f64>().unwrap() / best_known;
-            assert!((0.985..1.002).contains(&share), "{operation}: {share} of the best known");
-        }
+    for operation in paper::natural_operations() {
+        let name = &operation.name;
+        let row = plans.iter().find(|row| row["operation"] == *name && row["planner"] == "comfort").unwrap();
+        let share = row["objective"].parse::<f64>().unwrap() / best_known::natural(name).unwrap();
+        assert!((0.985..1.002).contains(&share), "{name}: {share} of the best known");
     }
 }
 

@@ -3,6 +3,8 @@
 // No binary uses all of it.
 #![allow(dead_code)]
 
+pub mod best_known;
+
 use std::{path::Path, sync::LazyLock};
 
 use benchdog::{
