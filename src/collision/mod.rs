@@ -17,6 +17,7 @@ mod sight;
 
 use nalgebra::Point3;
 use parry3d_f64::glamx::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     human::BodyPart,
@@ -102,7 +103,7 @@ pub struct PersonPart {
 }
 
 /// A body of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Body {
     /// A link of the robot, by its index.
     Link(usize),

@@ -6,6 +6,7 @@
 use std::sync::LazyLock;
 
 use nalgebra::{Matrix3, Point3, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::{arm::ArmFrames, body::Body};
 
@@ -22,7 +23,7 @@ pub const CAPSULES: usize = 14;
 const TOOL_RADIUS_M: f64 = 0.02;
 
 /// The side of a part of the body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Side {
     /// The side whose hand holds the tool.
     Working,
@@ -31,7 +32,7 @@ pub enum Side {
 }
 
 /// A part of the body, or the tool.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum BodyPart {
     /// The head.
     Head,

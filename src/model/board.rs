@@ -12,7 +12,7 @@ use super::{
 
 /// An edge of a board by its number, counter-clockwise. Of a box: 0 is at +x_O, 1 at +y_O, 2 at -x_O, 3 at -y_O; of a plate: the
 /// side from that corner of the outline to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Edge(pub usize);
 
 impl Edge {

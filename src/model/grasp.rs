@@ -1,6 +1,7 @@
 //! The parameters of a gripper's grasp on an edge of the board.
 
 use nalgebra::{Isometry3, Point3, Rotation3, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::{
     board::{BoardShape, Edge, EdgeLine},
@@ -22,7 +23,7 @@ pub fn grasped_edge(x_og: &Pose, board: &BoardShape) -> Option<Edge> {
 
 /// A gripper's grasp on an edge: z_G lies in the board's plane and points inward, y_G along +z_O or -z_O, and G is
 /// centred in the thickness (`docs/method.md#25-edge-grasps`).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EdgeGrasp {
     /// The grasped edge.
     pub edge: Edge,

@@ -2,6 +2,7 @@
 //! (docs/method.md#31-decision-variables).
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::{
     library::{ArmGrasp, BoardGrasp, GraspPattern, pattern},
@@ -16,7 +17,7 @@ use crate::{
 };
 
 /// A grasp of the board and a response of the person to it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Candidate {
     /// Person, tool and place of the board.
     pub work: WorkPose,
@@ -25,7 +26,7 @@ pub struct Candidate {
 }
 
 /// The person's posture, the tool's roll and the board's place.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct WorkPose {
     /// Angles of the person's working arm, rad.
     pub q_h_rad: ArmAngles,

@@ -48,7 +48,7 @@ pub fn explained(scenario: &Scenario, library: &GraspLibrary, why: Infeasible) -
 fn feasible<'a>(problem: &'a Problem<'_>, library: &'a GraspLibrary) -> impl Iterator<Item = Candidate> + 'a {
     let postures = problem::posture_map(problem.scenario, &problem.human);
     let floor_z_m = problem.robot.robot.floor_z_m;
-    let pairs = library.entries.iter().take(GRASPS).flat_map(move |entry| {
+    let pairs = library.entries().iter().take(GRASPS).flat_map(move |entry| {
         let x_wt = entry.grasp.x_wo * problem.scenario.operation.x_ot;
         let matching = postures.postures(&x_wt, floor_z_m).iter().take(PAIRS_PER_GRASP);
         matching.filter_map(|posture| align(problem, &entry.grasp, &posture.q_h_rad, &posture.x_bt)).collect::<Vec<_>>()

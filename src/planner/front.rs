@@ -167,7 +167,7 @@ impl Sweep<'_> {
                 let Evaluator { problem, .. } = &evaluator;
                 natural_entries(scenario, &problem.human, problem.robot, &postures, budget.natural_boards)
             });
-            let entries = own.as_ref().unwrap_or(&self.warm.entries);
+            let entries = own.as_deref().unwrap_or_else(|| self.warm.natural_entries(&self.library.robot));
             starts = screened(&mut evaluator, self.library, &postures, entries, &budget);
         }
         let screened = starts.len();

@@ -19,6 +19,8 @@ mod explain;
 mod front;
 mod library;
 mod load_shift;
+mod made_once;
+mod map_store;
 mod natural_boards;
 mod near_miss;
 mod normalise;
@@ -43,6 +45,7 @@ mod verify;
 mod warm_starts;
 
 pub use front::{Front, FrontPoint};
+pub use map_store::{MapKind, MapLabel, MapSource, MapStore};
 pub use outcome::{EmptyLibrary, Infeasible, MOST_FRICTION, NearMiss, Outcome, PlanError, Remedy, UnnaturalHolds};
 pub use place_board::{BOARD_DRAWS, PlacedBoard, place_board};
 pub use planner::{Planner, Search};

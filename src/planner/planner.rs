@@ -1,13 +1,14 @@
 //! The planner: the maps that it keeps, and the searches on them.
 
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::{
     assemble::verified,
     evaluate::{Evaluator, Feasible},
     explain::explained,
     front::{self, Front},
-    library::{GraspLibrary, LibraryEntry},
+    library::GraspLibrary,
+    map_store::MapStore,
     normalise::{alone, needs_optima, with_optima},
     outcome::{Infeasible, Outcome, PlanError},
     params::SearchBudget,
@@ -30,9 +31,10 @@ use crate::{
 };
 
 /// Plans for one robot. It keeps what many plans share: a grasp library per shape of board and clearance (about a second) and warm starts per
-/// task family (seconds). A plan does not depend on what was kept.
+/// task family (seconds), each made when it is first needed or read from a store. A plan does not depend on what was kept.
 pub struct Planner {
     robot: Robot,
+    store: Option<Arc<dyn MapStore>>,
     maps: Mutex<Vec<Arc<Maps>>>,
 }
 
@@ -41,8 +43,6 @@ struct Maps {
     board: BoardShape,
     clearance_mm: f64,
     library: GraspLibrary,
-    /// Further grasps, made when a search finds nothing.
-    further: OnceLock<Vec<LibraryEntry>>,
     warm_starts: Mutex<Vec<Arc<WarmStarts>>>,
 }
 
@@ -50,20 +50,34 @@ impl Planner {
     /// A planner without maps: they are made when a scenario needs them.
     #[must_use]
     pub fn new(robot: &Robot) -> Self {
-        Self { robot: robot.clone(), maps: Mutex::default() }
+        Self { robot: robot.clone(), store: None, maps: Mutex::default() }
     }
 
-    /// Makes the maps that a plan of this scenario needs, unless they are kept already.
+    /// A planner that reads maps from a store before it makes them, and writes those that it makes.
+    #[must_use]
+    pub fn with_store(robot: &Robot, store: Arc<dyn MapStore>) -> Self {
+        Self { store: Some(store), ..Self::new(robot) }
+    }
+
+    /// Reads or makes the maps that a plan of this scenario certainly needs, unless they are kept already. A search that finds nothing among
+    /// the warm starts makes further ones.
     ///
     /// # Errors
     /// When the scenario's person or tool is invalid.
     pub fn prepare(&self, scenario: &Scenario) -> Result<(), PlanError> {
-        self.warm_starts(&self.maps(scenario), scenario).map(drop)
+        let maps = self.maps(scenario);
+        let warm = self.warm_starts(&maps, scenario)?;
+        let is_screened = SearchBudget::of(scenario).warm_rounds.is_none();
+        if is_screened && scenario.planner.kind != PlannerKind::Random {
+            maps.library.entries();
+            warm.natural_entries(&maps.library.robot);
+        }
+        Ok(())
     }
 
-    /// Makes the grasp library for the scenario's board, unless it is kept already.
+    /// Reads or makes the grasp library for the scenario's board, unless it is kept already.
     pub fn prepare_library(&self, scenario: &Scenario) {
-        self.maps(scenario);
+        self.maps(scenario).library.entries();
     }
 
     /// The best plan of a scenario. The same scenario and seed give the same plan, bit for bit.
@@ -88,14 +102,9 @@ impl Planner {
         if let Some(maps) = kept(&lock(&self.maps)) {
             return maps;
         }
-        let library = GraspLibrary::new(&self.robot.at_gap(board.thickness_m()), &board, scenario.limits.clearance_m());
-        let made = Maps {
-            board: board.clone(),
-            clearance_mm,
-            library,
-            further: OnceLock::new(),
-            warm_starts: Mutex::default(),
-        };
+        let robot = self.robot.at_gap(board.thickness_m());
+        let library = GraspLibrary::kept_in(self.store.clone(), &robot, &board, scenario.limits.clearance_m());
+        let made = Maps { board: board.clone(), clearance_mm, library, warm_starts: Mutex::default() };
         let mut maps = lock(&self.maps);
         kept(&maps).unwrap_or_else(|| {
             maps.push(Arc::new(made));
@@ -185,8 +194,7 @@ fn second_search(evaluator: &mut Evaluator<'_>, maps: &Maps) -> Option<Vec<Feasi
     if evaluator.stats.is_exhausted() || evaluator.problem.scenario.planner.kind == PlannerKind::Random {
         return None;
     }
-    let further = maps.further.get_or_init(|| maps.library.further_entries());
-    let found = search_again(evaluator, &maps.library, further);
+    let found = search_again(evaluator, &maps.library);
     Some(rank(evaluator, found))
 }
 
@@ -194,9 +202,8 @@ fn second_search(evaluator: &mut Evaluator<'_>, maps: &Maps) -> Option<Vec<Feasi
 fn evidence(evaluator: Evaluator<'_>, maps: &Maps, searched_twice: bool) -> Result<Infeasible, PlanError> {
     let Evaluator { problem, stats, near_misses, .. } = evaluator;
     let nearest = near_misses.nearest(&problem).map(Box::new);
-    let Maps { library, further, .. } = maps;
-    let is_empty = library.entries.is_empty() && further.get().is_none_or(Vec::is_empty);
-    let library = is_empty.then(|| library.failures.evidence(&library.robot.robot));
+    let library = &maps.library;
+    let library = library.is_empty().then(|| library.failures().evidence(&library.robot.robot));
     let why = Infeasible { searched_twice, nearest, library, ..stats.into_infeasible() };
     explained(problem.scenario, &maps.library, why)
 }

@@ -51,7 +51,7 @@ fn draw_once(evaluator: &mut Evaluator<'_>, random: &mut Pcg64) -> Result<Feasib
         }
         // One grasp per arm: if it is out of reach everything is drawn again, so that the draw is not biased.
         let grasp = draw_grasp(robot, arm, edge, |_| true, random).ok_or(Rejection::RobotReach)?;
-        if !arm.reach.reaches(&arm.chain, &(x_wo * grasp.x_og(&robot.board))) {
+        if !arm.reach().reaches(&arm.chain, &(x_wo * grasp.x_og(&robot.board))) {
             return Err(Rejection::RobotReach);
         }
         grasps.push(grasp);
@@ -59,7 +59,7 @@ fn draw_once(evaluator: &mut Evaluator<'_>, random: &mut Pcg64) -> Result<Feasib
     let mut arms = Vec::with_capacity(grasps.len());
     for (arm, grasp) in robot.arms.iter().zip(grasps) {
         let x_wg = x_wo * grasp.x_og(&robot.board);
-        let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
+        let mut seeds = arm.reach().seeds(&arm.chain, &x_wg);
         let found = seeds.find_map(|seed| arm.inverse.local(&x_wg, &seed).found());
         arms.push(ArmGrasp { grasp, q_rad: found.ok_or(Rejection::RobotReach)? });
     }

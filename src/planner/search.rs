@@ -34,9 +34,8 @@ pub fn search(
         match &budget.warm_rounds {
             Some(rounds) if !starts.is_empty() => refine::refine(evaluator, starts, rounds),
             _ => {
-                if let Some(postures) = &warm.postures {
-                    starts.extend(screened(evaluator, library, postures, &warm.entries, budget));
-                }
+                let natural = warm.natural_entries(&library.robot);
+                starts.extend(screened(evaluator, library, warm.postures(), natural, budget));
                 refine::refine(evaluator, starts, &budget.rounds)
             }
         }
@@ -54,9 +53,9 @@ pub fn screened(
 ) -> Vec<Feasible> {
     let Problem { scenario, human, robot, .. } = &evaluator.problem;
     let of_place = entries_for_place(scenario, human, robot, postures, budget.natural_boards);
-    let entries: Vec<_> = library.entries.iter().chain(natural).chain(&of_place).collect();
+    let entries: Vec<_> = library.entries().iter().chain(natural).chain(&of_place).collect();
     if entries.is_empty() {
-        evaluator.stats.count_failed_draws(library.failures.rejections());
+        evaluator.stats.count_failed_draws(library.failures().rejections());
     }
     screen::screen(evaluator, entries.into_iter(), postures, budget)
 }

@@ -7,7 +7,7 @@
 use super::{
     assessment::utilisations,
     evaluate::{Evaluator, Feasible},
-    library::{GraspLibrary, LibraryEntry},
+    library::GraspLibrary,
     natural_boards::{entries_for_place, natural_entries},
     near_miss::Miss,
     params::{
@@ -19,8 +19,8 @@ use super::{
 };
 use crate::model::scenario::{PlannerSettings, Scenario};
 
-/// The candidates that the second search finds, the best first. `further` are the library's further grasps.
-pub fn search_again(evaluator: &mut Evaluator<'_>, library: &GraspLibrary, further: &[LibraryEntry]) -> Vec<Feasible> {
+/// The candidates that the second search finds, the best first. It uses the library's further grasps too.
+pub fn search_again(evaluator: &mut Evaluator<'_>, library: &GraspLibrary) -> Vec<Feasible> {
     let budget = SearchBudget::of_second_search();
     let Problem { scenario, human, robot, .. } = &evaluator.problem;
     let seed = scenario.planner.seed.wrapping_add(SEED_STEP);
@@ -28,7 +28,8 @@ pub fn search_again(evaluator: &mut Evaluator<'_>, library: &GraspLibrary, furth
     let postures = posture_map_of(&reseeded, human, &budget);
     let natural = natural_entries(&reseeded, human, robot, &postures, budget.natural_boards);
     let of_place = entries_for_place(&reseeded, human, robot, &postures, budget.natural_boards);
-    let entries: Vec<_> = library.entries.iter().chain(further).chain(&natural).chain(&of_place).collect();
+    let [first, further] = [library.entries(), library.further_entries()];
+    let entries: Vec<_> = first.iter().chain(further).chain(&natural).chain(&of_place).collect();
     let grasps: Vec<_> = entries.iter().map(|entry| &entry.grasp).collect();
     let mut ranked: Vec<_> = utilisations(&evaluator.problem, &grasps).into_iter().zip(entries).collect();
     // A stable sort keeps equal grasps in their order.

@@ -10,11 +10,14 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{
     candidate::{Candidate, WorkPose},
     evaluate::{self, Configuration, Evaluator, Feasible},
     library::{ArmGrasp, BoardGrasp, GraspLibrary, GraspPattern, GraspingRobot, LibraryEntry, PostureMap, resample},
+    made_once::MadeOnce,
+    map_store::{self, MapKind},
     natural_boards::{entries_for_place, natural_entries},
     outcome::{PlanError, Rejection},
     params::{
@@ -44,10 +47,11 @@ use crate::{
 pub struct WarmStarts {
     /// The family that they serve.
     pub family: TaskFamily,
-    /// The posture map of the family; `None` for the random planner, which does not use it.
-    pub postures: Option<PostureMap>,
-    /// Grasps of the boards that natural postures ask for.
-    pub entries: Vec<LibraryEntry>,
+    /// The family's scenario, with the optima of a normalised objective.
+    shared: Scenario,
+    human: Human,
+    postures: MadeOnce<PostureMap>,
+    natural_entries: MadeOnce<Vec<LibraryEntry>>,
     solutions: Vec<Solution>,
 }
 
@@ -59,28 +63,64 @@ struct Solution {
     comfort: Comfort,
     /// The tool tip on the board.
     p_ot_m: Point3<f64>,
+    /// Which of the solved tasks.
+    task: usize,
 }
 
+/// The solutions of a family as they are kept: the candidates of each solved task. The rest follows from candidate and task.
+#[derive(Serialize, Deserialize)]
+struct KeptSolutions(Vec<Vec<Candidate>>);
+
 impl WarmStarts {
-    /// Solves the tasks of a family. `shared` is the family's scenario, with the optima of a normalised objective filled in.
+    /// Solves the tasks of a family, unless the library's store has their solutions. `shared` is the family's scenario, with the
+    /// optima of a normalised objective filled in.
     ///
     /// # Errors
     /// When the scenario's person or tool is invalid.
     pub fn new(family: TaskFamily, shared: &Scenario, library: &GraspLibrary) -> Result<Self, PlanError> {
-        let human = Human::new(&shared.human, &shared.tool)?;
-        let planner = &shared.planner;
-        if planner.kind == PlannerKind::Random {
-            return Ok(Self { family, postures: None, entries: Vec::new(), solutions: Vec::new() });
-        }
-        let postures = problem::posture_map(shared, &human);
-        let (seed, budget) = (planner.seed, WarmStartBudget::of(shared));
-        let count = SearchBudget::of(shared).natural_boards;
-        let entries = natural_entries(shared, &human, &library.robot, &postures, count);
-        let mut warm = Self { family, postures: Some(postures), entries, solutions: Vec::new() };
-        if let Some(budget) = budget {
-            warm.solve(&solved_tasks(shared), library, &budget, seed)?;
+        let mut warm = Self {
+            family,
+            shared: shared.clone(),
+            human: Human::new(&shared.human, &shared.tool)?,
+            postures: MadeOnce::default(),
+            natural_entries: MadeOnce::default(),
+            solutions: Vec::new(),
+        };
+        let budget = if shared.planner.kind == PlannerKind::Random { None } else { WarmStartBudget::of(shared) };
+        let Some(budget) = budget else { return Ok(warm) };
+        let tasks = solved_tasks(shared);
+        let source = library.source(MapKind::WarmStarts, Some(shared));
+        let kept: Option<KeptSolutions> = map_store::read(library.store(), &source);
+        match kept.map(|kept| solutions_of_kept(kept, &tasks, &library.robot)).transpose()?.flatten() {
+            Some(solutions) => warm.solutions = solutions,
+            None => {
+                warm.solve(&tasks, library, &budget, shared.planner.seed)?;
+                map_store::write(library.store(), &source, &warm.kept(tasks.len()));
+            }
         }
         Ok(warm)
+    }
+
+    /// The posture map of the family.
+    pub fn postures(&self) -> &PostureMap {
+        self.postures.get_or_make(|| problem::posture_map(&self.shared, &self.human))
+    }
+
+    /// Grasps of the boards that natural postures ask for.
+    pub fn natural_entries(&self, robot: &GraspingRobot) -> &[LibraryEntry] {
+        self.natural_entries.get_or_make(|| {
+            let count = SearchBudget::of(&self.shared).natural_boards;
+            natural_entries(&self.shared, &self.human, robot, self.postures(), count)
+        })
+    }
+
+    /// The solutions as they are kept.
+    fn kept(&self, tasks: usize) -> KeptSolutions {
+        let of_task = |task: usize| {
+            let own = self.solutions.iter().filter(|solution| solution.task == task);
+            own.map(|solution| solution.candidate.clone()).collect()
+        };
+        KeptSolutions((0..tasks).map(of_task).collect())
     }
 
     /// Solves the tasks pass by pass, at first from the library, then from boards oriented like the best solutions so far.
@@ -95,11 +135,11 @@ impl WarmStarts {
         for pass in 0..budget.passes {
             let resampled;
             let (entries, natural, task_budget) = if pass == 0 {
-                (&library.entries, &self.entries[..], &budget.first)
+                (library.entries(), self.natural_entries(&library.robot), &budget.first)
             } else {
                 let boards: Vec<_> = self.solutions.iter().map(|solution| solution.x_wo).collect();
                 resampled = resample(&library.robot, &boards, budget.resampled_boards, [seed, pass]);
-                (&resampled, &[][..], &budget.later)
+                (&resampled[..], &[][..], &budget.later)
             };
             let entries: Vec<_> = entries.iter().chain(natural).collect();
             // Each task uses the solutions of the pass before, so their order does not matter.
@@ -107,7 +147,10 @@ impl WarmStarts {
                 self.solve_task(task, &library.robot, &entries, of_place, task_budget)
             };
             let found: Result<Vec<_>, PlanError> = tasks.par_iter().zip(&of_place).map(solve).collect();
-            self.solutions = found?.concat();
+            let numbered = |(task, found): (usize, Vec<Solution>)| {
+                found.into_iter().map(move |solution| Solution { task, ..solution })
+            };
+            self.solutions = found?.into_iter().enumerate().flat_map(numbered).collect();
         }
         Ok(())
     }
@@ -121,9 +164,7 @@ impl WarmStarts {
     ) -> Result<Vec<Vec<LibraryEntry>>, PlanError> {
         let of_task = |task: &Scenario| {
             let human = Human::new(&task.human, &task.tool)?;
-            let postures = self.postures.as_ref();
-            Ok(postures
-                .map_or_else(Vec::new, |postures| entries_for_place(task, &human, &library.robot, postures, count)))
+            Ok(entries_for_place(task, &human, &library.robot, self.postures(), count))
         };
         tasks.iter().map(of_task).collect()
     }
@@ -139,19 +180,10 @@ impl WarmStarts {
     ) -> Result<Vec<Solution>, PlanError> {
         let mut evaluator = Evaluator::new(Problem::new(task, robot)?, SearchStats::unlimited());
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
-        if let Some(postures) = &self.postures {
-            let entries = entries.iter().copied().chain(of_place);
-            starts.extend(screen::screen(&mut evaluator, entries, postures, budget));
-        }
+        let entries = entries.iter().copied().chain(of_place);
+        starts.extend(screen::screen(&mut evaluator, entries, self.postures(), budget));
         let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds), &robot.board);
-        let p_ot_m = task.operation.x_ot.translation.vector.into();
-        let solution = |Feasible { candidate, configuration, comfort, .. }| Solution {
-            candidate,
-            x_wo: configuration.placement.x_wo,
-            comfort,
-            p_ot_m,
-        };
-        Ok(found.into_iter().map(solution).collect())
+        Ok(found.into_iter().map(|found| Solution::new(&evaluator.problem, found.candidate, 0)).collect())
     }
 
     /// Transfers the solutions to the evaluator's task: at most `count` candidates that satisfy every constraint. They are
@@ -200,7 +232,33 @@ impl WarmStarts {
     }
 }
 
+/// The solutions of kept ones; `None` if these are not of the tasks and the robot.
+fn solutions_of_kept(
+    KeptSolutions(kept): KeptSolutions,
+    tasks: &[Scenario],
+    robot: &GraspingRobot,
+) -> Result<Option<Vec<Solution>>, PlanError> {
+    let mut candidates = kept.iter().flatten();
+    if kept.len() != tasks.len() || !candidates.all(|candidate| robot.has_form_of(&candidate.arms)) {
+        return Ok(None);
+    }
+    let mut solutions = Vec::new();
+    for (number, (task, candidates)) in tasks.iter().zip(kept).enumerate() {
+        let problem = Problem::new(task, robot)?;
+        solutions.extend(candidates.into_iter().map(|candidate| Solution::new(&problem, candidate, number)));
+    }
+    Ok(Some(solutions))
+}
+
 impl Solution {
+    /// A candidate that solves the task of this number.
+    fn new(problem: &Problem<'_>, candidate: Candidate, task: usize) -> Self {
+        let configuration = Configuration::new(problem, &candidate);
+        let comfort = evaluate::comfort(problem, &candidate, &configuration);
+        let p_ot_m = problem.scenario.operation.x_ot.translation.vector.into();
+        Self { candidate, x_wo: configuration.placement.x_wo, comfort, p_ot_m, task }
+    }
+
     /// The solution with the board turned by quarters about its normal and the tool where the problem's operation needs it:
     /// once with the board left in place and the person moved, once with the person left in place and the board moved.
     fn transferred(&self, problem: &Problem<'_>, quarters: usize) -> [Option<Candidate>; 2] {

@@ -19,10 +19,10 @@ pub fn draw_arm_grasp(
     x_wo: &Pose,
     random: &mut Pcg64,
 ) -> Option<ArmGrasp> {
-    let near = |x_og: &Pose| arm.reach.reaches(&arm.chain, &(x_wo * x_og));
+    let near = |x_og: &Pose| arm.reach().reaches(&arm.chain, &(x_wo * x_og));
     let grasp = draw_grasp(robot, arm, edge, near, random)?;
     let x_wg = x_wo * grasp.x_og(&robot.board);
-    let mut seeds = arm.reach.seeds(&arm.chain, &x_wg);
+    let mut seeds = arm.reach().seeds(&arm.chain, &x_wg);
     Some(ArmGrasp { grasp, q_rad: seeds.find_map(|seed| arm.inverse.near(&x_wg, &seed).found())? })
 }
 

@@ -2,6 +2,8 @@
 
 use std::cmp::Reverse;
 
+use serde::{Deserialize, Serialize};
+
 use crate::{
     collision::Body,
     planner::outcome::{EmptyLibrary, Rejection},
@@ -9,7 +11,7 @@ use crate::{
 };
 
 /// The test at which one draw failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum DrawFailure {
     /// The robot has no arm.
     NoArm,
@@ -26,7 +28,7 @@ pub enum DrawFailure {
 }
 
 /// Counts of the failed draws.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct DrawFailures {
     counts: Vec<(DrawFailure, u64)>,
 }
@@ -38,6 +40,19 @@ impl DrawFailures {
             Some((_, count)) => *count += 1,
             None => self.counts.push((failure, 1)),
         }
+    }
+
+    /// True if every arm and link that they name is one of the robot's.
+    pub fn are_of(&self, robot: &Robot) -> bool {
+        let is_body = |body: &Body| match *body {
+            Body::Link(link) => link < robot.links.len(),
+            Body::Board | Body::Person(_) => true,
+        };
+        self.counts.iter().all(|(failure, _)| match failure {
+            DrawFailure::NoArm | DrawFailure::NoEdge | DrawFailure::Domain => true,
+            DrawFailure::Pads { arm } | DrawFailure::Reach { arm } => *arm < robot.arms.len(),
+            DrawFailure::Collision { bodies } => bodies.iter().all(is_body),
+        })
     }
 
     /// The number of failed draws by the constraint that they violate.

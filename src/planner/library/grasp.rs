@@ -1,11 +1,12 @@
 //! A grasp of the board by all arms of a robot.
 
 use arrayvec::ArrayVec;
+use serde::{Deserialize, Serialize};
 
 use crate::model::{board::Edge, frames::Pose, grasp::EdgeGrasp};
 
 /// One arm's grasp and configuration.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ArmGrasp {
     /// Where the gripper is on the board.
     pub grasp: EdgeGrasp,
@@ -14,7 +15,7 @@ pub struct ArmGrasp {
 }
 
 /// A pose of the board and the grasps that bring the arms to it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct BoardGrasp {
     /// Pose of the board in the world.
     pub x_wo: Pose,

@@ -1,5 +1,7 @@
 //! A robot prepared to grasp boards of one shape: kinematics, reach maps and collision model.
 
+use std::sync::OnceLock;
+
 use super::{
     grasp::{ArmGrasp, BoardGrasp},
     palm::Palm,
@@ -43,12 +45,20 @@ pub struct GraspingArm {
     pub joints: Vec<String>,
     pub chain: Chain,
     pub inverse: InverseKinematics,
-    pub reach: ReachMap,
+    reach: OnceLock<ReachMap>,
     /// Range of the depth of a grasp, m.
     pub depth_m: [f64; 2],
     /// Its palm, if it is near the board at some depth.
     pub palm: Option<Palm>,
     finger_travel_m: [f64; 2],
+}
+
+impl GraspingArm {
+    /// Where its gripper can be. The map is made when it is first asked for, by one thread while others wait: it is made without parallel
+    /// work, so the one that makes it waits for nobody.
+    pub fn reach(&self) -> &ReachMap {
+        self.reach.get_or_init(|| ReachMap::new(&self.chain))
+    }
 }
 
 impl GraspingRobot {
@@ -67,7 +77,7 @@ impl GraspingRobot {
                 name: arm.name.clone(),
                 joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
                 inverse: InverseKinematics::for_chain(&chain),
-                reach: ReachMap::new(&chain),
+                reach: OnceLock::new(),
                 depth_m,
                 palm: (depth_m[1] < DEPTH_M[1]).then_some(palm),
                 chain,
@@ -111,6 +121,15 @@ impl GraspingRobot {
     pub fn is_clear(&self, grasp: &BoardGrasp) -> bool {
         let link_poses = self.link_poses(&grasp.arms);
         self.collision.first_violation(&self.scene(&link_poses, grasp.x_wo)).is_none()
+    }
+
+    /// True if grasps are those of this robot's arms on this board: as many, each on an edge that is grasped, with an angle for every
+    /// joint.
+    pub fn has_form_of(&self, arms: &[ArmGrasp]) -> bool {
+        let fits = |(arm, own): (&GraspingArm, &ArmGrasp)| {
+            own.q_rad.len() == arm.chain.dof() && self.edges.contains(&own.grasp.edge)
+        };
+        self.arms.len() == arms.len() && self.arms.iter().zip(arms).all(fits)
     }
 
     /// Moves the arms with the board to another pose, each by inverse kinematics from its present angles; false if one cannot

@@ -4,8 +4,11 @@
 //! random candidates satisfy least often. So grasps are found once and serve all tasks on boards of that shape: the first
 //! arm's configuration and grasp are drawn, which gives the board's pose; inverse kinematics brings the other arms there.
 
+use std::sync::Arc;
+
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{
     board_grasps::grasps_of_board,
@@ -17,9 +20,11 @@ use super::{
 };
 use crate::{
     collision::Violation,
-    model::{board::BoardShape, frames::Pose},
+    model::{board::BoardShape, frames::Pose, scenario::Scenario},
     planner::{
         domain::{draw_edge, draw_other_edge},
+        made_once::MadeOnce,
+        map_store::{self, MapKind, MapSource, MapStore},
         params::library::{
             BOARDS_AT_ONCE, BOARDS_PER_GRASP, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASPS,
             GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
@@ -28,29 +33,101 @@ use crate::{
     robot::Robot,
 };
 
-/// Collision-free grasps of a robot for boards of one shape with one clearance. It depends on nothing else.
+/// Collision-free grasps of a robot for boards of one shape with one clearance. It depends on nothing else. The grasps are
+/// drawn when they are first asked for.
 pub struct GraspLibrary {
     /// The robot, prepared for boards of that shape.
     pub robot: GraspingRobot,
-    /// The grasps.
-    pub entries: Vec<LibraryEntry>,
+    store: Option<Arc<dyn MapStore>>,
+    drawn: MadeOnce<DrawnGrasps>,
+    further: MadeOnce<DrawnGrasps>,
+}
+
+/// Drawn grasps.
+struct DrawnGrasps {
+    entries: Vec<LibraryEntry>,
     /// What the draws failed at that gave no grasp.
-    pub failures: DrawFailures,
+    failures: DrawFailures,
+}
+
+/// Drawn grasps as they are kept.
+#[derive(Serialize, Deserialize)]
+struct KeptGrasps {
+    grasps: Vec<BoardGrasp>,
+    failures: DrawFailures,
 }
 
 impl GraspLibrary {
     /// The library of a robot for boards of this shape that keeps a clearance, m; it has fewer than the usual number of
     /// entries where grasps are rare.
     pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
+        Self::kept_in(None, robot, board, clearance_m)
+    }
+
+    /// As [`GraspLibrary::new`], with a store that the grasps are read from and written to.
+    pub fn kept_in(store: Option<Arc<dyn MapStore>>, robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
         let robot = GraspingRobot::new(robot, board, clearance_m);
-        let (entries, failures) = draw_entries(&robot, GRASPS, 0);
-        Self { robot, entries, failures }
+        Self { robot, store, drawn: MadeOnce::default(), further: MadeOnce::default() }
+    }
+
+    /// The grasps.
+    pub fn entries(&self) -> &[LibraryEntry] {
+        &self.drawn().entries
+    }
+
+    /// What the draws failed at that gave no grasp.
+    pub fn failures(&self) -> &DrawFailures {
+        &self.drawn().failures
     }
 
     /// Further grasps for the same boards, from random numbers of their own: for a search that found nothing among the
     /// library's.
-    pub fn further_entries(&self) -> Vec<LibraryEntry> {
-        draw_entries(&self.robot, FURTHER_GRASPS, 1).0
+    pub fn further_entries(&self) -> &[LibraryEntry] {
+        let make = || self.kept_or_drawn(MapKind::FurtherGrasps, FURTHER_GRASPS, 1);
+        &self.further.get_or_make(make).entries
+    }
+
+    /// True if there is no grasp, neither among the library's nor among further ones if these were drawn.
+    pub fn is_empty(&self) -> bool {
+        self.entries().is_empty() && self.further.get().is_none_or(|further| further.entries.is_empty())
+    }
+
+    /// The store of its maps.
+    pub fn store(&self) -> Option<&dyn MapStore> {
+        self.store.as_deref()
+    }
+
+    /// The source of a map of this robot and these boards.
+    pub fn source<'a>(&'a self, kind: MapKind, task: Option<&'a Scenario>) -> MapSource<'a> {
+        let GraspingRobot { robot, board, clearance_m, .. } = &self.robot;
+        MapSource { kind, robot, board, clearance_m: *clearance_m, task }
+    }
+
+    fn drawn(&self) -> &DrawnGrasps {
+        self.drawn.get_or_make(|| self.kept_or_drawn(MapKind::Grasps, GRASPS, 0))
+    }
+
+    /// At most `wanted` grasps from a stream of random numbers, from the store if it has them.
+    fn kept_or_drawn(&self, kind: MapKind, wanted: usize, stream: u128) -> DrawnGrasps {
+        let source = self.source(kind, None);
+        let kept = map_store::read(self.store(), &source).and_then(|kept| self.of_kept(kept));
+        kept.unwrap_or_else(|| {
+            let (entries, failures) = draw_entries(&self.robot, wanted, stream);
+            let grasps = entries.iter().map(|entry| entry.grasp.clone()).collect();
+            let kept = KeptGrasps { grasps, failures };
+            map_store::write(self.store(), &source, &kept);
+            DrawnGrasps { entries, failures: kept.failures }
+        })
+    }
+
+    /// The drawn grasps of kept ones; `None` if these are not of this robot and board.
+    fn of_kept(&self, KeptGrasps { grasps, failures }: KeptGrasps) -> Option<DrawnGrasps> {
+        let entry = |grasp: BoardGrasp| {
+            let link_poses = self.robot.has_form_of(&grasp.arms).then(|| self.robot.link_poses(&grasp.arms))?;
+            Some(LibraryEntry::new(&self.robot, grasp, &link_poses))
+        };
+        let entries = grasps.into_iter().map(entry).collect::<Option<_>>()?;
+        failures.are_of(&self.robot.robot).then_some(DrawnGrasps { entries, failures })
     }
 }
 
@@ -113,7 +190,7 @@ fn draw_first(robot: &GraspingRobot, random: &mut Pcg64) -> Result<(ArmGrasp, Po
     let x_go = grasp.x_og(&robot.board).inverse();
     let in_domain = |x_wo: &Pose| robot.domain.contains(x_wo);
     let (q_rad, x_wo) = (0..FIRST_ARM_ATTEMPTS)
-        .find_map(|_| first.reach.draw(&first.chain, &x_go, in_domain, random))
+        .find_map(|_| first.reach().draw(&first.chain, &x_go, in_domain, random))
         .ok_or(DrawFailure::Domain)?;
     Ok((ArmGrasp { grasp, q_rad }, x_wo))
 }

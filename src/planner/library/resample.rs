@@ -82,9 +82,10 @@ mod tests {
 
     #[test]
     fn every_grasp_is_of_a_similar_board_is_reached_and_collides_with_nothing() {
-        let GraspLibrary { robot, entries, .. } = library();
+        let library = library();
+        let (robot, entries) = (&library.robot, library.entries());
         let boards: Vec<_> = entries.iter().take(20).map(|entry| entry.grasp.x_wo).collect();
-        let found = resample(&robot, &boards, 200, [1, 1]);
+        let found = resample(robot, &boards, 200, [1, 1]);
         assert!(found.len() > 20, "{}", found.len());
         for LibraryEntry { grasp: BoardGrasp { x_wo, arms }, .. } in &found {
             let similar = |board: &Pose| {
@@ -117,24 +118,25 @@ mod tests {
         let outline_m = vec![[0.015, -0.015], [0.015, 0.015], [-0.015, 0.015], [-0.015, -0.015]];
         let board = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
         let library = GraspLibrary::new(&loaded.robot, &board, 0.005);
-        assert!(library.entries.is_empty() && library.robot.edges.is_empty());
+        assert!(library.entries().is_empty() && library.robot.edges.is_empty());
         assert!(resample(&library.robot, &[Pose::identity()], 20, [1, 1]).is_empty());
-        let text = library.failures.evidence(&loaded.robot).to_string();
+        let text = library.failures().evidence(&loaded.robot).to_string();
         assert!(text.contains("100.0 % every edge of the board is shorter than a pad is wide"), "{text}");
     }
 
     #[test]
     fn the_number_of_threads_does_not_change_the_grasps() {
-        let GraspLibrary { robot, entries, .. } = library();
+        let library = library();
+        let (robot, entries) = (&library.robot, library.entries());
         let boards = [entries[0].grasp.x_wo];
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let found = pool.install(|| resample(&robot, &boards, 60, [3, 2]));
+            let found = pool.install(|| resample(robot, &boards, 60, [3, 2]));
             found.iter().map(|entry| format!("{:?}", entry.grasp)).collect::<Vec<_>>()
         };
         let one = with(1);
         assert!(!one.is_empty());
         assert_eq!(one, with(3));
-        assert!(resample(&robot, &[], 60, [3, 2]).is_empty());
+        assert!(resample(robot, &[], 60, [3, 2]).is_empty());
     }
 }

@@ -34,7 +34,7 @@ pub fn search(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
 /// of the library.
 fn starts(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
     let library = problem.library;
-    let mut estimated = best_estimates(problem, &library.entries);
+    let mut estimated = best_estimates(problem, library.entries());
     let natural = problem.natural_entries();
     estimated.extend(best_estimates(problem, &natural));
     estimated.sort_by(|a, b| a.0.order(&b.0));
