@@ -107,6 +107,8 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "cache")]
+pub mod cache;
 pub mod check;
 #[cfg(feature = "cli")]
 pub mod cli;

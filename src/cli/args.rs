@@ -53,6 +53,9 @@ pub enum Command {
     /// Write the description of a robot from its URDF
     #[command(subcommand, after_help = help::ROBOT_NEW)]
     Robot(RobotCommand),
+    /// List or remove the maps that are kept between commands
+    #[command(subcommand, after_help = help::CACHE)]
+    Cache(CacheCommand),
     /// Check the installation: assets, versions, physics and solver; or the description of a robot
     Doctor(DoctorArgs),
     /// Print a shell's completion script
@@ -64,6 +67,24 @@ pub enum Command {
 pub enum RobotCommand {
     /// Find arms and grippers of a URDF and write a description that can be used at once
     New(RobotNewArgs),
+}
+
+/// A command about the maps that are kept.
+#[derive(Clone, Copy, Debug, Subcommand)]
+pub enum CacheCommand {
+    /// List the maps: what each is made for, its size, and when it was last used
+    List,
+    /// Remove all maps
+    Clear,
+}
+
+/// Whether maps are kept between commands.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = "Maps")]
+pub struct CacheArgs {
+    /// Make all maps anew: read none that an earlier command kept or that come with the program, and keep none
+    #[arg(long)]
+    pub no_cache: bool,
 }
 
 /// `benchdog robot new`.
@@ -139,6 +160,9 @@ pub struct RunArgs {
     /// Reports and recordings.
     #[command(flatten)]
     pub report: ReportArgs,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
 }
 
 /// `benchdog plan`.
@@ -156,6 +180,9 @@ pub struct PlanArgs {
     /// The planner.
     #[command(flatten)]
     pub planner: PlannerArgs,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
 }
 
 /// Options that override the scenario's `[planner]` keys.
@@ -214,6 +241,9 @@ pub struct FrontArgs {
     /// Budget and seed of each search.
     #[command(flatten)]
     pub search: SearchArgs,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
 }
 
 /// `benchdog circle`.
@@ -228,6 +258,9 @@ pub struct CircleArgs {
     /// Budget and seed of each search.
     #[command(flatten)]
     pub search: SearchArgs,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
 }
 
 /// `benchdog simulate`.
@@ -343,6 +376,9 @@ pub struct ReproduceArgs {
     /// Folder for the results; by default `results`, with --natural `results/natural`, with --quick `out/reproduce-quick`
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
 }
 
 /// `benchdog schema`.

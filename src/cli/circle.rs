@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{
     args::CircleArgs,
+    cache,
     curve::circle_radius_m,
     exit::{CliError, Exit},
     inputs, interrupt, output,
@@ -12,7 +13,7 @@ use super::{
 use crate::{
     model::{plan::Plan, scenario::ResponseKind},
     planner::{
-        Outcome, Planner,
+        Outcome,
         path::{self, CirclePlans, Continuous, MotionStep},
     },
     report,
@@ -34,7 +35,7 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
     inputs::protect(&loaded.inputs, plans.chain([circle_csv.clone(), motion_csv.clone()]))?;
     report::file::check_folder(&args.out)?;
     interrupt::listen("what was found is written")?;
-    let planner = Planner::new(&loaded.robot);
+    let planner = cache::planner(&loaded.robot, args.cache);
     let found = match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).circle()? {
         Outcome::Found(found) => found,
         Outcome::Infeasible(why) => return Ok(infeasible(&loaded, &why)),

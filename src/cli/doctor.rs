@@ -2,6 +2,7 @@
 
 use super::{
     args::DoctorArgs,
+    cache,
     exit::{CliError, Exit},
     output, robot_check,
     versions::LONG,
@@ -17,6 +18,7 @@ use crate::{
         trace::{Phase, Sample, Trace},
         wrench::Wrench,
     },
+    report::file,
     robot::{BUILTIN, Robot},
     scenario, sim,
     statics::{ContactModel, StabilityWorkspace},
@@ -62,8 +64,9 @@ pub fn doctor(args: &DoctorArgs) -> Result<Exit, CliError> {
         };
         output::print(&format!("{mark:<5}  {what:<9} {message}\n"))?;
     }
-    let (mark, message) = viewer();
-    output::print(&format!("{mark:<5}  {:<9} {message}\n", "viewer"))?;
+    for (what, (mark, message)) in [("maps", maps()), ("viewer", viewer())] {
+        output::print(&format!("{mark:<5}  {what:<9} {message}\n"))?;
+    }
     if wrong.is_empty() { Ok(Exit::Met) } else { Err(CliError::Machine(format!("wrong: {}", wrong.join(", ")))) }
 }
 
@@ -149,6 +152,18 @@ fn last_loaded(trace: &Trace) -> Option<&Sample> {
 fn imbalance_n(sample: &Sample, mass_kg: f64) -> f64 {
     let pads = sample.arms.iter().flat_map(|arm| &arm.pads).map(|pad| pad.wrench_w.force_n);
     (pads.sum::<nalgebra::Vector3<f64>>() + sample.tool_wrench_w.force_n + GRAVITY_W * mass_kg).norm()
+}
+
+/// Where maps are kept between commands. Without a folder everything works, only later.
+fn maps() -> (&'static str, String) {
+    let Some(folder) = cache::folder() else {
+        return ("note", format!("are not kept between commands; {} names a folder for them", cache::VARIABLE));
+    };
+    let path = folder.path().display();
+    match file::check_folder(folder.path()) {
+        Ok(()) => ("ok", format!("are kept in {path}")),
+        Err(error) => ("note", format!("are not kept between commands: {error}")),
+    }
 }
 
 #[cfg(feature = "recording")]

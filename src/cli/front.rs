@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use super::{
     args::FrontArgs,
+    cache,
     exit::{CliError, Exit},
     inputs, interrupt, output,
     plan::{infeasible, load_for_planning, stop_on_interrupt},
 };
 use crate::{
     model::scenario::MuscularMetric,
-    planner::{Front, FrontPoint, Outcome, Planner},
+    planner::{Front, FrontPoint, Outcome},
     report::{self, front::Row},
 };
 
@@ -24,7 +25,7 @@ pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
     inputs::protect(&loaded.inputs, outputs(&args.out))?;
     report::file::check_folder(&args.out)?;
     interrupt::listen("the front of the plans found so far is written")?;
-    let planner = Planner::new(&loaded.robot);
+    let planner = cache::planner(&loaded.robot, args.cache);
     match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).front()? {
         Outcome::Found(front) => {
             write(&front, loaded.scenario.comfort.muscular, args)?;

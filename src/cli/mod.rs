@@ -2,6 +2,7 @@
 //! codes, decides about threads, and writes files.
 
 mod args;
+mod cache;
 mod circle;
 mod completions;
 mod curve;
@@ -75,6 +76,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "recording")]
         Command::View(args) => view::view(args),
         Command::Robot(RobotCommand::New(args)) => robot::new(args),
+        Command::Cache(command) => cache::cache(command),
         Command::Doctor(args) => doctor::doctor(args),
         Command::Completions(args) => completions::completions(args),
     });

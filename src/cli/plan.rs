@@ -6,14 +6,15 @@ use std::{
 };
 
 use super::{
-    args::PlanArgs,
+    args::{CacheArgs, PlanArgs},
+    cache,
     exit::{CliError, Exit},
     inputs, interrupt, output,
     planners::Planners,
 };
 use crate::{
     model::verdict::VerdictKind,
-    planner::{Infeasible, Outcome, Planner, Progress},
+    planner::{Infeasible, Outcome, Progress},
     report,
     scenario::{self, LoadedScenario},
 };
@@ -29,8 +30,8 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     inputs::protect(&loaded.inputs, outputs)?;
     interrupt::listen("the best plan so far is checked and written")?;
     match (args.top, &args.output) {
-        (Some(wanted), Some(folder)) => top(&loaded, wanted.get(), folder),
-        _ => one(&loaded, args.output.as_deref()),
+        (Some(wanted), Some(folder)) => top(&loaded, wanted.get(), folder, args.cache),
+        _ => one(&loaded, args.output.as_deref(), args.cache),
     }
 }
 
@@ -52,8 +53,8 @@ pub fn stop_on_interrupt(_: &Progress<'_>) -> ControlFlow<()> {
     if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError> {
-    let planners = Planners::default();
+fn one(loaded: &LoadedScenario, output: Option<&Path>, cache: CacheArgs) -> Result<Exit, CliError> {
+    let planners = Planners::new(cache);
     let outcome = planners.timed_plan(&loaded.scenario, &loaded.robot, Some(&mut stop_on_interrupt))?;
     match outcome {
         Outcome::Found(plan) => {
@@ -86,9 +87,9 @@ fn one(loaded: &LoadedScenario, output: Option<&Path>) -> Result<Exit, CliError>
     }
 }
 
-fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path) -> Result<Exit, CliError> {
+fn top(loaded: &LoadedScenario, wanted: usize, folder: &Path, cache: CacheArgs) -> Result<Exit, CliError> {
     report::file::check_folder(folder)?;
-    let planner = Planner::new(&loaded.robot);
+    let planner = cache::planner(&loaded.robot, cache);
     match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).top(wanted)? {
         Outcome::Found(plans) => {
             for (index, plan) in plans.iter().enumerate() {

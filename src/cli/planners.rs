@@ -7,22 +7,28 @@ use std::{
     time::Instant,
 };
 
-use super::{exit::CliError, interrupt};
+use super::{args::CacheArgs, cache, exit::CliError, interrupt};
 use crate::{
     model::{plan::Plan, scenario::Scenario},
-    planner::{Observer, Outcome, Planner},
+    planner::{MapStore, Observer, Outcome, Planner},
     robot::{Robot, RobotOptions},
 };
 
 /// One planner per robot: scenarios with the same robot share its maps.
 #[derive(Default)]
 pub struct Planners {
+    store: Option<Arc<dyn MapStore>>,
     known: Mutex<Vec<(RobotKey, Arc<Planner>)>>,
-    /// Time that the maps of each scenario took to make, ms.
+    /// Time that the maps of each scenario took to read or make, ms.
     map_ms: Mutex<HashMap<String, f64>>,
 }
 
 impl Planners {
+    /// Planners with a command's store of maps.
+    pub fn new(args: CacheArgs) -> Self {
+        Self { store: cache::store(args), ..Self::default() }
+    }
+
     /// The planner of a robot.
     pub fn of(&self, robot: &Robot) -> Arc<Planner> {
         let mut known = lock(&self.known);
@@ -30,7 +36,10 @@ impl Planners {
         if let Some((_, planner)) = known.iter().find(|(other, _)| *other == key) {
             return planner.clone();
         }
-        let planner = Arc::new(Planner::new(robot));
+        let planner = Arc::new(match &self.store {
+            Some(store) => Planner::with_store(robot, store.clone()),
+            None => Planner::new(robot),
+        });
         known.push((key, planner.clone()));
         planner
     }

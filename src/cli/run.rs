@@ -33,7 +33,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     interrupt::listen("the scenarios in progress are finished and reported")?;
     let runner = Runner {
         args,
-        planners: Planners::default(),
+        planners: Planners::new(args.cache),
         progress: Progress::new(wanted.len()),
         failed: AtomicBool::new(false),
         fatal: Mutex::new(None),

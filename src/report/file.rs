@@ -78,9 +78,19 @@ fn temporary() -> tempfile::Builder<'static, 'static> {
     named()
 }
 
+/// True if a path is named as a temporary file is that a killed process has left.
+#[must_use]
+pub fn is_temporary(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1])
+}
+
+/// How the name of a temporary file begins and ends.
+const TEMPORARY: [&str; 2] = [".benchdog-", ".part"];
+
 /// If the process is killed, a hidden file with a telling name is left.
 fn named() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".benchdog-").suffix(".part");
+    builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]);
     builder
 }

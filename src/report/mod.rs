@@ -14,6 +14,8 @@ pub mod html;
 pub mod json;
 #[cfg(feature = "cli")]
 pub mod junit;
+#[cfg(feature = "cli")]
+pub mod maps;
 pub mod muscles;
 mod picture;
 pub mod plans;

@@ -19,7 +19,9 @@ pub type Files = BTreeMap<PathBuf, Vec<u8>>;
 /// The binary with its working directory and arguments.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_benchdog"));
-    command.current_dir(folder).args(arguments);
+    // Never the user's folder of maps. The maps in this one are those of earlier tests of the same program.
+    let maps = Path::new(env!("CARGO_TARGET_TMPDIR")).join("maps");
+    command.current_dir(folder).args(arguments).env("BENCHDOG_CACHE", maps);
     command
 }
 

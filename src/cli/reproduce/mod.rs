@@ -44,7 +44,7 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     interrupt::listen("finished results are kept, and the same command continues from them")?;
     let scope = args.scope();
     let schedule = Schedule::new(&operations, &scope);
-    let runner = JobRunner::new(&first.robot, &out, args.record)?;
+    let runner = JobRunner::new(&first.robot, &out, args)?;
     let Some(rows) = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs))?? else {
         let folder = runner.folder();
         let folder = folder.display();

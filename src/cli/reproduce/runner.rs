@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 use crate::{
     check::CheckedPlan,
     cli::{
-        args::RecordChoice,
+        args::{RecordChoice, ReproduceArgs},
         exit::CliError,
         margin,
         pipeline::{self, Run},
@@ -73,16 +73,16 @@ impl<'a> JobRunner<'a> {
     ///
     /// # Errors
     /// If the executable file cannot be read.
-    pub fn new(robot: &'a Robot, out: &Path, record: RecordChoice) -> Result<Self, CliError> {
+    pub fn new(robot: &'a Robot, out: &Path, args: &ReproduceArgs) -> Result<Self, CliError> {
         let executable = std::env::current_exe()
             .and_then(fs::read)
             .map_err(|error| CliError::Machine(format!("failed to read this program's own file: {error}")))?;
         Ok(Self {
             robot,
-            planners: Planners::default(),
+            planners: Planners::new(args.cache),
             out: out.to_owned(),
             executable: base16ct::lower::encode_string(&Sha256::digest(executable)),
-            record,
+            record: args.record,
         })
     }
 

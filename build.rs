@@ -1,0 +1,62 @@
+//! The fingerprint of what the planner's maps depend on in this program: a kept map is read only by a program with the same one.
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+};
+
+use sha2::{Digest, Sha256};
+
+/// What maps depend on, relative to the package. A module that these use is one of them (ARCHITECTURE.md).
+const SOURCES: [&str; 11] = [
+    "src/model",
+    "src/robot",
+    "src/human",
+    "src/collision",
+    "src/comfort",
+    "src/check",
+    "src/complete",
+    "src/statics",
+    "src/planner",
+    "assets/human",
+    "Cargo.lock",
+];
+
+/// What the compiler is told, and the version.
+const SETTINGS: [&str; 4] = ["TARGET", "CARGO_CFG_TARGET_FEATURE", "OPT_LEVEL", "CARGO_PKG_VERSION"];
+
+fn main() {
+    let mut hash = Sha256::new();
+    let mut add = |bytes: &[u8]| {
+        hash.update((bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    for source in SOURCES {
+        // Cargo.lock is not part of a package that others depend on. Naming what does not exist would run this script every time.
+        if Path::new(source).exists() {
+            println!("cargo::rerun-if-changed={source}");
+        }
+        for file in files(Path::new(source)) {
+            add(file.to_string_lossy().replace('\\', "/").as_bytes());
+            add(&fs::read(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display())));
+        }
+    }
+    println!("cargo::rerun-if-changed=build.rs");
+    for setting in SETTINGS {
+        add(env::var(setting).unwrap_or_default().as_bytes());
+    }
+    let text: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    println!("cargo::rustc-env=BENCHDOG_MAPS={text}");
+    println!("cargo::rustc-env=BENCHDOG_TARGET={}", env::var("TARGET").unwrap_or_default());
+}
+
+/// A file, or all files of a folder in the order of their names; nothing if there is none.
+fn files(path: &Path) -> Vec<PathBuf> {
+    if !path.is_dir() {
+        return path.exists().then(|| path.to_owned()).into_iter().collect();
+    }
+    let entries = fs::read_dir(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    paths.iter().flat_map(|path| files(path)).collect()
+}
