@@ -70,6 +70,22 @@ impl Human {
         self.place_margins(standing).iter().all(|&margin| margin >= -ROUNDING)
     }
 
+    /// The standing pose nearest to another at which the person may stand, each coordinate by itself; the same one if the place is
+    /// free.
+    #[must_use]
+    pub fn standing_nearest_to(&self, standing: &Standing) -> Standing {
+        let StandingPlace::Given { tolerance_m, tolerance_deg, .. } = self.place else { return *standing };
+        let given = self.given_standing();
+        let axis = |axis: usize| {
+            let middle_m = given.p_wb_m[axis];
+            standing.p_wb_m[axis].clamp(middle_m - tolerance_m, middle_m + tolerance_m)
+        };
+        let turn_rad = (standing.heading_rad - given.heading_rad + PI).rem_euclid(2.0 * PI) - PI;
+        let tolerance_rad = tolerance_deg.to_radians();
+        let heading_rad = given.heading_rad + turn_rad.clamp(-tolerance_rad, tolerance_rad);
+        Standing { p_wb_m: [axis(0), axis(1)], heading_rad }
+    }
+
     /// True if the scenario says where the person stands.
     #[must_use]
     pub fn place_is_given(&self) -> bool {

@@ -39,6 +39,23 @@ pub struct EdgeGrasp {
 }
 
 impl EdgeGrasp {
+    /// The grasp of a gripper at `x_og`, the inverse of [`EdgeGrasp::x_og`]; `None` if no edge is grasped, see [`grasped_edge`].
+    /// What an edge grasp does not express, such as an offset along the board's normal, is lost.
+    #[must_use]
+    pub fn of(x_og: &Pose, board: &BoardShape) -> Option<Self> {
+        let edge = grasped_edge(x_og, board)?;
+        let EdgeLine { outward_o, reach_m, .. } = board.edge(edge);
+        let p_o = x_og.translation.vector;
+        let z_g = x_og.rotation * Vector3::z();
+        Some(Self {
+            edge,
+            along_m: Vector3::z().cross(&outward_o).dot(&p_o),
+            depth_m: reach_m - outward_o.dot(&p_o),
+            angle_rad: libm::atan2(Vector3::z().dot(&-outward_o.cross(&z_g)), -outward_o.dot(&z_g)),
+            flipped: (x_og.rotation * Vector3::y()).z < 0.0,
+        })
+    }
+
     /// The gripper's pose `x_og` on a board.
     #[must_use]
     pub fn x_og(&self, board: &BoardShape) -> Pose {
@@ -102,6 +119,14 @@ mod tests {
                     let x_og = grasp.x_og(&board);
                     let z_g = x_og.rotation * Vector3::z();
                     let y_g = x_og.rotation * Vector3::y();
+                    let read = EdgeGrasp::of(&x_og, &board).unwrap();
+                    let pairs = [
+                        (read.along_m, 0.05),
+                        (read.depth_m, 0.035),
+                        (read.angle_rad, 0.3),
+                    ];
+                    assert!(pairs.iter().all(|(found, meant)| (found - meant).abs() < 1e-14), "{read:?}");
+                    assert_eq!((read.edge, read.flipped), (edge, flipped));
                     // cos(0.3): the grasp's angle; rounding only.
                     assert!((z_g.dot(&-board.edge(edge).outward_o) - 0.3_f64.cos()).abs() < 1e-14);
                     assert!((y_g.z.abs() - 1.0).abs() < 1e-14);

@@ -5,14 +5,16 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    library::{ArmGrasp, BoardGrasp, GraspPattern, pattern},
+    library::{ArmGrasp, BoardGrasp, GraspPattern, GraspingArm, pattern},
     problem::Problem,
 };
 use crate::{
-    human::ArmAngles,
+    human::{ArmAngles, Standing},
     model::{
         board::{BoardShape, QUARTERS},
         frames::Pose,
+        grasp::EdgeGrasp,
+        plan::{ArmHold, HumanPosture, Plan},
     },
 };
 
@@ -46,6 +48,18 @@ pub struct Placement {
 }
 
 impl WorkPose {
+    /// Moves person and board together, as little as possible, to where the person may stand; not at all if the place is free.
+    pub fn stand_as_given(&mut self, problem: &Problem<'_>) {
+        let Placement { x_wo, x_wb } = self.placement(problem);
+        let there = problem.as_given(x_wb);
+        if there == x_wb {
+            return;
+        }
+        let moved = there * x_wb.inverse() * x_wo;
+        self.heading_rad = Standing::of(&there).heading_rad;
+        self.p_wo_xy_m = [moved.translation.x, moved.translation.y];
+    }
+
     /// The poses that follow from the posture: the person stands upright on the floor, which gives the board's height and
     /// rotation, `X_WO = X_WB X_BT X_OT^-1`.
     pub fn placement(&self, problem: &Problem<'_>) -> Placement {
@@ -68,6 +82,26 @@ impl Candidate {
         let p_wo = grasp.x_wo.translation.vector;
         let work = WorkPose { q_h_rad: [0.0; 7], heading_rad: 0.0, roll_rad: 0.0, p_wo_xy_m: [p_wo.x, p_wo.y] };
         Self { work, arms: grasp.arms.clone() }
+    }
+
+    /// The candidate of a plan for the problem's task; `None` if the plan has no person or a grasp that is not one of an edge.
+    pub fn of_plan(problem: &Problem<'_>, plan: &Plan) -> Option<Self> {
+        let HumanPosture { x_wb, q_rad: q_h_rad, .. } = plan.human?;
+        let arm = |hold: &ArmHold| {
+            let grasp = EdgeGrasp::of(&hold.x_og, &problem.robot.board)?;
+            Some(ArmGrasp { grasp, q_rad: hold.q_rad.clone() })
+        };
+        let of_arm = |arm: &GraspingArm| plan.arms.iter().find(|hold| hold.name == arm.name);
+        let arms = problem.robot.arms.iter().map(|own| arm(of_arm(own)?)).collect::<Option<Vec<_>>>()?;
+        let roll = problem.scenario.operation.x_ot.rotation.inverse() * plan.operation.x_ot.rotation;
+        let is_free = problem.scenario.operation.kind.roll_is_free();
+        let work = WorkPose {
+            q_h_rad,
+            heading_rad: Standing::of(&x_wb).heading_rad,
+            roll_rad: if is_free { roll.scaled_axis().z } else { 0.0 },
+            p_wo_xy_m: [plan.object.x_wo.translation.x, plan.object.x_wo.translation.y],
+        };
+        Some(Self { work, arms })
     }
 
     /// The pattern of the grasp.

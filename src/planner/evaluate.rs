@@ -120,6 +120,9 @@ impl<'a> Evaluator<'a> {
         if !self.stats.may_evaluate() {
             return Err(Rejection::NotEvaluated);
         }
+        if !self.problem.is_reachable(&candidate.arms) {
+            return Err(Rejection::Motion);
+        }
         test_placement(&self.problem, candidate)?;
         test_collisions(&self.problem, configuration)
     }
@@ -140,6 +143,12 @@ impl<'a> Evaluator<'a> {
     pub fn test_grasp(&mut self, candidate: &Candidate, x_wo: &Pose) -> Result<(), Rejection> {
         let stability = self.assess(candidate, x_wo);
         test_stability(&self.problem, candidate, x_wo, &stability)
+    }
+
+    /// The objective of a candidate, feasible or not.
+    pub fn objective(&self, candidate: &Candidate) -> f64 {
+        let configuration = Configuration::new(&self.problem, candidate);
+        comfort(&self.problem, candidate, &configuration).objective
     }
 
     /// How a grasp resists its load.

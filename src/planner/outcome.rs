@@ -269,6 +269,8 @@ pub enum Rejection {
     Pads,
     /// An arm of the robot cannot bring its gripper to the grasp.
     RobotReach,
+    /// A joint of the robot would move farther than it may from where it is.
+    Motion,
     /// Two bodies touch or are closer than their clearance.
     Collision,
     /// The grasp does not resist the load.
@@ -299,6 +301,7 @@ impl Rejection {
             Self::PersonReach => "human reach",
             Self::Pads => "pads on the board",
             Self::RobotReach => "robot reach",
+            Self::Motion => "motion of the robot's joints",
             Self::Collision => "collision or too close",
             Self::Stability => "stability",
             Self::LoadedCollision => "too close under the load",

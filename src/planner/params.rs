@@ -196,6 +196,32 @@ pub mod refine {
     pub const FULL_UTILISATION: f64 = 0.999;
 }
 
+/// Numbers of replanning ([`super::replan`]).
+pub mod replan {
+    use super::RefinementRound;
+
+    /// Warm starts of the first plan: its holds are those that later plans begin with.
+    pub const FIRST_STARTS: usize = 12;
+    /// Their rounds of refinement.
+    pub const FIRST_ROUNDS: [RefinementRound; 3] = [
+        RefinementRound { candidates: 12, steps: 3 },
+        RefinementRound { candidates: 4, steps: 6 },
+        RefinementRound { candidates: 1, steps: 12 },
+    ];
+    /// Warm starts that are tried at each call: all of a family in a few dozen calls.
+    pub const FRESH_PER_CALL: usize = 2;
+    /// Steps of refinement of the last plan's hold.
+    pub const LAST_STEPS: usize = 8;
+    /// Steps of refinement of each other hold: the next call goes on with them.
+    pub const OTHERS_STEPS: usize = 2;
+    /// Further steps of another hold that takes over.
+    pub const BEST_STEPS: usize = 10;
+    /// The share by which another hold must be better to take over: a robot does not change its hold for less.
+    pub const BETTER: f64 = 0.01;
+    /// Grasps whose parameters differ by at most this share of their scales are the same: 0.04 mm.
+    pub const SAME_GRASP: f64 = 1e-3;
+}
+
 /// Numbers of the search for several plans ([`super::select`]).
 pub mod select {
     /// Starts of the search per plan that is wanted: neighbouring starts lead to the same optimum.
@@ -263,6 +289,11 @@ pub mod path {
     pub const JUMP_RAD: f64 = 3.0 * STEP_RAD;
 }
 
+/// KNOB
+pub fn knob(name: &str, default: usize) -> usize {
+    std::env::var(format!("BD_{name}")).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
 /// How much work a search may do.
 #[derive(Clone, Debug)]
 pub struct SearchBudget {
@@ -323,7 +354,8 @@ impl SearchBudget {
         let budget = scenario.planner.budget;
         let usual = Self::unrestricted(budget);
         if budget == Budget::Default && scenario.human.posture.is_natural() {
-            Self { warm_starts: 16, warm_rounds: Some(rounds(&[[16, 4], [6, 8], [2, 25]])), ..usual }
+            let n = knob("N", 5);
+            Self { warm_starts: n, warm_rounds: Some(rounds(&[[n, knob("A", 3)], [knob("N2", 2), knob("B", 8)], [1, knob("C", 12)]])), ..usual }
         } else {
             usual
         }
@@ -413,7 +445,7 @@ impl WarmStartBudget {
         let usual = Self::unrestricted(scenario.planner.budget)?;
         let natural = scenario.human.posture.is_natural();
         let further = if natural { warm_starts::NATURAL_PASSES } else { 0 };
-        Some(Self { passes: usual.passes + further, ..usual })
+        Some(Self { passes: if natural { knob("PASSES", (usual.passes + further) as usize) as u64 } else { usual.passes }, ..usual })
     }
 
     /// The numbers of a budget for an unrestricted posture.
@@ -423,16 +455,16 @@ impl WarmStartBudget {
             Budget::Fast => None,
             Budget::Default => {
                 let later = SearchBudget {
-                    evaluated_pairs: 4_000,
-                    starts: 48,
+                    evaluated_pairs: knob("PAIRS", 4_000),
+                    starts: knob("S", 48),
                     starts_per_pattern: 2,
-                    rounds: rounds(&[[56, 8], [24, 30]]),
-                    warm_starts: 8,
+                    rounds: rounds(&[[56, knob("OA", 8)], [knob("O2", 24), knob("OB", 30)], [knob("O3", 1), knob("OC", 0)]]),
+                    warm_starts: knob("OW", 8),
                     ..plan
                 };
                 let first =
                     SearchBudget { starts: 16, rounds: rounds(&[[16, 8], [6, 20]]), warm_starts: 0, ..later.clone() };
-                Some(Self { first, later, passes: 3, resampled_boards: 1_500 })
+                Some(Self { first, later, passes: 3, resampled_boards: knob("BOARDS", 1_500) })
             }
             Budget::Exhaustive => {
                 let later = SearchBudget {

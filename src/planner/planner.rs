@@ -14,6 +14,7 @@ use super::{
     params::SearchBudget,
     path::{self, CirclePlans},
     problem::Problem,
+    replan::{self, KnownHolds, Replanned, Replanning},
     search::{rank, search},
     second_search::search_again,
     select,
@@ -25,7 +26,7 @@ use crate::{
     model::{
         board::BoardShape,
         plan::Plan,
-        scenario::{PlannerKind, PlannerSettings, Scenario},
+        scenario::{ComfortSettings, Person, PlannerKind, PlannerSettings, Scenario, StandingPlace},
     },
     robot::Robot,
 };
@@ -36,6 +37,8 @@ pub struct Planner {
     robot: Robot,
     store: Option<Arc<dyn MapStore>>,
     maps: Mutex<Vec<Arc<Maps>>>,
+    /// The holds of the last replanning.
+    known: Option<KnownHolds>,
 }
 
 /// The grasp library for one shape of board and one clearance, and the warm starts on it.
@@ -50,7 +53,13 @@ impl Planner {
     /// A planner without maps: they are made when a scenario needs them.
     #[must_use]
     pub fn new(robot: &Robot) -> Self {
-        Self { robot: robot.clone(), store: None, maps: Mutex::default() }
+        Self { robot: robot.clone(), store: None, maps: Mutex::default(), known: None }
+    }
+
+    /// The robot that it plans for.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.robot
     }
 
     /// A planner that reads maps from a store before it makes them, and writes those that it makes.
@@ -86,6 +95,83 @@ impl Planner {
     /// When the scenario's person or tool is invalid.
     pub fn plan(&self, scenario: &Scenario) -> Result<Outcome<Plan>, PlanError> {
         self.search(scenario).plan()
+    }
+
+    /// A plan of a scenario that has changed since the last call: the person has moved, or the tool works at another point or with
+    /// another force. It starts from the holds that are known from the calls before, and needs no maps of the new task; the first
+    /// call makes those of the scenario for a person who may stand anywhere. The same calls in the same order give the same plans,
+    /// bit for bit. If nothing is found, the known holds stay as they are.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn replan(&mut self, scenario: &Scenario, how: &Replanning) -> Result<Outcome<Replanned>, PlanError> {
+        let maps = self.maps(scenario);
+        let mut known = self.known.take().filter(|known| known.serve(scenario));
+        let with_optima = match known.as_ref().and_then(KnownHolds::optima) {
+            Some(optima) if needs_optima(scenario) => {
+                let comfort = ComfortSettings { optima: Some(optima), ..scenario.comfort };
+                Outcome::Found(Scenario { comfort, ..scenario.clone() })
+            }
+            _ => self.normalised(&maps, scenario)?,
+        };
+        let scenario = match with_optima {
+            Outcome::Found(scenario) => scenario,
+            Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
+        };
+        let mut evaluator = evaluator(&scenario, &maps, None)?;
+        let found = match &mut known {
+            Some(known) => known.replan(&mut evaluator, how),
+            None => {
+                let warm = self.warm_starts(&maps, &anywhere(&scenario))?;
+                replan::first(&mut evaluator, &warm).map(|(plan, holds)| {
+                    known = Some(holds);
+                    Replanned { plan, motion: None, searched: false }
+                })
+            }
+        };
+        self.known = known;
+        if let Some(found) = found {
+            return Ok(Outcome::Found(found));
+        }
+        let is_limited = self.known.is_some() && (how.most_motion_rad.is_some() || how.keep_grasps);
+        if !how.search || is_limited {
+            return Ok(Outcome::Infeasible(evaluator.stats.into_infeasible()));
+        }
+        drop(evaluator);
+        self.search_instead(&maps, &scenario)
+    }
+
+    /// Plans a scenario as [`Planner::plan`] does, and makes the plan the one that the next replanning starts from.
+    fn search_instead(&mut self, maps: &Maps, scenario: &Scenario) -> Result<Outcome<Replanned>, PlanError> {
+        Ok(match self.plan(scenario)? {
+            Outcome::Found(plan) => {
+                let before = self.known.take();
+                let after = self.holds_of(maps, scenario, &plan)?;
+                let motion = before.zip(after.as_ref()).map(|(before, after)| before.motion_to(after));
+                self.known = after;
+                Outcome::Found(Replanned { plan, motion, searched: true })
+            }
+            Outcome::Infeasible(why) => Outcome::Infeasible(why),
+        })
+    }
+
+    /// Makes a plan of the scenario the one that the next [`Planner::replan`] starts from, such as that which the robot holds now.
+    /// False, and nothing is changed, if the plan does not satisfy every constraint of the scenario.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn resume(&mut self, scenario: &Scenario, plan: &Plan) -> Result<bool, PlanError> {
+        let maps = self.maps(scenario);
+        let holds = self.holds_of(&maps, scenario, plan)?;
+        let serves = holds.is_some();
+        self.known = holds.or_else(|| self.known.take());
+        Ok(serves)
+    }
+
+    fn holds_of(&self, maps: &Maps, scenario: &Scenario, plan: &Plan) -> Result<Option<KnownHolds>, PlanError> {
+        let warm = self.warm_starts(maps, &anywhere(scenario))?;
+        let mut evaluator = evaluator(scenario, maps, None)?;
+        Ok(replan::of_plan(&mut evaluator, plan, &warm))
     }
 
     /// A search of a scenario, for several plans or with an observer.
@@ -161,6 +247,11 @@ impl Planner {
         }
         Ok(Outcome::Found(with_optima(scenario, optima)))
     }
+}
+
+/// The scenario for a person who may stand anywhere.
+fn anywhere(scenario: &Scenario) -> Scenario {
+    Scenario { human: Person { place: StandingPlace::Free, ..scenario.human.clone() }, ..scenario.clone() }
 }
 
 /// The best plan of a scenario whose objective needs no optima; `twice` allows a second search if the first finds nothing.

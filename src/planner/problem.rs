@@ -3,8 +3,9 @@
 use nalgebra::Vector3;
 
 use crate::{
-    human::Human,
+    human::{Human, Standing, standing_pose_w},
     model::{
+        frames::Pose,
         operation::Operation,
         scenario::{ComfortSettings, Limits, Scenario, StabilityKind},
         wrench::Wrench,
@@ -12,10 +13,22 @@ use crate::{
 };
 
 use super::{
-    library::{GraspingRobot, PostureLoad, PostureMap},
+    library::{ArmGrasp, GraspingRobot, PostureLoad, PostureMap},
     outcome::PlanError,
-    params::{COMPLIANT_SAFETY_FACTOR, SearchBudget},
+    params::{COMPLIANT_SAFETY_FACTOR, SearchBudget, refine::GRASP},
 };
+
+/// Rounding of a joint at the end of its motion, rad or m.
+const ROUNDING_RAD: f64 = 1e-9;
+
+/// The robot's joints that a search may use, from where they are.
+#[derive(Clone, Debug)]
+pub struct Reachable {
+    /// Where the joints of each arm are, rad or m.
+    pub from_rad: Vec<Vec<f64>>,
+    /// The most that each may move, rad or m.
+    pub most_rad: f64,
+}
 
 /// What is the same for all candidates of one search.
 pub struct Problem<'a> {
@@ -28,6 +41,10 @@ pub struct Problem<'a> {
     pub wrench_t: Wrench,
     /// The worked face's normal, T axes: it does not change either.
     pub normal_t: Vector3<f64>,
+    /// How far the robot's joints may move; `None` if that is not limited.
+    pub reachable: Option<Reachable>,
+    /// Scales of the variables of a grasp, see [`super::params::refine::GRASP`]; zero if the grasps are to stay as they are.
+    pub grasp_scales: [f64; 3],
 }
 
 impl<'a> Problem<'a> {
@@ -43,6 +60,35 @@ impl<'a> Problem<'a> {
             objective: scenario.planner.kind.objective(scenario.comfort),
             wrench_t: wrench_t(&scenario.operation),
             normal_t: scenario.operation.face_normal_t(scenario.object.size_m[2]),
+            reachable: None,
+            grasp_scales: GRASP,
+        })
+    }
+
+    /// The standing pose nearest to another at which the person may stand.
+    pub fn as_given(&self, x_wb: Pose) -> Pose {
+        let standing = Standing::of(&x_wb);
+        if self.human.may_stand(&standing) {
+            return x_wb;
+        }
+        let Standing { p_wb_m: [x_m, y_m], heading_rad } = self.human.standing_nearest_to(&standing);
+        standing_pose_w(x_m, y_m, heading_rad, self.robot.robot.floor_z_m)
+    }
+
+    /// The range of an arm's joint, rad or m: its limits and, if the motion is limited, what it reaches from where it is.
+    pub fn joint_range(&self, arm: usize, joint: usize) -> [f64; 2] {
+        let chain = &self.robot.arms[arm].chain;
+        let limits = [chain.lower()[joint], chain.upper()[joint]];
+        let Some(Reachable { from_rad, most_rad }) = &self.reachable else { return limits };
+        let here_rad = from_rad[arm][joint];
+        [limits[0].max(here_rad - most_rad), limits[1].min(here_rad + most_rad)]
+    }
+
+    /// True if the motion is not limited, or no joint of the arms moves farther than it may.
+    pub fn is_reachable(&self, arms: &[ArmGrasp]) -> bool {
+        self.reachable.as_ref().is_none_or(|Reachable { from_rad, most_rad }| {
+            let pairs = arms.iter().zip(from_rad).flat_map(|(arm, from_rad)| arm.q_rad.iter().zip(from_rad));
+            pairs.into_iter().all(|(q, from)| (q - from).abs() <= most_rad + ROUNDING_RAD)
         })
     }
 

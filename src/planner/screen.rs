@@ -187,9 +187,10 @@ pub fn standing_pose(x_wt: &Pose, x_bt: &Pose, floor_z_m: f64) -> Pose {
 }
 
 /// A candidate from a grasp and the posture nearest to `near_q_rad` that brings the tool exactly to its pose; `None` if the
-/// person's arm cannot. `x_bt` is the tool pose of `near_q_rad`.
+/// person's arm cannot. `x_bt` is the tool pose of `near_q_rad`. If the place is given, the person stands there.
 pub fn align(problem: &Problem<'_>, grasp: &BoardGrasp, near_q_rad: &ArmAngles, x_bt: &Pose) -> Option<Candidate> {
     let Alignment { roll_rad, x_wt, x_wb } = Alignment::new(problem, grasp, x_bt);
+    let x_wb = problem.as_given(x_wb);
     let x_bt = x_wb.inverse() * x_wt;
     let swivel_rad = problem.human.swivel_rad(near_q_rad);
     let distance = |q: &ArmAngles| q.iter().zip(near_q_rad).map(|(a, b)| (a - b).powi(2)).sum::<f64>();

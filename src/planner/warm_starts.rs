@@ -6,38 +6,34 @@
 //! nearly so after a quarter; a plate only after the turns that leave its outline as it is), then the person or the board moves so that the tool is where the new task needs it. A
 //! transferred candidate that violates a constraint slightly is repaired.
 
-use std::f64::consts::FRAC_PI_2;
-
-use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    candidate::{Candidate, WorkPose},
-    evaluate::{self, Configuration, Evaluator, Feasible},
-    library::{ArmGrasp, BoardGrasp, GraspLibrary, GraspPattern, GraspingRobot, LibraryEntry, PostureMap, resample},
+    candidate::Candidate,
+    evaluate::{Evaluator, Feasible},
+    library::{GraspLibrary, GraspPattern, GraspingRobot, LibraryEntry, PostureMap, resample},
     made_once::MadeOnce,
     map_store::{self, MapKind},
     natural_boards::{entries_for_place, natural_entries},
     outcome::{PlanError, Rejection},
     params::{
         SearchBudget, WarmStartBudget, per_pattern,
-        screening::{REPAIRS_PER_START, STARTS_PER_PATTERN},
+        screening::STARTS_PER_PATTERN,
         warm_starts::{KEPT, KEPT_PER_PATTERN, SAME_OPTIMUM},
     },
     problem::{self, Problem},
     refine,
-    screen::{self, align, aligning_roll},
+    screen,
     stats::SearchStats,
     task_family::{TaskFamily, solved_tasks},
+    transfer::Solution,
 };
 use crate::{
     comfort,
     human::Human,
     model::{
-        board::{BoardShape, Edge, QUARTERS},
-        frames::Pose,
-        grasp::EdgeGrasp,
+        board::{BoardShape, QUARTERS},
         plan::Comfort,
         scenario::{PlannerKind, Scenario},
     },
@@ -52,19 +48,8 @@ pub struct WarmStarts {
     human: Human,
     postures: MadeOnce<PostureMap>,
     natural_entries: MadeOnce<Vec<LibraryEntry>>,
-    solutions: Vec<Solution>,
-}
-
-/// A solution of one of the solved tasks.
-#[derive(Clone, Debug)]
-struct Solution {
-    candidate: Candidate,
-    x_wo: Pose,
-    comfort: Comfort,
-    /// The tool tip on the board.
-    p_ot_m: Point3<f64>,
-    /// Which of the solved tasks.
-    task: usize,
+    /// The solutions of each solved task.
+    solutions: Vec<Vec<Solution>>,
 }
 
 /// The solutions of a family as they are kept: the candidates of each solved task. The rest follows from candidate and task.
@@ -95,7 +80,7 @@ impl WarmStarts {
             Some(solutions) => warm.solutions = solutions,
             None => {
                 warm.solve(&tasks, library, &budget, shared.planner.seed)?;
-                map_store::write(library.store(), &source, &warm.kept(tasks.len()));
+                map_store::write(library.store(), &source, &warm.kept());
             }
         }
         Ok(warm)
@@ -115,12 +100,14 @@ impl WarmStarts {
     }
 
     /// The solutions as they are kept.
-    fn kept(&self, tasks: usize) -> KeptSolutions {
-        let of_task = |task: usize| {
-            let own = self.solutions.iter().filter(|solution| solution.task == task);
-            own.map(|solution| solution.candidate.clone()).collect()
-        };
-        KeptSolutions((0..tasks).map(of_task).collect())
+    fn kept(&self) -> KeptSolutions {
+        let candidates = |task: &Vec<Solution>| task.iter().map(|solution| solution.candidate.clone()).collect();
+        KeptSolutions(self.solutions.iter().map(candidates).collect())
+    }
+
+    /// The solutions of all tasks.
+    pub fn solutions(&self) -> impl Iterator<Item = &Solution> {
+        self.solutions.iter().flatten()
     }
 
     /// Solves the tasks pass by pass, at first from the library, then from boards oriented like the best solutions so far.
@@ -137,7 +124,7 @@ impl WarmStarts {
             let (entries, natural, task_budget) = if pass == 0 {
                 (library.entries(), self.natural_entries(&library.robot), &budget.first)
             } else {
-                let boards: Vec<_> = self.solutions.iter().map(|solution| solution.x_wo).collect();
+                let boards: Vec<_> = self.solutions().map(|solution| solution.x_wo).collect();
                 resampled = resample(&library.robot, &boards, budget.resampled_boards, [seed, pass]);
                 (&resampled[..], &[][..], &budget.later)
             };
@@ -147,10 +134,7 @@ impl WarmStarts {
                 self.solve_task(task, &library.robot, &entries, of_place, task_budget)
             };
             let found: Result<Vec<_>, PlanError> = tasks.par_iter().zip(&of_place).map(solve).collect();
-            let numbered = |(task, found): (usize, Vec<Solution>)| {
-                found.into_iter().map(move |solution| Solution { task, ..solution })
-            };
-            self.solutions = found?.into_iter().enumerate().flat_map(numbered).collect();
+            self.solutions = found?;
         }
         Ok(())
     }
@@ -183,7 +167,7 @@ impl WarmStarts {
         let entries = entries.iter().copied().chain(of_place);
         starts.extend(screen::screen(&mut evaluator, entries, self.postures(), budget));
         let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds), &robot.board);
-        Ok(found.into_iter().map(|found| Solution::new(&evaluator.problem, found.candidate, 0)).collect())
+        Ok(found.into_iter().map(|found| Solution::new(&evaluator.problem, found.candidate)).collect())
     }
 
     /// Transfers the solutions to the evaluator's task: at most `count` candidates that satisfy every constraint. They are
@@ -191,7 +175,7 @@ impl WarmStarts {
     /// well a solution fits, the latter what refinement can make of it.
     pub fn starts(&self, evaluator: &mut Evaluator<'_>, count: usize) -> Vec<Feasible> {
         let mut transferred = Vec::with_capacity(8 * self.solutions.len());
-        for solution in &self.solutions {
+        for solution in self.solutions() {
             let at_origin = comfort::weighted(solution.comfort, &evaluator.problem.objective).objective;
             let board = &evaluator.problem.robot.board;
             let turns: Vec<_> = (0..QUARTERS).filter(|quarters| board.turns(*quarters)).collect();
@@ -202,9 +186,8 @@ impl WarmStarts {
                         evaluator.stats.reject(Rejection::RobotReach);
                         continue;
                     };
-                    let configuration = Configuration::new(&evaluator.problem, &candidate);
-                    let objective = evaluate::comfort(&evaluator.problem, &candidate, &configuration).objective;
-                    transferred.push((objective + at_origin, candidate));
+                    let objective = evaluator.objective(&candidate);
+                    transferred.push((if crate::planner::params::knob("SORT", 1) == 1 { objective.min(at_origin) } else { objective + at_origin }, candidate));
                 }
             }
         }
@@ -213,7 +196,7 @@ impl WarmStarts {
         let mut repairs = 0;
         let most_alike = per_pattern(STARTS_PER_PATTERN, evaluator.problem.robot.arms.len());
         for (_, candidate) in transferred {
-            if kept.len() == count || repairs == REPAIRS_PER_START * count || evaluator.stats.is_exhausted() {
+            if kept.len() == count || repairs == crate::planner::params::knob("TRIES", 64) || evaluator.stats.is_exhausted() {
                 break;
             }
             let alike = kept.iter().filter(|other| other.candidate.pattern() == candidate.pattern()).count();
@@ -228,7 +211,7 @@ impl WarmStarts {
 
     /// The largest value of a comfort among the solutions; `None` without a solution.
     pub fn best(&self, of: impl Fn(&Comfort) -> f64) -> Option<f64> {
-        self.solutions.iter().map(|solution| of(&solution.comfort)).max_by(f64::total_cmp)
+        self.solutions().map(|solution| of(&solution.comfort)).max_by(f64::total_cmp)
     }
 }
 
@@ -237,84 +220,21 @@ fn solutions_of_kept(
     KeptSolutions(kept): KeptSolutions,
     tasks: &[Scenario],
     robot: &GraspingRobot,
-) -> Result<Option<Vec<Solution>>, PlanError> {
+) -> Result<Option<Vec<Vec<Solution>>>, PlanError> {
     let mut candidates = kept.iter().flatten();
     if kept.len() != tasks.len() || !candidates.all(|candidate| robot.has_form_of(&candidate.arms)) {
         return Ok(None);
     }
-    let mut solutions = Vec::new();
-    for (number, (task, candidates)) in tasks.iter().zip(kept).enumerate() {
+    let solved = |(task, candidates): (&Scenario, Vec<Candidate>)| {
         let problem = Problem::new(task, robot)?;
-        solutions.extend(candidates.into_iter().map(|candidate| Solution::new(&problem, candidate, number)));
-    }
-    Ok(Some(solutions))
-}
-
-impl Solution {
-    /// A candidate that solves the task of this number.
-    fn new(problem: &Problem<'_>, candidate: Candidate, task: usize) -> Self {
-        let configuration = Configuration::new(problem, &candidate);
-        let comfort = evaluate::comfort(problem, &candidate, &configuration);
-        let p_ot_m = problem.scenario.operation.x_ot.translation.vector.into();
-        Self { candidate, x_wo: configuration.placement.x_wo, comfort, p_ot_m, task }
-    }
-
-    /// The solution with the board turned by quarters about its normal and the tool where the problem's operation needs it:
-    /// once with the board left in place and the person moved, once with the person left in place and the board moved.
-    fn transferred(&self, problem: &Problem<'_>, quarters: usize) -> [Option<Candidate>; 2] {
-        let grasp = BoardGrasp { x_wo: self.x_wo, arms: self.candidate.arms.clone() };
-        let Some(grasp) = turned(problem.robot, &grasp, quarters) else { return [None, None] };
-        [self.with_person_moved(problem, &grasp), self.with_board_moved(problem, &grasp)]
-    }
-
-    fn with_person_moved(&self, problem: &Problem<'_>, grasp: &BoardGrasp) -> Option<Candidate> {
-        let q_h_rad = &self.candidate.work.q_h_rad;
-        let x_bt = problem.human.tool_pose_b(q_h_rad);
-        align(problem, grasp, q_h_rad, &x_bt)
-    }
-
-    fn with_board_moved(&self, problem: &Problem<'_>, grasp: &BoardGrasp) -> Option<Candidate> {
-        let work = self.candidate.work;
-        let x_bt = problem.human.tool_pose_b(&work.q_h_rad);
-        let roll_rad = aligning_roll(problem, &grasp.x_wo, &x_bt);
-        let mut candidate = Candidate { work: WorkPose { roll_rad, ..work }, arms: grasp.arms.clone() };
-        // The tip stays where it is, and the board moves under it.
-        let p_ot_m = Point3::from(problem.scenario.operation.x_ot.translation.vector);
-        let missed = self.x_wo * self.p_ot_m - candidate.x_wo(problem) * p_ot_m;
-        candidate.work.p_wo_xy_m[0] += missed.x;
-        candidate.work.p_wo_xy_m[1] += missed.y;
-        let x_wo = candidate.x_wo(problem);
-        problem.robot.follow(&mut candidate.arms, &x_wo).then_some(candidate)
-    }
-}
-
-/// The grasp with the board turned by quarters about its normal: each gripper takes the edge that is now where its own was.
-/// `None` if the outline is another one then, or an arm cannot make up for the board's unequal sides.
-fn turned(robot: &GraspingRobot, grasp: &BoardGrasp, quarters: usize) -> Option<BoardGrasp> {
-    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2 * quarters as f64);
-    let x_wo = Isometry3::from_parts(grasp.x_wo.translation, grasp.x_wo.rotation * turn);
-    let arms = grasp.arms.iter().map(|ArmGrasp { grasp, q_rad }| {
-        let edge = robot.board.turned(grasp.edge, QUARTERS - quarters)?;
-        let along_m = match robot.board.plate {
-            // The outline is the same, and so is the place on it.
-            Some(_) => grasp.along_m,
-            None => grasp.along_m * half_length_m(robot, edge) / half_length_m(robot, grasp.edge),
-        };
-        Some(ArmGrasp { grasp: EdgeGrasp { edge, along_m, ..*grasp }, q_rad: q_rad.clone() })
-    });
-    let mut arms = arms.collect::<Option<Vec<_>>>()?;
-    // After half a turn the grippers are where they were.
-    (quarters.is_multiple_of(2) || robot.follow(&mut arms, &x_wo)).then_some(BoardGrasp { x_wo, arms })
-}
-
-/// Half the length of an edge of a box, m.
-fn half_length_m(robot: &GraspingRobot, edge: Edge) -> f64 {
-    robot.board.edge(edge).along_m[1]
+        Ok(candidates.into_iter().map(|candidate| Solution::new(&problem, candidate)).collect())
+    };
+    tasks.iter().zip(kept).map(solved).collect::<Result<_, _>>().map(Some)
 }
 
 /// The best solutions that differ: at most [`KEPT_PER_PATTERN`] of two arms have the same pattern but for a turn of the board, and those
 /// have different objectives.
-fn distinct(found: Vec<Feasible>, board: &BoardShape) -> Vec<Feasible> {
+pub fn distinct(found: Vec<Feasible>, board: &BoardShape) -> Vec<Feasible> {
     let mut kept: Vec<(Feasible, GraspPattern)> = Vec::with_capacity(KEPT);
     for solution in found {
         if kept.len() == KEPT {

@@ -9,7 +9,7 @@ use nalgebra::{DVector, Point3, Vector3};
 use super::{
     super::{
         evaluate::Feasible,
-        params::refine::{DIFFERENCE, GRASP, PERSON_RAD, PLACE_M},
+        params::refine::{DIFFERENCE, PERSON_RAD, PLACE_M},
         problem::Problem,
     },
     variables::{RigidTwist, Variables, perturbed_grasp},
@@ -158,8 +158,8 @@ impl<'a, 'p> Jacobian<'a, 'p> {
                 between(joints.row(joint).transpose());
             }
             let grasp = self.variables.of_grasp(arm);
-            between(self.single(grasp.start + 1, GRASP[1]));
-            between(self.single(grasp.start + 2, GRASP[2]));
+            between(self.single(grasp.start + 1, self.problem.grasp_scales[1]));
+            between(self.single(grasp.start + 2, self.problem.grasp_scales[2]));
         }
         let normal_w = self.here.configuration.placement.x_wo.rotation * Vector3::z();
         gradients.push(self.of_board(|board| board.angular.cross(&normal_w).x));
@@ -239,7 +239,7 @@ impl<'a, 'p> Jacobian<'a, 'p> {
         let here_m = margins_m(grasp);
         let mut gradients = vec![self.zeros(); here_m.len()];
         for (part, number) in self.variables.of_grasp(arm).enumerate() {
-            let there_m = margins_m(perturbed_grasp(grasp, part, DIFFERENCE));
+            let there_m = margins_m(perturbed_grasp(grasp, &self.problem.grasp_scales, part, DIFFERENCE));
             for (side, gradient) in gradients.iter_mut().enumerate() {
                 gradient[number] = (there_m[side] - here_m[side]) / DIFFERENCE;
             }

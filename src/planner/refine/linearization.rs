@@ -267,9 +267,9 @@ pub fn simple_margins(
     between(p_wo.x, domain.x_m);
     between(p_wo.y, domain.y_m);
     between(p_wo.z, domain.z_m);
-    for (arm, own) in problem.robot.arms.iter().zip(&candidate.arms) {
-        for (q, (&low, &high)) in own.q_rad.iter().zip(arm.chain.lower().iter().zip(arm.chain.upper())) {
-            between(*q, [low, high]);
+    for (number, (arm, own)) in problem.robot.arms.iter().zip(&candidate.arms).enumerate() {
+        for (joint, q) in own.q_rad.iter().enumerate() {
+            between(*q, problem.joint_range(number, joint));
         }
         between(own.grasp.depth_m, arm.depth_m);
         between(own.grasp.angle_rad, ANGLE_RAD);

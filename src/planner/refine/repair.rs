@@ -6,6 +6,7 @@ use super::{
     super::{
         candidate::Candidate,
         evaluate::{self, Evaluator, Feasible, Rejected},
+        outcome::Rejection,
         params::refine::{RADIUS_RANGE, REPAIR_STEPS},
         qp,
     },
@@ -15,7 +16,7 @@ use super::{
 /// The candidate itself if it satisfies every constraint, or else one near it that does: the shortest steps that satisfy the
 /// linearised constraints are made until the exact ones are satisfied. `None` if a few steps do not lead there.
 pub fn repair(evaluator: &mut Evaluator<'_>, mut candidate: Candidate) -> Option<Feasible> {
-    for _ in 0..=REPAIR_STEPS {
+    for step_number in 0..=REPAIR_STEPS {
         if evaluator.stats.is_exhausted() {
             return None;
         }
@@ -25,6 +26,16 @@ pub fn repair(evaluator: &mut Evaluator<'_>, mut candidate: Candidate) -> Option
             Err(rejected) => *rejected,
         };
         evaluator.stats.reject(rejected.why);
+        if crate::planner::params::knob("GIVEUP", 1) == 1 {
+            let utilisation = if rejected.why == Rejection::Collision && step_number == 0 {
+                evaluator.assess(&rejected.candidate, &rejected.configuration.placement.x_wo).utilisation
+            } else {
+                rejected.stability.utilisation
+            };
+            if utilisation > 2.0 {
+                return None;
+            }
+        }
         candidate = step(evaluator, rejected)?;
     }
     None

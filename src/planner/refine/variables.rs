@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, Point3, Vector3, Vector6};
 
 use super::super::{
     candidate::{Candidate, Placement, WorkPose},
-    params::refine::{DAMPING, DIFFERENCE, GRASP, PERSON_RAD, PLACE_M, REDUNDANCY_RAD, ROLL_RAD},
+    params::refine::{DAMPING, DIFFERENCE, PERSON_RAD, PLACE_M, REDUNDANCY_RAD, ROLL_RAD},
     problem::Problem,
 };
 use crate::model::{frames::Pose, grasp::EdgeGrasp};
@@ -16,6 +16,8 @@ use crate::model::{frames::Pose, grasp::EdgeGrasp};
 #[derive(Clone, Debug)]
 pub struct Variables {
     roll_is_free: bool,
+    /// Scales of the variables of a grasp.
+    grasp_scales: [f64; 3],
     /// Index of each arm's first variable: three of its grasp, then its redundancy.
     arms: Vec<usize>,
     /// Derivatives of board and body by each variable that is not an arm's.
@@ -76,7 +78,7 @@ impl Variables {
         let mut arms = Vec::with_capacity(problem.robot.arms.len());
         for arm in &problem.robot.arms {
             arms.push(count);
-            count += GRASP.len() + arm.chain.dof().saturating_sub(6);
+            count += problem.grasp_scales.len() + arm.chain.dof().saturating_sub(6);
         }
         let work = (0..WORK + usize::from(roll_is_free)).map(|number| {
             let there = perturbed(candidate.work, number).placement(problem);
@@ -85,7 +87,8 @@ impl Variables {
                 body: RigidTwist::between(&here.x_wb, &there.x_wb),
             }
         });
-        let mut variables = Self { roll_is_free, arms, work: work.collect(), joints: Vec::new(), count };
+        let grasp_scales = problem.grasp_scales;
+        let mut variables = Self { roll_is_free, grasp_scales, arms, work: work.collect(), joints: Vec::new(), count };
         let of_arm = |arm| variables.joint_derivatives(problem, candidate, &here.x_wo, arm);
         variables.joints = (0..problem.robot.arms.len()).map(of_arm).collect();
         variables
@@ -93,7 +96,7 @@ impl Variables {
 
     /// The variables of an arm's grasp: along the edge, depth, angle.
     pub fn of_grasp(&self, arm: usize) -> std::ops::Range<usize> {
-        self.arms[arm]..self.arms[arm] + GRASP.len()
+        self.arms[arm]..self.arms[arm] + self.grasp_scales.len()
     }
 
     /// Number of variables.
@@ -135,9 +138,10 @@ impl Variables {
             to.work.roll_rad += ROLL_RAD * d[WORK];
         }
         for (arm, &first) in to.arms.iter_mut().zip(&self.arms) {
-            arm.grasp.along_m += GRASP[0] * d[first];
-            arm.grasp.depth_m += GRASP[1] * d[first + 1];
-            arm.grasp.angle_rad += GRASP[2] * d[first + 2];
+            let [along_m, depth_m, angle_rad] = self.grasp_scales;
+            arm.grasp.along_m += along_m * d[first];
+            arm.grasp.depth_m += depth_m * d[first + 1];
+            arm.grasp.angle_rad += angle_rad * d[first + 2];
         }
         to
     }
@@ -160,7 +164,7 @@ impl Variables {
         }
         let grasp = self.of_grasp(arm);
         for (part, number) in grasp.clone().enumerate() {
-            let there = x_wo * perturbed_grasp(own.grasp, part, DIFFERENCE).x_og(board);
+            let there = x_wo * perturbed_grasp(own.grasp, &problem.grasp_scales, part, DIFFERENCE).x_og(board);
             let twist = RigidTwist::between(&here, &there).twist_at(&here.translation.vector.into());
             derivatives.set_column(number, &(&pseudo_inverse * twist));
         }
@@ -185,10 +189,10 @@ fn perturbed(mut work: WorkPose, number: usize) -> WorkPose {
 }
 
 /// A grasp changed by a step in one of its variables.
-pub fn perturbed_grasp(mut grasp: EdgeGrasp, part: usize, step: f64) -> EdgeGrasp {
+pub fn perturbed_grasp(mut grasp: EdgeGrasp, scales: &[f64; 3], part: usize, step: f64) -> EdgeGrasp {
     let value = [&mut grasp.along_m, &mut grasp.depth_m, &mut grasp.angle_rad];
     for (number, value) in value.into_iter().enumerate().filter(|(number, _)| *number == part) {
-        *value += GRASP[number] * step;
+        *value += scales[number] * step;
     }
     grasp
 }
