@@ -41,11 +41,12 @@ mod stats;
 mod task_family;
 mod verify;
 mod warm_starts;
+mod watch;
 
 pub use front::{Front, FrontPoint};
 pub use outcome::{EmptyLibrary, Infeasible, MOST_FRICTION, NearMiss, Outcome, PlanError, Remedy, UnnaturalHolds};
 pub use place_board::{BOARD_DRAWS, PlacedBoard, place_board};
 pub use planner::{Planner, Search};
 pub use select::differ;
-pub use stats::{Observer, Progress};
 pub use verify::verify;
+pub use watch::{Event, Part, Phase, Progress, Watch};

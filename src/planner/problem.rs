@@ -7,6 +7,7 @@ use crate::{
     model::{
         operation::Operation,
         scenario::{ComfortSettings, Limits, Scenario, StabilityKind},
+        stop::Stop,
         wrench::Wrench,
     },
 };
@@ -15,6 +16,7 @@ use super::{
     library::{GraspingRobot, PostureLoad, PostureMap},
     outcome::PlanError,
     params::{COMPLIANT_SAFETY_FACTOR, SearchBudget},
+    watch::Watch,
 };
 
 /// What is the same for all candidates of one search.
@@ -28,6 +30,8 @@ pub struct Problem<'a> {
     pub wrench_t: Wrench,
     /// The worked face's normal, T axes: it does not change either.
     pub normal_t: Vector3<f64>,
+    /// Ends what takes long.
+    pub stop: &'a dyn Stop,
 }
 
 impl<'a> Problem<'a> {
@@ -35,7 +39,7 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// When the scenario's person or tool is invalid.
-    pub fn new(scenario: &'a Scenario, robot: &'a GraspingRobot) -> Result<Self, PlanError> {
+    pub fn new(scenario: &'a Scenario, robot: &'a GraspingRobot, stop: &'a dyn Stop) -> Result<Self, PlanError> {
         Ok(Self {
             scenario,
             robot,
@@ -43,6 +47,7 @@ impl<'a> Problem<'a> {
             objective: scenario.planner.kind.objective(scenario.comfort),
             wrench_t: wrench_t(&scenario.operation),
             normal_t: scenario.operation.face_normal_t(scenario.object.size_m[2]),
+            stop,
         })
     }
 
@@ -60,13 +65,13 @@ pub fn wrench_t(operation: &Operation) -> Wrench {
     Wrench::new(to_tool * operation.wrench_o.force_n, to_tool * operation.wrench_o.moment_nm)
 }
 
-/// The posture map of a scenario's person.
-pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
-    posture_map_of(scenario, human, &SearchBudget::of(scenario))
+/// The posture map of a scenario's person; after a stop it is not complete.
+pub fn posture_map(scenario: &Scenario, human: &Human, watch: &dyn Watch) -> PostureMap {
+    posture_map_of(scenario, human, &SearchBudget::of(scenario), watch)
 }
 
 /// The posture map of a scenario's person, as large as a budget says.
-pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget) -> PostureMap {
+pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget, watch: &dyn Watch) -> PostureMap {
     let operation = &scenario.operation;
     PostureMap::new(
         human,
@@ -78,5 +83,6 @@ pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget)
         &scenario.planner.kind.objective(scenario.comfort),
         budget,
         scenario.planner.seed,
+        watch,
     )
 }

@@ -16,18 +16,25 @@ use super::{
     },
     problem::{Problem, posture_map_of},
     refine, screen,
+    watch::{Phase, Watch, begin},
 };
 use crate::model::scenario::{PlannerSettings, Scenario};
 
 /// The candidates that the second search finds, the best first. `further` are the library's further grasps.
-pub fn search_again(evaluator: &mut Evaluator<'_>, library: &GraspLibrary, further: &[LibraryEntry]) -> Vec<Feasible> {
+pub fn search_again(
+    evaluator: &mut Evaluator<'_>,
+    library: &GraspLibrary,
+    further: &[LibraryEntry],
+    watch: &dyn Watch,
+) -> Vec<Feasible> {
     let budget = SearchBudget::of_second_search();
     let Problem { scenario, human, robot, .. } = &evaluator.problem;
     let seed = scenario.planner.seed.wrapping_add(SEED_STEP);
     let reseeded = Scenario { planner: PlannerSettings { seed, ..scenario.planner.clone() }, ..(*scenario).clone() };
-    let postures = posture_map_of(&reseeded, human, &budget);
-    let natural = natural_entries(&reseeded, human, robot, &postures, budget.natural_boards);
-    let of_place = entries_for_place(&reseeded, human, robot, &postures, budget.natural_boards);
+    let postures = posture_map_of(&reseeded, human, &budget, watch);
+    let natural = natural_entries(&reseeded, human, robot, &postures, budget.natural_boards, watch);
+    let of_place = entries_for_place(&reseeded, human, robot, &postures, budget.natural_boards, watch);
+    begin(watch, Phase::SecondSearch);
     let entries: Vec<_> = library.entries.iter().chain(further).chain(&natural).chain(&of_place).collect();
     let grasps: Vec<_> = entries.iter().map(|entry| &entry.grasp).collect();
     let mut ranked: Vec<_> = utilisations(&evaluator.problem, &grasps).into_iter().zip(entries).collect();

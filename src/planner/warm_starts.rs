@@ -27,6 +27,7 @@ use super::{
     screen::{self, align, aligning_roll},
     stats::SearchStats,
     task_family::{TaskFamily, solved_tasks},
+    watch::{Counter, Phase, Watch, go_on},
 };
 use crate::{
     comfort,
@@ -65,21 +66,27 @@ impl WarmStarts {
     /// Solves the tasks of a family. `shared` is the family's scenario, with the optima of a normalised objective filled in.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
-    pub fn new(family: TaskFamily, shared: &Scenario, library: &GraspLibrary) -> Result<Self, PlanError> {
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn new(
+        family: TaskFamily,
+        shared: &Scenario,
+        library: &GraspLibrary,
+        watch: &dyn Watch,
+    ) -> Result<Self, PlanError> {
         let human = Human::new(&shared.human, &shared.tool)?;
         let planner = &shared.planner;
         if planner.kind == PlannerKind::Random {
             return Ok(Self { family, postures: None, entries: Vec::new(), solutions: Vec::new() });
         }
-        let postures = problem::posture_map(shared, &human);
+        let postures = problem::posture_map(shared, &human, watch);
         let (seed, budget) = (planner.seed, WarmStartBudget::of(shared));
         let count = SearchBudget::of(shared).natural_boards;
-        let entries = natural_entries(shared, &human, &library.robot, &postures, count);
+        let entries = natural_entries(shared, &human, &library.robot, &postures, count, watch);
         let mut warm = Self { family, postures: Some(postures), entries, solutions: Vec::new() };
         if let Some(budget) = budget {
-            warm.solve(&solved_tasks(shared), library, &budget, seed)?;
+            warm.solve(&solved_tasks(shared), library, &budget, seed, watch)?;
         }
+        go_on(watch)?;
         Ok(warm)
     }
 
@@ -90,21 +97,27 @@ impl WarmStarts {
         library: &GraspLibrary,
         budget: &WarmStartBudget,
         seed: u64,
+        watch: &dyn Watch,
     ) -> Result<(), PlanError> {
-        let of_place = self.entries_for_place(tasks, library, budget.later.natural_boards)?;
+        let of_place = self.entries_for_place(tasks, library, budget.later.natural_boards, watch)?;
         for pass in 0..budget.passes {
+            go_on(watch)?;
+            let counter = Counter::new(watch, Phase::WarmStarts { pass: pass + 1, passes: budget.passes }, tasks.len());
             let resampled;
             let (entries, natural, task_budget) = if pass == 0 {
                 (&library.entries, &self.entries[..], &budget.first)
             } else {
                 let boards: Vec<_> = self.solutions.iter().map(|solution| solution.x_wo).collect();
-                resampled = resample(&library.robot, &boards, budget.resampled_boards, [seed, pass]);
+                resampled =
+                    resample(&library.robot, &boards, budget.resampled_boards, [seed, pass], &Counter::quiet(watch));
                 (&resampled, &[][..], &budget.later)
             };
             let entries: Vec<_> = entries.iter().chain(natural).collect();
             // Each task uses the solutions of the pass before, so their order does not matter.
             let solve = |(task, of_place): (&Scenario, &Vec<LibraryEntry>)| {
-                self.solve_task(task, &library.robot, &entries, of_place, task_budget)
+                let solved = self.solve_task(task, &library.robot, &entries, of_place, task_budget, watch);
+                counter.advance();
+                solved
             };
             let found: Result<Vec<_>, PlanError> = tasks.par_iter().zip(&of_place).map(solve).collect();
             self.solutions = found?.concat();
@@ -118,12 +131,14 @@ impl WarmStarts {
         tasks: &[Scenario],
         library: &GraspLibrary,
         count: usize,
+        watch: &dyn Watch,
     ) -> Result<Vec<Vec<LibraryEntry>>, PlanError> {
         let of_task = |task: &Scenario| {
             let human = Human::new(&task.human, &task.tool)?;
             let postures = self.postures.as_ref();
-            Ok(postures
-                .map_or_else(Vec::new, |postures| entries_for_place(task, &human, &library.robot, postures, count)))
+            Ok(postures.map_or_else(Vec::new, |postures| {
+                entries_for_place(task, &human, &library.robot, postures, count, watch)
+            }))
         };
         tasks.iter().map(of_task).collect()
     }
@@ -136,8 +151,9 @@ impl WarmStarts {
         entries: &[&LibraryEntry],
         of_place: &[LibraryEntry],
         budget: &SearchBudget,
+        watch: &dyn Watch,
     ) -> Result<Vec<Solution>, PlanError> {
-        let mut evaluator = Evaluator::new(Problem::new(task, robot)?, SearchStats::unlimited());
+        let mut evaluator = Evaluator::new(Problem::new(task, robot, watch)?, SearchStats::unlimited(watch));
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
         if let Some(postures) = &self.postures {
             let entries = entries.iter().copied().chain(of_place);

@@ -11,6 +11,7 @@ use crate::{
         board::{BoardShape, Edge},
         frames::Pose,
         grasp::EdgeGrasp,
+        stop::Stop,
     },
     planner::domain::{self, DEPTH_M, SearchDomain},
     robot::{ArmState, Chain, InverseKinematics, Robot},
@@ -52,8 +53,8 @@ pub struct GraspingArm {
 }
 
 impl GraspingRobot {
-    /// Prepares a robot for boards of this shape and this clearance, m.
-    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
+    /// Prepares a robot for boards of this shape and this clearance, m. After a stop it is not complete.
+    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64, stop: &dyn Stop) -> Self {
         let collision = CollisionModel::new(robot);
         let board_body = BoardBody::new(board);
         let edges = domain::graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper));
@@ -67,7 +68,7 @@ impl GraspingRobot {
                 name: arm.name.clone(),
                 joints: arm.joints.iter().map(|&joint| robot.joints[joint].name.clone()).collect(),
                 inverse: InverseKinematics::for_chain(&chain),
-                reach: ReachMap::new(&chain),
+                reach: ReachMap::new(&chain, stop),
                 depth_m,
                 palm: (depth_m[1] < DEPTH_M[1]).then_some(palm),
                 chain,

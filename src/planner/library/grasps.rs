@@ -17,13 +17,15 @@ use super::{
 };
 use crate::{
     collision::Violation,
-    model::{board::BoardShape, frames::Pose},
+    model::{board::BoardShape, frames::Pose, stop::Stop as _},
     planner::{
         domain::{draw_edge, draw_other_edge},
+        outcome::PlanError,
         params::library::{
             BOARDS_AT_ONCE, BOARDS_PER_GRASP, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASPS,
             GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
         },
+        watch::{Counter, Phase, Watch, go_on},
     },
     robot::Robot,
 };
@@ -41,32 +43,52 @@ pub struct GraspLibrary {
 impl GraspLibrary {
     /// The library of a robot for boards of this shape that keeps a clearance, m; it has fewer than the usual number of
     /// entries where grasps are rare.
-    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
-        let robot = GraspingRobot::new(robot, board, clearance_m);
-        let (entries, failures) = draw_entries(&robot, GRASPS, 0);
-        Self { robot, entries, failures }
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64, watch: &dyn Watch) -> Result<Self, PlanError> {
+        let counter = Counter::new(watch, Phase::GraspLibrary, GRASPS);
+        let robot = GraspingRobot::new(robot, board, clearance_m, watch);
+        let (entries, failures) = draw_entries(&robot, GRASPS, 0, &counter);
+        go_on(watch)?;
+        Ok(Self { robot, entries, failures })
     }
 
     /// Further grasps for the same boards, from random numbers of their own: for a search that found nothing among the
     /// library's.
-    pub fn further_entries(&self) -> Vec<LibraryEntry> {
-        draw_entries(&self.robot, FURTHER_GRASPS, 1).0
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn further_entries(&self, watch: &dyn Watch) -> Result<Vec<LibraryEntry>, PlanError> {
+        let counter = Counter::new(watch, Phase::SecondSearch, FURTHER_GRASPS);
+        let (entries, _) = draw_entries(&self.robot, FURTHER_GRASPS, 1, &counter);
+        go_on(watch)?;
+        Ok(entries)
     }
 }
 
-/// At most `wanted` grasps from a stream of random numbers, and what the other draws failed at.
-fn draw_entries(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+/// At most `wanted` grasps from a stream of random numbers, and what the other draws failed at. After a stop they are not
+/// complete.
+fn draw_entries(
+    robot: &GraspingRobot,
+    wanted: usize,
+    stream: u128,
+    counter: &Counter<'_>,
+) -> (Vec<LibraryEntry>, DrawFailures) {
     if robot.arms.len() > 2 {
-        return draw_entries_by_board(robot, wanted, stream);
+        return draw_entries_by_board(robot, wanted, stream, counter);
     }
     let mut random = Pcg64::new(SEED, stream);
     let mut entries = Vec::with_capacity(wanted);
     let mut failures = DrawFailures::default();
     let mut draws = 0;
-    while entries.len() < wanted && draws < max_draws(wanted, entries.len()) {
+    while entries.len() < wanted && draws < max_draws(wanted, entries.len()) && !counter.is_stopped() {
         draws += 1;
         match draw_entry(robot, &mut random) {
-            Ok(entry) => entries.push(entry),
+            Ok(entry) => {
+                counter.advance();
+                entries.push(entry);
+            }
             Err(failure) => failures.count(failure),
         }
     }
@@ -80,8 +102,16 @@ fn max_draws(wanted: usize, found: usize) -> u64 {
 
 /// As [`draw_entries`] for more than two arms, whose single draws hardly ever fit together: grasps of all arms are drawn for
 /// each board. Every board has a random stream of its own.
-fn draw_entries_by_board(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+fn draw_entries_by_board(
+    robot: &GraspingRobot,
+    wanted: usize,
+    stream: u128,
+    counter: &Counter<'_>,
+) -> (Vec<LibraryEntry>, DrawFailures) {
     let of_board = |number: usize| {
+        if counter.is_stopped() {
+            return Ok(Vec::new());
+        }
         let mut random = Pcg64::new(SEED, (stream << 64) + number as u128 + 1);
         let (_, x_wo) = draw_first(robot, &mut random)?;
         grasps_of_board(robot, &x_wo, &mut random)
@@ -90,13 +120,17 @@ fn draw_entries_by_board(robot: &GraspingRobot, wanted: usize, stream: u128) -> 
     let mut failures = DrawFailures::default();
     let most = BOARDS_PER_GRASP * wanted;
     for first in (0..most).step_by(BOARDS_AT_ONCE) {
-        if entries.len() >= wanted || (entries.is_empty() && first >= most / HOPELESS_SHARE) {
+        let is_hopeless = entries.is_empty() && first >= most / HOPELESS_SHARE;
+        if entries.len() >= wanted || is_hopeless || counter.is_stopped() {
             break;
         }
         let boards = first..most.min(first + BOARDS_AT_ONCE);
         for found in boards.into_par_iter().map(of_board).collect::<Vec<_>>() {
             match found {
-                Ok(found) => entries.extend(found.into_iter().take(GRASPS_PER_BOARD)),
+                Ok(found) => {
+                    let kept = found.into_iter().take(GRASPS_PER_BOARD);
+                    entries.extend(kept.inspect(|_| counter.advance()));
+                }
                 Err(failure) => failures.count(failure),
             }
         }

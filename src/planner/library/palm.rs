@@ -69,7 +69,7 @@ mod tests {
 
     use crate::{
         collision::BoardBody,
-        model::{board::BoardShape, plate::PlateRecord},
+        model::{board::BoardShape, plate::PlateRecord, stop::Never},
         planner::{
             domain::DEPTH_M,
             library::{GraspingRobot, draw_grasp},
@@ -83,7 +83,7 @@ mod tests {
     fn the_palm_limits_the_depth() {
         let loaded = paper::operations()[0].load().unwrap();
         let board = loaded.scenario.object.shape();
-        let of = |clearance_m: f64| GraspingRobot::new(&loaded.robot, &board, clearance_m);
+        let of = |clearance_m: f64| GraspingRobot::new(&loaded.robot, &board, clearance_m, &Never);
         // Baxter's palm is 47 mm from the board at a depth of 60 mm (docs/method.md#35-clearances).
         let [usual, wide, wider] = [0.005, 0.060, 0.070].map(of);
         for (arm, (wide, wider)) in usual.arms.iter().zip(wide.arms.iter().zip(&wider.arms)) {
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn the_palm_limits_the_depth_in_plates() {
         let loaded = paper::operations()[0].load().unwrap();
-        let robot_for = |board: &BoardShape| GraspingRobot::new(&loaded.robot, board, 0.060);
+        let robot_for = |board: &BoardShape| GraspingRobot::new(&loaded.robot, board, 0.060, &Never);
         let cuboid = loaded.scenario.object.shape();
         let plate =
             |outline_m: Vec<[f64; 2]>| BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.03);

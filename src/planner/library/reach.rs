@@ -14,7 +14,7 @@ use rand_pcg::Pcg64;
 
 use super::direction::{direction_cell, direction_cells};
 use crate::{
-    model::frames::Pose,
+    model::{frames::Pose, stop::Stop},
     planner::{
         domain::uniform,
         params::library::{REACH_CELL_M, REACH_DIRECTIONS, REACH_SAMPLES, REACH_SEED, REACH_SEEDS},
@@ -48,8 +48,8 @@ struct Located {
 }
 
 impl ReachMap {
-    /// The map of an arm.
-    pub fn new(chain: &Chain) -> Self {
+    /// The map of an arm; after a stop it is not complete.
+    pub fn new(chain: &Chain, stop: &dyn Stop) -> Self {
         let reach_m = chain.reach_m();
         let rings = (reach_m / REACH_CELL_M).ceil() as usize;
         let levels = 2 * rings;
@@ -57,6 +57,9 @@ impl ReachMap {
         let mut map = Self { rings, levels, reach_m, samples: Vec::new(), cells };
         let mut random = Pcg64::new(REACH_SEED, 0);
         for _ in 0..REACH_SAMPLES {
+            if stop.is_stopped() {
+                break;
+            }
             let limits = chain.lower().iter().zip(chain.upper());
             let q_rad: Vec<_> = limits.map(|(&low, &high)| uniform(&mut random, low, high)).collect();
             let x_wg = chain.gripper_pose(&q_rad);
