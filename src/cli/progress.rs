@@ -27,7 +27,7 @@ const CANDIDATES_SHOWN: u64 = 50;
 /// The line of a command that runs scenarios or jobs: how many have ended.
 const COUNTING: &str = "{spinner} {elapsed}  [{bar:30}] {pos}/{len}  {msg}";
 /// The line of a phase whose size is known.
-const MEASURED: &str = "{spinner} {elapsed}  [{bar:30}] {percent:>3} %  {msg}";
+const MEASURED: &str = "{spinner} {elapsed}  [{bar:20}] {percent:>3} %  {msg}";
 /// The line of a phase whose size is not known.
 const OPEN: &str = "{spinner} {elapsed}  {msg}";
 
@@ -244,7 +244,7 @@ impl Progress {
 fn usually(phase: Phase) -> &'static str {
     match phase {
         Phase::GraspLibrary | Phase::Postures | Phase::NaturalGrasps | Phase::WarmStarts { .. } => {
-            "maps of a new board or task usually take 4 to 10 s on two cores"
+            "all maps usually take 4 to 10 s"
         }
         _ => "",
     }
