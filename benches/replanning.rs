@@ -8,7 +8,10 @@
 use std::time::Instant;
 
 use benchdog::{
-    model::scenario::{Scenario, StandingPlace},
+    model::{
+        scenario::{Scenario, StandingPlace},
+        stop::Never,
+    },
     planner::{Outcome, Planner, Replanning, verify},
     reproduce::paper,
 };
@@ -56,7 +59,7 @@ fn walk(planner: &mut Planner, scenario: &Scenario, every: usize, turn_deg: f64)
         let mut moved = scenario.clone();
         moved.human.place = place;
         let start = Instant::now();
-        let outcome = planner.replan(&moved, &Replanning { search: false, ..Replanning::default() }).expect("valid");
+        let outcome = planner.replan(&moved, &Replanning { search: false, ..Replanning::default() }, &Never).expect("valid");
         let ms = start.elapsed().as_secs_f64() * 1e3;
         if step > 0 {
             wall_ms.push(ms);

@@ -8,7 +8,8 @@ use super::{
     curve::circle_radius_m,
     exit::{CliError, Exit},
     inputs, interrupt, output,
-    plan::{infeasible, load_for_planning, stop_on_interrupt},
+    plan::{infeasible, load_for_planning},
+    progress::Progress,
 };
 use crate::{
     model::{plan::Plan, scenario::ResponseKind},
@@ -24,6 +25,7 @@ const STRATEGIES: [&str; 3] = ["hold", "sequence", "separate"];
 
 /// Plans with the three strategies and writes plans and tables.
 pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
+    let progress = Progress::begin("reading the scenario", "what was found is written")?;
     let mut loaded = load_for_planning(&args.scenario)?;
     circle_radius_m(&loaded)?;
     args.search.apply(&mut loaded.scenario.planner);
@@ -34,9 +36,10 @@ pub fn circle(args: &CircleArgs) -> Result<Exit, CliError> {
         STRATEGIES.iter().flat_map(|strategy| (1..=path::POINTS).map(|point| plan_path(&args.out, strategy, point)));
     inputs::protect(&loaded.inputs, plans.chain([circle_csv.clone(), motion_csv.clone()]))?;
     report::file::check_folder(&args.out)?;
-    interrupt::listen("what was found is written")?;
     let planner = cache::planner(&loaded.robot, args.cache);
-    let found = match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).circle()? {
+    let outcome = planner.search(&loaded.scenario).watch(&*progress).circle()?;
+    progress.finish();
+    let found = match outcome {
         Outcome::Found(found) => found,
         Outcome::Infeasible(why) => return Ok(infeasible(&loaded, &why)),
     };

@@ -6,7 +6,8 @@ use std::path::Path;
 use super::{
     args::CurveArgs,
     exit::{CliError, Exit},
-    inputs, output,
+    inputs, interrupt, output,
+    progress::Progress,
 };
 use crate::{
     collision::CollisionModel,
@@ -19,13 +20,17 @@ use crate::{
 
 /// Writes the curve as CSV and SVG.
 pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
+    let progress = Progress::begin("reading the scenario", "")?;
     let loaded = match &args.scenario {
         Some(path) => scenario::load(path)?,
         None => paper::operations()[0].load()?,
     };
     let files = ["muscular_curve.csv", "muscular_curve.svg"].map(|name| args.out.join(name));
     inputs::protect(&loaded.inputs, files.clone())?;
+    progress.does("computing the comfort along the circle");
     let curve = curve_of(&loaded)?;
+    progress.finish();
+    let _writing = interrupt::writing();
     let [csv, svg] = files;
     report::file::write_whole(&csv, report::curve::csv(&curve).as_bytes())?;
     report::file::write_whole(&svg, report::curve::svg(&curve).as_bytes())?;

@@ -114,9 +114,16 @@ pub enum CliError {
 }
 
 impl CliError {
+    /// True if Ctrl-C is the reason.
+    pub fn is_stop(&self) -> bool {
+        use crate::{planner::PlanError, sim::SimError};
+        matches!(self, Self::Plan(PlanError::Stopped) | Self::Simulation(SimError::Stopped))
+    }
+
     /// The result of a command with this error. An error that no input should cause is a bug.
     pub fn exit(&self) -> Exit {
         match self {
+            _ if self.is_stop() => Exit::Interrupted,
             Self::JUnit(_) | Self::Csv(_) => Exit::Bug,
             #[cfg(feature = "recording")]
             Self::Record(error) if error.is_about_a_file() => Exit::Input,

@@ -36,6 +36,7 @@ impl FinishedRun {
         let (exit, message) = match std::panic::catch_unwind(std::panic::AssertUnwindSafe(job)) {
             Ok(Ok(ended)) => return Ok(ended),
             Ok(Err(error @ CliError::Write(_))) => return Err(error),
+            Ok(Err(error)) if error.is_stop() => return Ok(Self::skipped(name, SkipReason::Interrupted)),
             Ok(Err(error)) => (error.exit(), error.to_string()),
             Err(panic) => (Exit::Bug, format!("this is a bug in benchdog: {}", panic_message(&*panic))),
         };

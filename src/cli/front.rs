@@ -7,7 +7,8 @@ use super::{
     cache,
     exit::{CliError, Exit},
     inputs, interrupt, output,
-    plan::{infeasible, load_for_planning, stop_on_interrupt},
+    plan::{infeasible, load_for_planning},
+    progress::Progress,
 };
 use crate::{
     model::scenario::MuscularMetric,
@@ -20,13 +21,15 @@ const OTHER_FILES: [&str; 3] = ["own-weights.json", "front.svg", "front.csv"];
 
 /// Computes and writes the front.
 pub fn front(args: &FrontArgs) -> Result<Exit, CliError> {
+    let progress = Progress::begin("reading the scenario", "the front of the plans found so far is written")?;
     let mut loaded = load_for_planning(&args.scenario)?;
     args.search.apply(&mut loaded.scenario.planner);
     inputs::protect(&loaded.inputs, outputs(&args.out))?;
     report::file::check_folder(&args.out)?;
-    interrupt::listen("the front of the plans found so far is written")?;
     let planner = cache::planner(&loaded.robot, args.cache);
-    match planner.search(&loaded.scenario).observer(&mut stop_on_interrupt).front()? {
+    let outcome = planner.search(&loaded.scenario).watch(&*progress).front()?;
+    progress.finish();
+    match outcome {
         Outcome::Found(front) => {
             write(&front, loaded.scenario.comfort.muscular, args)?;
             Ok(if interrupt::requested() { Exit::Interrupted } else { Exit::Met })

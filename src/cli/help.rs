@@ -24,7 +24,8 @@ Examples:
 Writes report.html, summary.csv, summary.json and junit.xml into --out, and for each scenario a
 folder with plan.json, recording.rrd and, last, verdict.json. A killed run leaves none of the four
 reports and no verdict.json of an unfinished scenario.
-Ctrl-C finishes the scenarios in progress and reports; a second Ctrl-C exits immediately.";
+Ctrl-C abandons the scenarios in progress and reports the finished ones; a second Ctrl-C exits
+immediately.";
 
 /// `benchdog plan --help`.
 pub const PLAN: &str = "\
@@ -34,7 +35,8 @@ Examples:
   benchdog plan scenarios/quickstart.toml --planner muscular --budget fast
   benchdog plan scenarios/quickstart.toml --top 3 -o plans
 
-Ctrl-C ends the search: the best plan so far is checked and written; the exit code is 130.";
+Ctrl-C ends the search: the best plan so far is checked and written. Before there is one, nothing is
+written. The exit code is 130.";
 
 /// `benchdog front --help`.
 pub const FRONT: &str = "\

@@ -8,8 +8,9 @@ use std::{
 use super::{
     args::{ArmChoice, ImportArgs},
     exit::{CliError, Exit},
-    inputs, output,
+    inputs, interrupt, output,
     plan::load_for_planning,
+    progress::Progress,
 };
 use crate::{
     check::{CheckedPlan, fingers_across},
@@ -50,14 +51,19 @@ struct Imported {
 
 /// Makes a plan of a scenario's task and a file's grasps, or one of each grasp.
 pub fn import(args: &ImportArgs) -> Result<Exit, CliError> {
+    let progress = Progress::begin("reading the scenario", "")?;
     let loaded = load_for_planning(&args.scenario)?;
     let file = read_grasps(&args.grasps)?;
+    progress.does("looking for a pose of the board that the arms reach");
     let read: Vec<_> = loaded.inputs.iter().chain([&args.grasps]).cloned().collect();
     if let (Some(arm), Some(folder)) = (&args.all, &args.output) {
-        return all(args, &loaded, &file, &read, (arm, folder));
+        return all(args, &loaded, &file, &read, (arm, folder), &progress);
     }
     inputs::protect(&read, args.output.clone())?;
-    let Some(Imported { plan, notes }) = imported(args, &loaded, &file, &args.arm)? else {
+    let found = imported(args, &loaded, &file, &args.arm)?;
+    progress.finish();
+    let _writing = interrupt::writing();
+    let Some(Imported { plan, notes }) = found else {
         output::message(&format!("{}: no feasible plan: {}", loaded.scenario.name, no_pose()));
         return Ok(Exit::Infeasible);
     };
@@ -87,6 +93,7 @@ fn all(
     file: &ForeignGrasps,
     read: &[PathBuf],
     (arm, folder): (&str, &Path),
+    progress: &Progress,
 ) -> Result<Exit, CliError> {
     let is_free = |grasp: &&ForeignGrasp| args.arm.iter().all(|choice| choice.grasp != grasp.name);
     let mut grasps: Vec<&ForeignGrasp> = file.grasps.iter().filter(is_free).collect();
@@ -106,13 +113,16 @@ fn all(
     report::file::check_folder(folder)?;
     let mut exit = Exit::Infeasible;
     for grasp in grasps {
+        progress.begins(&grasp.name);
         let own = ArmChoice { arm: arm.to_owned(), grasp: grasp.name.clone() };
         let choices: Vec<ArmChoice> = args.arm.iter().cloned().chain([own]).collect();
         let left_out = match imported(args, loaded, file, &choices) {
             Ok(Some(Imported { mut plan, notes })) => {
                 plan.name = format!("{}-{}", plan.name, output::file_stem(&grasp.name));
+                let _writing = interrupt::writing();
                 report::file::write_whole(&path_of(grasp), report::json::plan(&plan).as_bytes())?;
-                output::print(&format!("wrote {}: {}\n", path_of(grasp).display(), notes.join("; ")))?;
+                progress.wrote();
+                progress.print(&format!("wrote {}: {}\n", path_of(grasp).display(), notes.join("; ")))?;
                 exit = Exit::Met;
                 continue;
             }
@@ -120,8 +130,9 @@ fn all(
             Err(CliError::Input(error)) => error.to_string(),
             Err(error) => return Err(error),
         };
-        output::print(&format!("left out {}: {left_out}\n", grasp.name))?;
+        progress.print(&format!("left out {}: {left_out}\n", grasp.name))?;
     }
+    progress.finish();
     Ok(exit)
 }
 

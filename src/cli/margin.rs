@@ -8,12 +8,14 @@ use super::{
     exit::{CliError, Exit},
     output,
     predicted::{Predicted, predicted},
+    progress::Progress,
 };
 use crate::{
     check::CheckedPlan,
     judge::{FailingLoad, Judgement, failing_load, judge},
     model::{
         scenario::Scenario,
+        stop::Stop,
         verdict::{Check, VerdictKind},
     },
     scenario::{self, LoadedPlan},
@@ -51,11 +53,13 @@ struct Margin {
 
 /// Finds and reports the margin of a plan.
 pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
+    let progress = Progress::begin("reading the plan", "")?;
     let LoadedPlan { plan, filled_in, robot, scenario, .. } =
         scenario::load_plan(&args.plan, args.scenario.as_deref())?;
-    output::notes(&filled_in);
+    filled_in.iter().for_each(|note| progress.message(&output::note(note)));
     let checked = CheckedPlan::new(&robot, &plan, &scenario.human, &scenario.tool)?;
-    let margin = margin_of(&checked, &scenario)?;
+    let margin = margin_of(&checked, &scenario, &progress)?;
+    progress.finish();
     match args.format {
         Format::Human => output::print(&text(&margin))?,
         Format::Json => {
@@ -67,7 +71,7 @@ pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
     Ok(if margin.met { Exit::Met } else { Exit::NotMet })
 }
 
-fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, CliError> {
+fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario, progress: &Progress) -> Result<Margin, CliError> {
     // A plan without predictions may still be simulated.
     let (predicted, no_prediction) = match predicted(checked, scenario) {
         Ok(predicted) => (Some(predicted), None),
@@ -96,12 +100,12 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, C
         return Ok(Margin { reason: Some(reason), ended_by, met, ..empty });
     }
     let guess = empty.predicted.as_ref().map_or(1.0, |predicted| predicted.compliant);
-    let FailingLoad { holds_at, fails_at, judgement, simulations } = simulated(checked, scenario, guess)?;
+    let FailingLoad { holds_at, fails_at, judgement, simulations } = simulated(checked, scenario, guess, progress)?;
     let failed = judgement.first_failure.as_ref().map(|failure| failure.check);
     let met = match expected {
         VerdictKind::Holds => holds_at >= scenario.limits.load_factor,
         // The verdict on the load itself, not on the failing load, must be the expected one.
-        other => judge_at(checked, scenario, 1.0)?.verdict == other && other != VerdictKind::NoVerdict,
+        other => judge_at(checked, scenario, 1.0, progress)?.verdict == other && other != VerdictKind::NoVerdict,
     };
     Ok(Margin {
         load_factor: holds_at,
@@ -118,14 +122,28 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<Margin, C
 /// The load at which a plan fails in simulation. The search starts at `guess`.
 ///
 /// # Errors
-/// If the simulation cannot be set up from the plan.
-pub fn simulated(checked: &CheckedPlan<'_>, scenario: &Scenario, guess: f64) -> Result<FailingLoad, CliError> {
-    failing_load(guess, |factor| judge_at(checked, scenario, factor))
+/// If the simulation cannot be set up from the plan, and after a stop.
+pub fn simulated(
+    checked: &CheckedPlan<'_>,
+    scenario: &Scenario,
+    guess: f64,
+    progress: &Progress,
+) -> Result<FailingLoad, CliError> {
+    failing_load(guess, |factor| {
+        progress.does(&format!("simulating {factor:.3} times the load"));
+        judge_at(checked, scenario, factor, progress)
+    })
 }
 
 /// The judgement on a plan under a multiple of its load.
-fn judge_at(checked: &CheckedPlan<'_>, scenario: &Scenario, factor: f64) -> Result<Judgement, CliError> {
-    let trace = sim::simulate(checked, &Conditions::of(scenario).scaled(factor)).map_err(CliError::Simulation)?;
+fn judge_at(
+    checked: &CheckedPlan<'_>,
+    scenario: &Scenario,
+    factor: f64,
+    stop: &dyn Stop,
+) -> Result<Judgement, CliError> {
+    let conditions = Conditions::of(scenario).scaled(factor);
+    let trace = sim::simulate_until(checked, &conditions, stop).map_err(CliError::Simulation)?;
     Ok(judge(&trace, &scenario.limits))
 }
 

@@ -82,6 +82,10 @@ pub fn main() -> ExitCode {
     });
     match outcome {
         Ok(Ok(exit)) => exit.into(),
+        Ok(Err(error)) if error.is_stop() => {
+            interrupt::explain();
+            error.exit().into()
+        }
         Ok(Err(error)) => {
             output::message(&format!("error: {error}"));
             error.exit().into()

@@ -26,7 +26,12 @@ pub fn file_stem(name: &str) -> String {
     name.chars().map(keep).collect::<String>().trim_start_matches('.').to_owned()
 }
 
+/// A note as it is written to standard error.
+pub fn note(note: &str) -> String {
+    format!("note: {note}")
+}
+
 /// Writes notes to standard error.
 pub fn notes(notes: &[String]) {
-    notes.iter().for_each(|note| message(&format!("note: {note}")));
+    notes.iter().for_each(|text| message(&note(text)));
 }

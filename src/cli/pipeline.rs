@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{exit::CliError, planners::Planners, versions::versions};
+use super::{exit::CliError, planners::Planners, progress::Progress, versions::versions};
 use crate::{
     check::CheckedPlan,
     judge::{Judgement, confirmed, judge},
@@ -12,13 +12,14 @@ use crate::{
         load::{Load, Uncertainty},
         plan::{Plan, PostureFigures},
         scenario::Scenario,
+        stop::Stop,
         trace::Trace,
         verdict::{Verdict, VerdictKind},
     },
     planner::Outcome,
     robot::Robot,
     scenario::{LoadedScenario, material::bending_properties},
-    sim::{self, Conditions},
+    sim::{self, Conditions, SimError},
     statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace, bending_note},
 };
 
@@ -38,12 +39,12 @@ pub struct Run {
 /// Plans a scenario unless it names a plan, simulates the plan and judges it.
 ///
 /// # Errors
-/// If the person or the tool is invalid, or the simulation cannot be set up from the plan.
-pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run, CliError> {
+/// If the person or the tool is invalid, or the simulation cannot be set up from the plan; and after a stop.
+pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners, progress: &Progress) -> Result<Run, CliError> {
     let scenario = &loaded.scenario;
     let plan = match &loaded.plan {
         Some(plan) => plan.clone(),
-        None => match planners.timed_plan(scenario, &loaded.robot, None)? {
+        None => match planners.timed_plan(scenario, &loaded.robot, progress)? {
             Outcome::Found(plan) => plan,
             Outcome::Infeasible(why) => {
                 let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
@@ -51,7 +52,7 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
             }
         },
     };
-    run_plan(scenario, &loaded.robot, plan, &loaded.filled_in)
+    run_plan(scenario, &loaded.robot, plan, &loaded.filled_in, progress)
 }
 
 /// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. The notes of the verdict begin with
@@ -60,17 +61,28 @@ pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners) -> Result<Run,
 /// not stand or see so; its verdict is `infeasible`.
 ///
 /// # Errors
-/// If the simulation cannot be set up from the plan.
-pub fn run_plan(scenario: &Scenario, robot: &Robot, plan: Plan, filled_in: &[String]) -> Result<Run, CliError> {
-    let mut run = run_complete_plan(scenario, robot, plan)?;
+/// If the simulation cannot be set up from the plan, and after a stop.
+pub fn run_plan(
+    scenario: &Scenario,
+    robot: &Robot,
+    plan: Plan,
+    filled_in: &[String],
+    progress: &Progress,
+) -> Result<Run, CliError> {
+    // The best plan so far is not that of the scenario.
+    if progress.is_stopped() {
+        return Err(CliError::Simulation(SimError::Stopped));
+    }
+    progress.does("simulating");
+    let mut run = run_complete_plan(scenario, robot, plan, progress)?;
     run.verdict.notes.splice(..0, filled_in.iter().cloned());
     Ok(run)
 }
 
-fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<Run, CliError> {
+fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan, stop: &dyn Stop) -> Result<Run, CliError> {
     let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
     let (posture, muscles) = (checked.posture(), checked.muscles());
-    let (verdict, simulated) = checked_and_judged(&checked, scenario)?;
+    let (verdict, simulated) = checked_and_judged(&checked, scenario, stop)?;
     Ok(Run { verdict: Verdict { muscles, ..verdict }, posture, plan: Some(plan), simulated })
 }
 
@@ -78,6 +90,7 @@ fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan) -> Result<R
 fn checked_and_judged(
     checked: &CheckedPlan<'_>,
     scenario: &Scenario,
+    stop: &dyn Stop,
 ) -> Result<(Verdict, Option<(Trace, Judgement)>), CliError> {
     if let Some(contact) = checked.first_contact(0.0) {
         return Ok((verdict_without_simulation(scenario, contact.verdict, contact.reason), None));
@@ -85,7 +98,7 @@ fn checked_and_judged(
     if let Some(reason) = checked.why_not_so(&scenario.limits) {
         return Ok((verdict_without_simulation(scenario, VerdictKind::Infeasible, reason), None));
     }
-    let (trace, judgement) = simulated_and_judged(checked, scenario)?;
+    let (trace, judgement) = simulated_and_judged(checked, scenario, stop)?;
     let plan = checked.plan();
     let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
     let verdict = judgement.to_verdict(&scenario.name, scenario.expect.verdict, seed, versions());
@@ -94,11 +107,15 @@ fn checked_and_judged(
 
 /// The simulation of a plan and its judgement, confirmed at shorter time steps if it is near to a limit. A grasp that holds
 /// the board only by the simulation, and provably not by the statics, has no verdict.
-fn simulated_and_judged(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Result<(Trace, Judgement), CliError> {
+fn simulated_and_judged(
+    checked: &CheckedPlan<'_>,
+    scenario: &Scenario,
+    stop: &dyn Stop,
+) -> Result<(Trace, Judgement), CliError> {
     let run = |timestep_s: f64| {
         let mut conditions = Conditions::of(scenario);
         conditions.settings.timestep_s = timestep_s;
-        let trace = sim::simulate(checked, &conditions).map_err(CliError::Simulation)?;
+        let trace = sim::simulate_until(checked, &conditions, stop).map_err(CliError::Simulation)?;
         let judgement = judge(&trace, &scenario.limits);
         Ok::<_, CliError>((trace, judgement))
     };

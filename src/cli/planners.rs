@@ -7,10 +7,10 @@ use std::{
     time::Instant,
 };
 
-use super::{args::CacheArgs, cache, exit::CliError, interrupt};
+use super::{args::CacheArgs, cache, exit::CliError, progress::Progress};
 use crate::{
-    model::{plan::Plan, scenario::Scenario},
-    planner::{MapStore, Observer, Outcome, Planner},
+    model::{plan::Plan, scenario::Scenario, stop::Stop as _},
+    planner::{MapStore, Outcome, Planner, Watch},
     robot::{Robot, RobotOptions},
 };
 
@@ -47,17 +47,18 @@ impl Planners {
     /// Makes the maps of scenarios before they are planned in parallel, each on all threads. A thread of rayon's pool must not
     /// wait for a map that another thread makes: while it makes parts of its own map, rayon gives it other work, which may
     /// need that same map. Stops early after Ctrl-C. A map that cannot be made is left out: the plan that needs it fails.
-    pub fn prepare(&self, scenarios: &[(&Robot, &Scenario)]) {
+    pub fn prepare(&self, scenarios: &[(&Robot, &Scenario)], progress: &Progress) {
         for (robot, scenario) in scenarios {
-            if !interrupt::requested() {
-                let _ = catch_unwind(AssertUnwindSafe(|| self.prepare_one(robot, scenario)));
+            if !progress.is_stopped() {
+                progress.begins(&scenario.name);
+                let _ = catch_unwind(AssertUnwindSafe(|| self.prepare_one(robot, scenario, progress)));
             }
         }
     }
 
-    fn prepare_one(&self, robot: &Robot, scenario: &Scenario) -> Result<(), CliError> {
+    fn prepare_one(&self, robot: &Robot, scenario: &Scenario, watch: &dyn Watch) -> Result<(), CliError> {
         let start = Instant::now();
-        self.of(robot).prepare(scenario)?;
+        self.of(robot).search(scenario).watch(watch).prepare()?;
         *lock(&self.map_ms).entry(scenario.name.clone()).or_default() += start.elapsed().as_secs_f64() * 1e3;
         Ok(())
     }
@@ -65,22 +66,13 @@ impl Planners {
     /// Plans a scenario and writes into the plan how long that took: its maps, and the search.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
-    pub fn timed_plan<'a>(
-        &self,
-        scenario: &'a Scenario,
-        robot: &Robot,
-        observer: Option<&'a mut Observer<'a>>,
-    ) -> Result<Outcome<Plan>, CliError> {
-        self.prepare_one(robot, scenario)?;
+    /// When the scenario's person or tool is invalid, and after a stop before anything was found.
+    pub fn timed_plan(&self, scenario: &Scenario, robot: &Robot, watch: &dyn Watch) -> Result<Outcome<Plan>, CliError> {
+        self.prepare_one(robot, scenario, watch)?;
         let map_ms = lock(&self.map_ms).remove(&scenario.name);
         let planner = self.of(robot);
         let start = Instant::now();
-        let search = planner.search(scenario);
-        let outcome = match observer {
-            Some(observer) => search.observer(observer).plan()?,
-            None => search.plan()?,
-        };
+        let outcome = planner.search(scenario).watch(watch).plan()?;
         Ok(outcome.map(|mut plan| {
             if let Some(record) = &mut plan.planner {
                 record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);

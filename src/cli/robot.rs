@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use super::{
     args::RobotNewArgs,
     exit::{CliError, Exit},
-    inputs, output,
+    inputs, interrupt, output,
+    progress::Progress,
 };
 use crate::{
     report::file,
@@ -28,7 +29,10 @@ pub fn new(args: &RobotNewArgs) -> Result<Exit, CliError> {
     }
     inputs::protect(&[vec![input.urdf.clone()], input.srdf.iter().cloned().collect()].concat(), outputs())?;
     let folder = args.output.parent().unwrap_or(Path::new(""));
+    let progress = Progress::begin("reading the URDF and sampling postures", "")?;
     let made = setup(&input, folder)?;
+    progress.finish();
+    let _writing = interrupt::writing();
     inputs::protect(&made.robot.files, outputs())?;
     file::write_whole(&args.output, made.text.as_bytes())?;
     if let Some(path) = &args.scenario {

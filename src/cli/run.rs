@@ -2,7 +2,7 @@
 
 use std::{
     sync::{
-        Mutex, PoisonError,
+        Arc, Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
     time::Instant,
@@ -18,10 +18,14 @@ use super::{
     select::{self, Selected},
     threads,
 };
-use crate::{report::SkipReason, scenario::LoadedScenario};
+use crate::{
+    report::{Outcome, SkipReason},
+    scenario::LoadedScenario,
+};
 
 /// Runs scenarios. All scenarios and the output folder are checked before the first one is planned.
 pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
+    let progress = Progress::counting("reading the scenarios", "the finished scenarios are reported")?;
     let scenarios = select::scenarios(&args.scenarios, &args.filter, &args.planner)?;
     let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
     let inputs: Vec<_> = scenarios.iter().flat_map(|selected| selected.loaded.inputs.clone()).collect();
@@ -30,18 +34,19 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
         finish::protect(&args.report, &loaded.scenario.name, loaded.plan_path().as_deref(), &inputs)?;
     }
     finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
-    interrupt::listen("the scenarios in progress are finished and reported")?;
+    progress.expect(wanted.len());
+    progress.keep();
     let runner = Runner {
         args,
         planners: Planners::new(args.cache),
-        progress: Progress::new(wanted.len()),
+        progress,
         failed: AtomicBool::new(false),
         fatal: Mutex::new(None),
     };
     let to_be_planned = wanted.iter().map(|selected| &selected.loaded).filter(|loaded| loaded.plan.is_none());
     let to_be_planned: Vec<_> = to_be_planned.map(|loaded| (&loaded.robot, &loaded.scenario)).collect();
     let finished = threads::with_threads(args.jobs, || {
-        runner.planners.prepare(&to_be_planned);
+        runner.planners.prepare(&to_be_planned, &runner.progress);
         threads::map_in_parallel(&scenarios, |selected| runner.run_or_skip(selected))
     })?;
     runner.progress.finish();
@@ -59,7 +64,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
 struct Runner<'a> {
     args: &'a RunArgs,
     planners: Planners,
-    progress: Progress,
+    progress: Arc<Progress>,
     /// True after an expectation was not met.
     failed: AtomicBool,
     /// The first error that affects all scenarios, such as a full disk.
@@ -85,12 +90,15 @@ impl Runner<'_> {
         let wall_s = start.elapsed().as_secs_f64();
         finished.wall_s = Some(wall_s);
         self.failed.fetch_or(finished.exit != Exit::Met, Ordering::SeqCst);
-        self.progress.ends(&finished.outcome, wall_s);
+        match finished.outcome {
+            Outcome::Skipped { .. } => self.progress.advances(None),
+            _ => self.progress.ends(&finished.outcome, wall_s),
+        }
         finished
     }
 
     fn run(&self, loaded: &LoadedScenario) -> Result<FinishedRun, CliError> {
-        let run = pipeline::run_scenario(loaded, &self.planners)?;
+        let run = pipeline::run_scenario(loaded, &self.planners, &self.progress)?;
         finish::write_run(run, &loaded.scenario, &loaded.robot, loaded.plan_path().as_deref(), &self.args.report)
     }
 

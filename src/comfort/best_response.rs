@@ -22,7 +22,7 @@ const HALVINGS: i32 = 6;
 
 /// The best response: the best few of the grid, each refined by compass search over standing place, heading, roll (where it
 /// is free) and swivel. A local optimum, at least as good as every response of the grid. `None` if the grid has no feasible
-/// response.
+/// response, and after a stop.
 #[must_use]
 pub fn best_response(query: &ResponseQuery<'_>) -> Option<Response> {
     let mut best: Vec<Response> = Vec::with_capacity(REFINED + 1);
@@ -33,6 +33,9 @@ pub fn best_response(query: &ResponseQuery<'_>) -> Option<Response> {
             best.truncate(REFINED);
         }
     });
+    if query.stop.is_stopped() {
+        return None;
+    }
     best.into_iter().map(|start| refined(query, start)).max_by(|a, b| a.objective.total_cmp(&b.objective))
 }
 
@@ -62,6 +65,9 @@ pub fn response_near(query: &ResponseQuery<'_>, x_wb: &Pose, q_rad: &ArmAngles) 
 fn refined(query: &ResponseQuery<'_>, start: Response) -> Response {
     let mut best = start;
     for halving in 1..=HALVINGS {
+        if query.stop.is_stopped() {
+            break;
+        }
         let scale = 0.5_f64.powi(halving);
         while let Some(better) = neighbours(query, &best.choice, scale)
             .into_iter()

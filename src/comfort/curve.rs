@@ -28,6 +28,7 @@ use crate::{
         frames::Pose,
         operation::Operation,
         scenario::{ComfortSettings, MuscularMetric},
+        stop::Never,
     },
 };
 
@@ -118,6 +119,7 @@ pub fn muscular_curve(cut: &Cut<'_>) -> Curve {
             floor_z_m: cut.floor_z_m,
             robot_points_w: &[],
             scene: Scene { link_poses: &[], holding: &[], board: &board, x_wo, person: &[], clearance_m: 0.0 },
+            stop: &Never,
         };
         responses::visit(&query, |place, response| {
             let (_, spans) = by_place.entry(place).or_insert((response.x_wb, [None; POINTS]));

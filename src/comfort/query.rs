@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use crate::{
     collision::{CollisionModel, Scene},
     human::Human,
-    model::{frames::Pose, operation::Operation, scenario::ComfortSettings},
+    model::{frames::Pose, operation::Operation, scenario::ComfortSettings, stop::Stop},
     robot::Robot,
 };
 
@@ -26,6 +26,8 @@ pub struct ResponseQuery<'a> {
     pub robot_points_w: &'a [Point3<f64>],
     /// Robot and board. The scene's person is ignored. Without link poses only the board is an obstacle.
     pub scene: Scene<'a>,
+    /// Ends the search for responses: there are none then.
+    pub stop: &'a dyn Stop,
 }
 
 /// The robot's points of the peripersonal metric, in W, m.

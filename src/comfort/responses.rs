@@ -94,7 +94,7 @@ impl RolledTool {
     }
 }
 
-/// Calls `visitor` with every feasible response of the grid, in a fixed order.
+/// Calls `visitor` with every feasible response of the grid, in a fixed order, until a stop.
 pub(super) fn visit(query: &ResponseQuery<'_>, mut visitor: impl FnMut(GridPlace, &Response)) {
     let tools = RolledTool::all(query);
     let reach_m = query.human.reach_m();
@@ -110,6 +110,9 @@ pub(super) fn visit(query: &ResponseQuery<'_>, mut visitor: impl FnMut(GridPlace
             (low_m / PLACE_STEP_M).ceil() as i32..=(high_m / PLACE_STEP_M).floor() as i32
         });
         for (i, j) in xs.flat_map(|i| ys.clone().map(move |j| (i, j))) {
+            if query.stop.is_stopped() {
+                return;
+            }
             let step_m = [i, j].map(|step| f64::from(step) * PLACE_STEP_M);
             let place_w_m = [0, 1].map(|axis| origin.p_wb_m[axis] + step_m[axis]);
             if !query.human.may_stand(&Standing { p_wb_m: place_w_m, heading_rad }) {

@@ -20,6 +20,7 @@ use crate::{
         frames::Pose,
         operation::{Operation, OperationKind},
         scenario::{ComfortSettings, Hand, MuscularMetric, Person, PostureLimits, StandingPlace},
+        stop::Never,
     },
     robot::Robot,
 };
@@ -98,6 +99,7 @@ impl Fixture {
                 person: &[],
                 clearance_m: 0.0,
             },
+            stop: &Never,
         }
     }
 }

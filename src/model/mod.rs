@@ -20,6 +20,7 @@ pub mod plate;
 pub mod polygon;
 mod pose_form;
 pub mod scenario;
+pub mod stop;
 pub mod tool_part;
 pub mod trace;
 pub mod verdict;

@@ -50,9 +50,12 @@ pub fn assess_cases(
         .unwrap_or(Assessment { utilisation: f64::INFINITY, ..Assessment::default() })
 }
 
-/// The utilisation of each grasp with the roll of the scenario's tool, see [`Assessment`].
+/// The utilisation of each grasp with the roll of the scenario's tool, see [`Assessment`]; infinite after a stop.
 pub fn utilisations(problem: &Problem<'_>, grasps: &[&BoardGrasp]) -> Vec<f64> {
     let of_grasp = |workspace: &mut StabilityWorkspace, grasp: &&BoardGrasp| {
+        if problem.stop.is_stopped() {
+            return f64::INFINITY;
+        }
         assess(problem, workspace, &Candidate::without_person(grasp), &grasp.x_wo).utilisation
     };
     grasps.par_iter().map_init(StabilityWorkspace::new, of_grasp).collect()

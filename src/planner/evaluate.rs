@@ -21,7 +21,7 @@ use crate::{
         frames::Pose,
         operation::Operation,
         plan::{ArmHold, Clearance, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
-        scenario::StabilityKind,
+        scenario::{ResponseKind, StabilityKind},
     },
     statics::{ContactModel, HandModel, LoadCases, LocalEquilibrium, Prediction, StabilityWorkspace},
 };
@@ -127,7 +127,7 @@ impl<'a> Evaluator<'a> {
         test_collisions(&self.problem, configuration)
     }
 
-    /// A candidate that passed every test; the observer learns of it.
+    /// A candidate that passed every test; the watch is told of it.
     pub fn feasible(
         &mut self,
         candidate: Candidate,
@@ -136,6 +136,10 @@ impl<'a> Evaluator<'a> {
         stability: Assessment,
     ) -> Feasible {
         self.stats.found(&comfort);
+        // With the mean response, it is not known yet whether there is one.
+        if self.problem.objective.person == ResponseKind::Best {
+            self.stats.tell_found();
+        }
         Feasible { candidate, configuration, comfort, objective: comfort.objective, stability }
     }
 
@@ -255,10 +259,11 @@ pub fn response_query<'q>(
         floor_z_m: problem.robot.robot.floor_z_m,
         robot_points_w,
         scene: problem.robot.scene(link_poses, x_wo),
+        stop: problem.stop,
     }
 }
 
-/// The mean comfort over the person's responses to a candidate's grasp.
+/// The mean comfort over the person's responses to a candidate's grasp; `None` without a response, and after a stop.
 pub fn mean_response(problem: &Problem<'_>, found: &Feasible) -> Option<MeanComfort> {
     let Configuration { placement, link_poses, .. } = &found.configuration;
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);

@@ -7,11 +7,12 @@
 use super::{
     candidate::Candidate,
     evaluate::{self, Configuration},
-    library::GraspLibrary,
+    library::{GraspLibrary, LibraryEntry, PostureMap},
     outcome::{Infeasible, PlanError, UnnaturalHolds},
     params::explanation::{GRASPS, PAIRS_PER_GRASP},
     problem::{self, Problem},
     screen::align,
+    watch::{Phase, Watch, begin, go_on},
 };
 use crate::{
     human::{Human, Standing},
@@ -20,17 +21,27 @@ use crate::{
 
 /// The evidence with the limits of posture and place that unrestricted candidates break; unchanged if the scenario has no such
 /// limits.
-pub fn explained(scenario: &Scenario, library: &GraspLibrary, why: Infeasible) -> Result<Infeasible, PlanError> {
+///
+/// # Errors
+/// When the scenario's person or tool is invalid, and after a stop.
+pub fn explained(
+    scenario: &Scenario,
+    library: &GraspLibrary,
+    why: Infeasible,
+    watch: &dyn Watch,
+) -> Result<Infeasible, PlanError> {
     let person = scenario.human;
     if !person.posture.is_natural() && person.place == StandingPlace::Free {
         return Ok(why);
     }
     let free = Person { posture: PostureLimits::UNRESTRICTED, place: StandingPlace::Free, ..person };
     let relaxed = Scenario { human: free, ..scenario.clone() };
-    let problem = Problem::new(&relaxed, &library.robot)?;
+    let problem = Problem::new(&relaxed, &library.robot, watch)?;
     let limited = Human::new(&person, &scenario.tool)?;
     let mut unnatural = UnnaturalHolds::default();
-    for candidate in feasible(&problem, library) {
+    let postures = problem::posture_map(&relaxed, &problem.human, watch);
+    begin(watch, Phase::Explanation);
+    for candidate in feasible(&problem, library.entries(watch)?, &postures) {
         let configuration = Configuration::new(&problem, &candidate);
         let figures = limited.posture_figures(
             &candidate.work.q_h_rad,
@@ -41,14 +52,18 @@ pub fn explained(scenario: &Scenario, library: &GraspLibrary, why: Infeasible) -
         let elsewhere = !limited.may_stand(&Standing::of(&configuration.placement.x_wb));
         unnatural.count(broken.map(|(constraint, _)| constraint), elsewhere);
     }
+    go_on(watch)?;
     Ok(Infeasible { unnatural: Some(unnatural), ..why })
 }
 
-/// Candidates that a person without limits could work on; stability is not tested.
-fn feasible<'a>(problem: &'a Problem<'_>, library: &'a GraspLibrary) -> impl Iterator<Item = Candidate> + 'a {
-    let postures = problem::posture_map(problem.scenario, &problem.human);
+/// Candidates that a person without limits could work on; stability is not tested. There are no more after a stop.
+fn feasible<'a>(
+    problem: &'a Problem<'_>,
+    entries: &'a [LibraryEntry],
+    postures: &'a PostureMap,
+) -> impl Iterator<Item = Candidate> + 'a {
     let floor_z_m = problem.robot.robot.floor_z_m;
-    let pairs = library.entries().iter().take(GRASPS).flat_map(move |entry| {
+    let pairs = entries.iter().take(GRASPS).take_while(|_| !problem.stop.is_stopped()).flat_map(move |entry| {
         let x_wt = entry.grasp.x_wo * problem.scenario.operation.x_ot;
         let matching = postures.postures(&x_wt, floor_z_m).iter().take(PAIRS_PER_GRASP);
         matching.filter_map(|posture| align(problem, &entry.grasp, &posture.q_h_rad, &posture.x_bt)).collect::<Vec<_>>()

@@ -15,16 +15,21 @@ use super::{
     problem::Problem,
     refine,
     search::{own_postures, screened},
-    stats::{Observer, SearchStats, reborrow},
+    stats::SearchStats,
     warm_starts::WarmStarts,
+    watch::{Phase, Watch, begin, go_on},
 };
 use crate::{
     comfort,
     model::{
         plan::{Comfort, Plan},
         scenario::{ComfortSettings, Optima, PlannerKind, PlannerSettings, ResponseKind, Scenario},
+        stop::Never,
     },
 };
+
+/// The most searches of a front: each share and the scenario's own weights twice.
+const SEARCHES: u64 = 2 * (FRONT_SHARES.len() as u64 + 1);
 
 /// A point of the front.
 #[derive(Clone, Debug)]
@@ -70,27 +75,27 @@ pub fn own_weights(scenario: &Scenario) -> Scenario {
 /// objective, `warm` is made for [`own_weights`].
 ///
 /// # Errors
-/// When the scenario's person or tool is invalid.
+/// When the scenario's person or tool is invalid, and after a stop before anything was found.
 pub fn front(
     scenario: &Scenario,
     library: &GraspLibrary,
     warm: &WarmStarts,
-    mut observer: Option<&mut Observer<'_>>,
+    watch: &dyn Watch,
 ) -> Result<Outcome<Front>, PlanError> {
     let own = own_weights(scenario);
-    let mut sweep = Sweep { library, warm, pool: Vec::new(), infeasible: None };
+    let mut sweep = Sweep { library, warm, watch, searched: 0, pool: Vec::new(), infeasible: None };
     let alone = [[1.0, 0.0], [0.0, 1.0]].map(|weights| weighted(scenario, weights));
     for scenario in &alone {
-        sweep.search(scenario, true, reborrow(&mut observer))?;
+        sweep.search(scenario, true)?;
     }
     let optima = sweep.optima();
     let swept: Vec<_> = FRONT_SHARES.into_iter().map(|share| weighted(scenario, normalised(share, optima))).collect();
     let all = || std::iter::once(&own).chain(&swept);
     for scenario in all().filter(|scenario| !is_alone(scenario)) {
-        sweep.search(scenario, true, reborrow(&mut observer))?;
+        sweep.search(scenario, true)?;
     }
     for scenario in all().rev() {
-        sweep.search(scenario, false, reborrow(&mut observer))?;
+        sweep.search(scenario, false)?;
     }
     let optima = sweep.optima();
     let mut points = Vec::new();
@@ -99,7 +104,10 @@ pub fn front(
     }
     Ok(match points.first().cloned() {
         Some(own) => Outcome::Found(Front { optima, points: non_dominated(points), own }),
-        None => Outcome::Infeasible(sweep.infeasible.unwrap_or_default()),
+        None => {
+            go_on(watch)?;
+            Outcome::Infeasible(sweep.infeasible.unwrap_or_default())
+        }
     })
 }
 
@@ -142,6 +150,9 @@ struct Sweep<'m> {
     library: &'m GraspLibrary,
     /// Warm starts for the scenario's own weights; they serve all weightings.
     warm: &'m WarmStarts,
+    watch: &'m dyn Watch,
+    /// Searches that have begun.
+    searched: u64,
     pool: Vec<Feasible>,
     /// Why the first search without a result found nothing, or why every candidate was rejected.
     infeasible: Option<Infeasible>,
@@ -150,25 +161,26 @@ struct Sweep<'m> {
 impl Sweep<'_> {
     /// Searches for the best grasp of a weighting from the best of the pool and, if `from_scratch`, from screening and warm
     /// starts too.
-    fn search<'s>(
-        &'s mut self,
-        scenario: &'s Scenario,
-        from_scratch: bool,
-        observer: Option<&'s mut Observer<'s>>,
-    ) -> Result<(), PlanError> {
-        let stats = SearchStats::new(scenario.planner.evaluations, observer);
-        let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot)?, stats);
+    fn search(&mut self, scenario: &Scenario, from_scratch: bool) -> Result<(), PlanError> {
+        self.searched += 1;
+        let (watch, phase) = (self.watch, Phase::Weighting { number: self.searched, of: SEARCHES });
+        begin(watch, phase);
+        let stats = SearchStats::new(scenario.planner.evaluations, watch);
+        let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot, watch)?, stats);
         let mut budget = SearchBudget::of(scenario);
         let mut starts = Vec::new();
         if from_scratch {
-            let postures = own_postures(&evaluator.problem.human, scenario);
+            let postures = own_postures(&evaluator.problem.human, scenario, watch);
             // The postures of one comfort alone are others than those of both.
             let own = is_alone(scenario).then(|| {
                 let Evaluator { problem, .. } = &evaluator;
-                natural_entries(scenario, &problem.human, problem.robot, &postures, budget.natural_boards)
+                natural_entries(scenario, &problem.human, problem.robot, &postures, budget.natural_boards, watch)
             });
-            let entries = own.as_deref().unwrap_or_else(|| self.warm.natural_entries(&self.library.robot));
-            starts = screened(&mut evaluator, self.library, &postures, entries, &budget);
+            // The front of what was found so far is the result of a stop.
+            let of_warm = || self.warm.natural_entries(&self.library.robot, watch).unwrap_or_default();
+            let entries = own.as_deref().unwrap_or_else(of_warm);
+            begin(watch, phase);
+            starts = screened(&mut evaluator, self.library, &postures, entries, &budget, watch);
         }
         let screened = starts.len();
         if from_scratch {
@@ -202,7 +214,8 @@ impl Sweep<'_> {
 
     /// The plan of the pool's best candidate that is accepted. If none is, the rejections are why there is no front.
     fn best(&mut self, scenario: &Scenario) -> Result<Option<Plan>, PlanError> {
-        let mut evaluator = Evaluator::new(Problem::new(scenario, &self.library.robot)?, SearchStats::unlimited());
+        let mut evaluator =
+            Evaluator::new(Problem::new(scenario, &self.library.robot, &Never)?, SearchStats::unlimited(&Never));
         while let Some(index) = self.index_of_best(scenario) {
             match assemble(&mut evaluator, &self.pool[index], 0) {
                 Some(plan) => {

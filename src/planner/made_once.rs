@@ -10,12 +10,15 @@ impl<T> MadeOnce<T> {
     ///
     /// It is made outside the lock: a thread of rayon's pool must not wait for what another thread makes in parallel, since rayon may
     /// give it work meanwhile that needs the same part. So threads that ask at once make it several times, and the first one is kept.
-    pub fn get_or_make(&self, make: impl FnOnce() -> T) -> &T {
+    ///
+    /// # Errors
+    /// Those of `make`; then nothing is kept.
+    pub fn get_or_make<E>(&self, make: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
         if let Some(made) = self.0.get() {
-            return made;
+            return Ok(made);
         }
-        let made = make();
-        self.0.get_or_init(|| made)
+        let made = make()?;
+        Ok(self.0.get_or_init(|| made))
     }
 
     /// The part if it exists.

@@ -45,6 +45,7 @@ mod task_family;
 mod transfer;
 mod verify;
 mod warm_starts;
+mod watch;
 
 pub use front::{Front, FrontPoint};
 pub use map_store::{MapKind, MapLabel, MapSource, MapStore};
@@ -53,5 +54,5 @@ pub use place_board::{BOARD_DRAWS, PlacedBoard, place_board};
 pub use planner::{Planner, Search};
 pub use replan::{Motion, Replanned, Replanning};
 pub use select::differ;
-pub use stats::{Observer, Progress};
 pub use verify::verify;
+pub use watch::{Event, Part, Phase, Progress, Watch};

@@ -11,6 +11,7 @@ use super::{
     domain::uniform,
     library::{GraspingRobot, LibraryEntry, Posture, PostureMap, grasps_for, resample},
     params::library::NATURAL_PASS,
+    watch::{Counter, Phase, Watch},
 };
 use crate::{
     human::{Human, standing_pose_w},
@@ -21,35 +22,40 @@ use crate::{
 };
 
 /// Collision-free grasps of `count` boards with the height and tilt that natural postures give them, anywhere in the search
-/// domain; none if the posture is unrestricted or the place is given. They serve all tasks of a family.
+/// domain; none if the posture is unrestricted or the place is given. They serve all tasks of a family. After a stop they are
+/// not complete.
 pub fn natural_entries(
     scenario: &Scenario,
     human: &Human,
     robot: &GraspingRobot,
     postures: &PostureMap,
     count: usize,
+    watch: &dyn Watch,
 ) -> Vec<LibraryEntry> {
     if !human.posture().is_natural() || human.place_is_given() {
         return Vec::new();
     }
     let boards: Vec<_> = boards(scenario, robot, postures, count).into_iter().map(|(x_wo, _)| x_wo).collect();
-    resample(robot, &boards, count, [scenario.planner.seed, NATURAL_PASS])
+    let counter = Counter::new(watch, Phase::NaturalGrasps, count);
+    resample(robot, &boards, count, [scenario.planner.seed, NATURAL_PASS], &counter)
 }
 
 /// Collision-free grasps of `count` boards where postures of a person in the given place have them; none if the place is free.
-/// They serve one task.
+/// They serve one task. After a stop they are not complete.
 pub fn entries_for_place(
     scenario: &Scenario,
     human: &Human,
     robot: &GraspingRobot,
     postures: &PostureMap,
     count: usize,
+    watch: &dyn Watch,
 ) -> Vec<LibraryEntry> {
     if !human.place_is_given() {
         return Vec::new();
     }
     let boards = boards(scenario, robot, postures, count);
-    grasps_for(robot, &boards, [scenario.planner.seed, NATURAL_PASS])
+    let counter = Counter::new(watch, Phase::NaturalGrasps, boards.len());
+    grasps_for(robot, &boards, [scenario.planner.seed, NATURAL_PASS], &counter)
 }
 
 /// The most promising postures with poses of the board in them: at random rolls of the tool where the roll is free and, if the

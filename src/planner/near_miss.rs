@@ -47,11 +47,15 @@ impl NearMisses {
         &self.kept
     }
 
-    /// The candidate that resists the largest multiple of the load; `None` if none was kept, or none resists less than is required.
+    /// The candidate that resists the largest multiple of the load; `None` if none was kept, or none resists less than is
+    /// required. After a stop it is not complete.
     pub fn nearest(&self, problem: &Problem<'_>) -> Option<NearMiss> {
         let mut solver = Solver { problem, limits: problem.stability_limits(), stability: StabilityWorkspace::new() };
         let mut best: Option<(f64, String)> = None;
         for miss in &self.kept {
+            if problem.stop.is_stopped() {
+                return None;
+            }
             let Some((load_factor, limit)) = solver.resisted(miss) else { continue };
             if best.as_ref().is_none_or(|&(most, _)| load_factor > most) {
                 best = Some((load_factor, limit));
@@ -145,7 +149,8 @@ impl Solver<'_> {
     /// True if a grasp resists these loads. Whether the robot stays clear under it is not asked: a
     /// grasp nearby may, and the limit that the message is about is that of stability.
     fn is_stable(&mut self, cases: Result<LoadCases, ContactModelError>) -> bool {
-        assess_cases(self.problem, &mut self.stability, cases).utilisation <= 1.0
+        let is_stopped = self.problem.stop.is_stopped();
+        !is_stopped && assess_cases(self.problem, &mut self.stability, cases).utilisation <= 1.0
     }
 }
 

@@ -39,7 +39,7 @@ pub struct Infeasible {
     pub candidates: u64,
     /// Each constraint that rejected candidates, with their number, in descending order; the sum is `candidates`.
     pub removed: Vec<(&'static str, u64)>,
-    /// True if a limit of evaluations or an observer ended the search.
+    /// True if a limit of evaluations ended the search.
     pub ended_early: bool,
     /// True if a second, larger search with other random numbers found nothing either.
     pub searched_twice: bool,
@@ -248,6 +248,9 @@ pub enum PlanError {
     /// A circle was asked for, and the operation is not a cut along one about the board's centre.
     #[error("the operation is not a cut along a circle about the board's centre")]
     NoCircle,
+    /// The watch stopped the work before anything was found; nothing was kept.
+    #[error("stopped before anything was found")]
+    Stopped,
 }
 
 /// The first constraint that a candidate violates.

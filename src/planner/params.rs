@@ -112,8 +112,8 @@ pub mod second_search {
 pub mod screening {
     /// Pairs that are ranked by the medium point sets, per pair that is evaluated.
     pub const SECOND_RANKING: usize = 3;
-    /// Transferred warm starts that are repaired, per start that is wanted.
-    pub const REPAIRS_PER_START: usize = 3;
+    /// Transferred warm starts that are tried, at most.
+    pub const TRANSFERS: usize = 64;
     /// Starts of one grasp pattern among the transferred warm starts.
     pub const STARTS_PER_PATTERN: usize = 3;
     /// Grasps that are compared by their mean response: each takes seconds where the tool's roll is free.
@@ -183,6 +183,9 @@ pub mod refine {
     pub const CORRECTIONS: usize = 2;
     /// Repair steps after which a violating candidate is given up.
     pub const REPAIR_STEPS: usize = 4;
+    /// Utilisation of stability beyond which it is given up at once: of 332 candidates beyond it that were transferred to the
+    /// operations of the paper's evaluation not one could be repaired, and they took most of the time of all repairs.
+    pub const HOPELESS_UTILISATION: f64 = 2.0;
 
     /// Pairs of bodies farther apart than this beyond their clearance are no constraint of a step, m.
     pub const NEAR_M: f64 = 0.06;

@@ -18,15 +18,17 @@ use super::{
     search::{rank, search},
     second_search::search_again,
     select,
-    stats::{Observer, SearchStats, reborrow},
+    stats::SearchStats,
     task_family::TaskFamily,
     warm_starts::WarmStarts,
+    watch::{Phase, Subordinate, Watch, begin, go_on},
 };
 use crate::{
     model::{
         board::BoardShape,
         plan::Plan,
         scenario::{ComfortSettings, Person, PlannerKind, PlannerSettings, Scenario, StandingPlace},
+        stop::Never,
     },
     robot::Robot,
 };
@@ -74,19 +76,13 @@ impl Planner {
     /// # Errors
     /// When the scenario's person or tool is invalid.
     pub fn prepare(&self, scenario: &Scenario) -> Result<(), PlanError> {
-        let maps = self.maps(scenario);
-        let warm = self.warm_starts(&maps, scenario)?;
-        let is_screened = SearchBudget::of(scenario).warm_rounds.is_none();
-        if is_screened && scenario.planner.kind != PlannerKind::Random {
-            maps.library.entries();
-            warm.natural_entries(&maps.library.robot);
-        }
-        Ok(())
+        self.search(scenario).prepare()
     }
 
     /// Reads or makes the grasp library for the scenario's board, unless it is kept already.
     pub fn prepare_library(&self, scenario: &Scenario) {
-        self.maps(scenario).library.entries();
+        // Nobody stops it, and nothing else is an error.
+        drop(self.maps(scenario).library.entries(&Never));
     }
 
     /// The best plan of a scenario. The same scenario and seed give the same plan, bit for bit.
@@ -103,8 +99,13 @@ impl Planner {
     /// bit for bit. If nothing is found, the known holds stay as they are.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
-    pub fn replan(&mut self, scenario: &Scenario, how: &Replanning) -> Result<Outcome<Replanned>, PlanError> {
+    /// When the scenario's person or tool is invalid, and after a stop before anything was found.
+    pub fn replan(
+        &mut self,
+        scenario: &Scenario,
+        how: &Replanning,
+        watch: &dyn Watch,
+    ) -> Result<Outcome<Replanned>, PlanError> {
         let maps = self.maps(scenario);
         let mut known = self.known.take().filter(|known| known.serve(scenario));
         let with_optima = match known.as_ref().and_then(KnownHolds::optima) {
@@ -112,17 +113,17 @@ impl Planner {
                 let comfort = ComfortSettings { optima: Some(optima), ..scenario.comfort };
                 Outcome::Found(Scenario { comfort, ..scenario.clone() })
             }
-            _ => self.normalised(&maps, scenario)?,
+            _ => self.normalised(&maps, scenario, watch)?,
         };
         let scenario = match with_optima {
             Outcome::Found(scenario) => scenario,
             Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
         };
-        let mut evaluator = evaluator(&scenario, &maps, None)?;
+        let mut evaluator = evaluator(&scenario, &maps, watch)?;
         let found = match &mut known {
             Some(known) => known.replan(&mut evaluator, how),
             None => {
-                let warm = self.warm_starts(&maps, &anywhere(&scenario))?;
+                let warm = self.warm_starts(&maps, &anywhere(&scenario), watch)?;
                 replan::first(&mut evaluator, &warm).map(|(plan, holds)| {
                     known = Some(holds);
                     Replanned { plan, motion: None, searched: false }
@@ -138,15 +139,20 @@ impl Planner {
             return Ok(Outcome::Infeasible(evaluator.stats.into_infeasible()));
         }
         drop(evaluator);
-        self.search_instead(&maps, &scenario)
+        self.search_instead(&maps, &scenario, watch)
     }
 
     /// Plans a scenario as [`Planner::plan`] does, and makes the plan the one that the next replanning starts from.
-    fn search_instead(&mut self, maps: &Maps, scenario: &Scenario) -> Result<Outcome<Replanned>, PlanError> {
-        Ok(match self.plan(scenario)? {
+    fn search_instead(
+        &mut self,
+        maps: &Maps,
+        scenario: &Scenario,
+        watch: &dyn Watch,
+    ) -> Result<Outcome<Replanned>, PlanError> {
+        Ok(match self.search(scenario).watch(watch).plan()? {
             Outcome::Found(plan) => {
                 let before = self.known.take();
-                let after = self.holds_of(maps, scenario, &plan)?;
+                let after = self.holds_of(maps, scenario, &plan, watch)?;
                 let motion = before.zip(after.as_ref()).map(|(before, after)| before.motion_to(after));
                 self.known = after;
                 Outcome::Found(Replanned { plan, motion, searched: true })
@@ -159,24 +165,30 @@ impl Planner {
     /// False, and nothing is changed, if the plan does not satisfy every constraint of the scenario.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
-    pub fn resume(&mut self, scenario: &Scenario, plan: &Plan) -> Result<bool, PlanError> {
+    /// When the scenario's person or tool is invalid, and after a stop before anything was found.
+    pub fn resume(&mut self, scenario: &Scenario, plan: &Plan, watch: &dyn Watch) -> Result<bool, PlanError> {
         let maps = self.maps(scenario);
-        let holds = self.holds_of(&maps, scenario, plan)?;
+        let holds = self.holds_of(&maps, scenario, plan, watch)?;
         let serves = holds.is_some();
         self.known = holds.or_else(|| self.known.take());
         Ok(serves)
     }
 
-    fn holds_of(&self, maps: &Maps, scenario: &Scenario, plan: &Plan) -> Result<Option<KnownHolds>, PlanError> {
-        let warm = self.warm_starts(maps, &anywhere(scenario))?;
-        let mut evaluator = evaluator(scenario, maps, None)?;
+    fn holds_of(
+        &self,
+        maps: &Maps,
+        scenario: &Scenario,
+        plan: &Plan,
+        watch: &dyn Watch,
+    ) -> Result<Option<KnownHolds>, PlanError> {
+        let warm = self.warm_starts(maps, &anywhere(scenario), watch)?;
+        let mut evaluator = evaluator(scenario, maps, watch)?;
         Ok(replan::of_plan(&mut evaluator, plan, &warm))
     }
 
-    /// A search of a scenario, for several plans or with an observer.
+    /// A search of a scenario, for several plans or with a watch.
     pub fn search<'a>(&'a self, scenario: &'a Scenario) -> Search<'a> {
-        Search { planner: self, scenario, observer: None }
+        Search { planner: self, scenario, watch: &Never }
     }
 
     /// The maps for a scenario's shape of board and clearance. They are made outside the lock, so threads never wait for each other; two that
@@ -199,14 +211,14 @@ impl Planner {
     }
 
     /// The warm starts for a scenario's task family; made as [`Planner::maps`].
-    fn warm_starts(&self, maps: &Maps, scenario: &Scenario) -> Result<Arc<WarmStarts>, PlanError> {
+    fn warm_starts(&self, maps: &Maps, scenario: &Scenario, watch: &dyn Watch) -> Result<Arc<WarmStarts>, PlanError> {
         let family = TaskFamily::of(scenario);
         let kept = |warm: &[Arc<WarmStarts>]| warm.iter().find(|warm| warm.family == family).cloned();
         if let Some(warm) = kept(&lock(&maps.warm_starts)) {
             return Ok(warm);
         }
-        let shared = self.with_solved_optima(maps, scenario, family.scenario())?;
-        let made = WarmStarts::new(family.clone(), &shared, &maps.library)?;
+        let shared = self.with_solved_optima(maps, scenario, family.scenario(), watch)?;
+        let made = WarmStarts::new(family.clone(), &shared, &maps.library, watch)?;
         let mut warm_starts = lock(&maps.warm_starts);
         Ok(kept(&warm_starts).unwrap_or_else(|| {
             warm_starts.push(Arc::new(made));
@@ -216,11 +228,17 @@ impl Planner {
 
     /// A family's scenario with the optima of a normalised objective, taken from the warm starts of the two planners of one
     /// comfort: they depend on the family alone.
-    fn with_solved_optima(&self, maps: &Maps, scenario: &Scenario, shared: &Scenario) -> Result<Scenario, PlanError> {
+    fn with_solved_optima(
+        &self,
+        maps: &Maps,
+        scenario: &Scenario,
+        shared: &Scenario,
+        watch: &dyn Watch,
+    ) -> Result<Scenario, PlanError> {
         if !needs_optima(shared) {
             return Ok(shared.clone());
         }
-        let [muscular, peripersonal] = alone(scenario).map(|scenario| self.warm_starts(maps, &scenario));
+        let [muscular, peripersonal] = alone(scenario).map(|scenario| self.warm_starts(maps, &scenario, watch));
         let optima = (
             muscular?.best(|comfort| comfort.muscular_regularised),
             peripersonal?.best(|comfort| comfort.peripersonal_m),
@@ -232,14 +250,17 @@ impl Planner {
     }
 
     /// The scenario with the optima of its normalised objective, which two plans find; unchanged if it does not need them.
-    fn normalised(&self, maps: &Maps, scenario: &Scenario) -> Result<Outcome<Scenario>, PlanError> {
+    fn normalised(&self, maps: &Maps, scenario: &Scenario, watch: &dyn Watch) -> Result<Outcome<Scenario>, PlanError> {
         if !needs_optima(scenario) {
             return Ok(Outcome::Found(scenario.clone()));
         }
         let mut optima = [0.0; 2];
         for (scenario, optimum) in alone(scenario).iter().zip(&mut optima) {
-            let warm = self.warm_starts(maps, scenario)?;
-            match best_plan(scenario, maps, &warm, true, None)? {
+            let warm = self.warm_starts(maps, scenario, watch)?;
+            let found = best_plan(scenario, maps, &warm, true, &Subordinate(watch))?;
+            // The best so far is no optimum.
+            go_on(watch)?;
+            match found {
                 // One of the weights is 1 and the other 0.
                 Outcome::Found(plan) => *optimum = plan.comfort.map_or(0.0, |comfort| comfort.objective),
                 Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
@@ -260,52 +281,65 @@ fn best_plan<'a>(
     maps: &'a Maps,
     warm: &WarmStarts,
     twice: bool,
-    observer: Option<&'a mut Observer<'a>>,
+    watch: &'a dyn Watch,
 ) -> Result<Outcome<Plan>, PlanError> {
-    let mut evaluator = evaluator(scenario, maps, observer)?;
+    let mut evaluator = evaluator(scenario, maps, watch)?;
     let budget = SearchBudget::of(scenario);
     let best = |evaluator: &mut Evaluator<'_>, found: Vec<Feasible>| -> Option<Plan> {
         found.iter().find_map(|found| verified(evaluator, found))
     };
-    let found = search(&mut evaluator, &maps.library, warm, &budget);
+    let found = search(&mut evaluator, &maps.library, warm, &budget, watch);
     if let Some(plan) = best(&mut evaluator, found) {
         return Ok(Outcome::Found(plan));
     }
-    let again = if twice { second_search(&mut evaluator, maps) } else { None };
+    go_on(watch)?;
+    let again = if twice { second_search(&mut evaluator, maps, watch)? } else { None };
     let searched_twice = again.is_some();
     match again.and_then(|found| best(&mut evaluator, found)) {
         Some(plan) => Ok(Outcome::Found(plan)),
-        None => Ok(Outcome::Infeasible(evidence(evaluator, maps, searched_twice)?)),
+        None => Ok(Outcome::Infeasible(evidence(evaluator, maps, searched_twice, watch)?)),
     }
 }
 
 /// The candidates of the second search; `None` without one: the search has ended early, or the planner is the random one, which
 /// draws until it finds something.
-fn second_search(evaluator: &mut Evaluator<'_>, maps: &Maps) -> Option<Vec<Feasible>> {
+fn second_search(
+    evaluator: &mut Evaluator<'_>,
+    maps: &Maps,
+    watch: &dyn Watch,
+) -> Result<Option<Vec<Feasible>>, PlanError> {
     if evaluator.stats.is_exhausted() || evaluator.problem.scenario.planner.kind == PlannerKind::Random {
-        return None;
+        return Ok(None);
     }
-    let found = search_again(evaluator, &maps.library);
-    Some(rank(evaluator, found))
+    let found = search_again(evaluator, &maps.library, watch)?;
+    Ok(Some(rank(evaluator, found)))
 }
 
 /// Why a search found nothing.
-fn evidence(evaluator: Evaluator<'_>, maps: &Maps, searched_twice: bool) -> Result<Infeasible, PlanError> {
+fn evidence(
+    evaluator: Evaluator<'_>,
+    maps: &Maps,
+    searched_twice: bool,
+    watch: &dyn Watch,
+) -> Result<Infeasible, PlanError> {
+    go_on(watch)?;
+    begin(watch, Phase::Explanation);
     let Evaluator { problem, stats, near_misses, .. } = evaluator;
     let nearest = near_misses.nearest(&problem).map(Box::new);
     let library = &maps.library;
-    let library = library.is_empty().then(|| library.failures().evidence(&library.robot.robot));
+    let library = match library.is_empty(watch)? {
+        true => Some(library.failures(watch)?.evidence(&library.robot.robot)),
+        false => None,
+    };
     let why = Infeasible { searched_twice, nearest, library, ..stats.into_infeasible() };
-    explained(problem.scenario, &maps.library, why)
+    explained(problem.scenario, &maps.library, why, watch)
 }
 
-fn evaluator<'a>(
-    scenario: &'a Scenario,
-    maps: &'a Maps,
-    observer: Option<&'a mut Observer<'a>>,
-) -> Result<Evaluator<'a>, PlanError> {
-    let stats = SearchStats::new(scenario.planner.evaluations, observer);
-    Ok(Evaluator::new(Problem::new(scenario, &maps.library.robot)?, stats))
+fn evaluator<'a>(scenario: &'a Scenario, maps: &'a Maps, watch: &'a dyn Watch) -> Result<Evaluator<'a>, PlanError> {
+    let stats = SearchStats::new(scenario.planner.evaluations, watch);
+    let problem = Problem::new(scenario, &maps.library.robot, watch)?;
+    begin(watch, Phase::Search);
+    Ok(Evaluator::new(problem, stats))
 }
 
 /// A list stays valid if a thread panics: it only grows by whole entries.
@@ -318,26 +352,42 @@ fn lock<T>(list: &Mutex<T>) -> MutexGuard<'_, T> {
 pub struct Search<'a> {
     planner: &'a Planner,
     scenario: &'a Scenario,
-    observer: Option<&'a mut Observer<'a>>,
+    watch: &'a dyn Watch,
 }
 
 impl<'a> Search<'a> {
-    /// Reports progress to an observer, which may stop the search; the best candidate so far is the result then. The searches
-    /// for the optima of a normalised objective and the maps are not observed.
-    pub fn observer(self, observer: &'a mut Observer<'a>) -> Self {
-        Self { observer: Some(observer), ..self }
+    /// Tells a watch of all parts of the work, and stops when it says so: with the best that was found so far, checked like
+    /// any other, or else with [`PlanError::Stopped`]. No map is kept that was not finished.
+    pub fn watch(self, watch: &'a dyn Watch) -> Self {
+        Self { watch, ..self }
+    }
+
+    /// Makes the maps that a plan needs, unless they are kept already.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn prepare(self) -> Result<(), PlanError> {
+        let Self { planner, scenario, watch } = self;
+        let maps = planner.maps(scenario);
+        let warm = planner.warm_starts(&maps, scenario, watch)?;
+        let is_screened = SearchBudget::of(scenario).warm_rounds.is_none();
+        if is_screened && scenario.planner.kind != PlannerKind::Random {
+            maps.library.entries(watch)?;
+            warm.natural_entries(&maps.library.robot, watch)?;
+        }
+        Ok(())
     }
 
     /// The best plan.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
+    /// When the scenario's person or tool is invalid, and after a stop before anything was found.
     pub fn plan(self) -> Result<Outcome<Plan>, PlanError> {
-        let Self { planner, scenario, mut observer } = self;
+        let Self { planner, scenario, watch } = self;
         let maps = planner.maps(scenario);
-        let warm = planner.warm_starts(&maps, scenario)?;
-        match planner.normalised(&maps, scenario)? {
-            Outcome::Found(scenario) => best_plan(&scenario, &maps, &warm, true, reborrow(&mut observer)),
+        let warm = planner.warm_starts(&maps, scenario, watch)?;
+        match planner.normalised(&maps, scenario, watch)? {
+            Outcome::Found(scenario) => best_plan(&scenario, &maps, &warm, true, watch),
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }
     }
@@ -346,24 +396,25 @@ impl<'a> Search<'a> {
     /// wanted. The search is that of [`Search::plan`] from more starts.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
+    /// When the scenario's person or tool is invalid, and after a stop before anything was found.
     pub fn top(self, wanted: usize) -> Result<Outcome<Vec<Plan>>, PlanError> {
-        let Self { planner, scenario, mut observer } = self;
+        let Self { planner, scenario, watch } = self;
         let maps = planner.maps(scenario);
-        match planner.normalised(&maps, scenario)? {
+        match planner.normalised(&maps, scenario, watch)? {
             Outcome::Found(scenario) => {
-                let warm = planner.warm_starts(&maps, &scenario)?;
-                let mut evaluator = evaluator(&scenario, &maps, reborrow(&mut observer))?;
-                let plans = select::top(&mut evaluator, &maps.library, &warm, wanted);
+                let warm = planner.warm_starts(&maps, &scenario, watch)?;
+                let mut evaluator = evaluator(&scenario, &maps, watch)?;
+                let plans = select::top(&mut evaluator, &maps.library, &warm, wanted, watch);
                 if !plans.is_empty() {
                     return Ok(Outcome::Found(plans));
                 }
-                let again = second_search(&mut evaluator, &maps);
+                go_on(watch)?;
+                let again = second_search(&mut evaluator, &maps, watch)?;
                 let searched_twice = again.is_some();
                 let plans =
                     again.map_or_else(Vec::new, |found| select::best_that_differ(&mut evaluator, found, wanted));
                 if plans.is_empty() {
-                    return Ok(Outcome::Infeasible(evidence(evaluator, &maps, searched_twice)?));
+                    return Ok(Outcome::Infeasible(evidence(evaluator, &maps, searched_twice, watch)?));
                 }
                 Ok(Outcome::Found(plans))
             }
@@ -375,17 +426,19 @@ impl<'a> Search<'a> {
     /// evaluations applies to each weighting. A stopped search gives the front of what was found.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
+    /// When the scenario's person or tool is invalid, and after a stop before anything was found.
     pub fn front(self) -> Result<Outcome<Front>, PlanError> {
-        let Self { planner, scenario, mut observer } = self;
+        let Self { planner, scenario, watch } = self;
         let maps = planner.maps(scenario);
         let settings = PlannerSettings { kind: PlannerKind::Comfort, ..scenario.planner.clone() };
-        match planner.normalised(&maps, &Scenario { planner: settings, ..scenario.clone() })? {
+        match planner.normalised(&maps, &Scenario { planner: settings, ..scenario.clone() }, watch)? {
             Outcome::Found(scenario) => {
-                let warm = planner.warm_starts(&maps, &front::own_weights(&scenario))?;
-                match front::front(&scenario, &maps.library, &warm, reborrow(&mut observer))? {
+                let warm = planner.warm_starts(&maps, &front::own_weights(&scenario), watch)?;
+                match front::front(&scenario, &maps.library, &warm, watch)? {
                     Outcome::Found(front) => Ok(Outcome::Found(front)),
-                    Outcome::Infeasible(why) => Ok(Outcome::Infeasible(explained(&scenario, &maps.library, why)?)),
+                    Outcome::Infeasible(why) => {
+                        Ok(Outcome::Infeasible(explained(&scenario, &maps.library, why, watch)?))
+                    }
                 }
             }
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
@@ -396,23 +449,34 @@ impl<'a> Search<'a> {
     /// grasp, and a plan for every point by itself. A stopped search gives what was found.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid, or its operation is not a cut along a circle.
+    /// When the scenario's person or tool is invalid, or its operation is not a cut along a circle, and after a stop before
+    /// anything was found.
     pub fn circle(self) -> Result<Outcome<CirclePlans>, PlanError> {
-        let Self { planner, scenario, mut observer } = self;
+        let Self { planner, scenario, watch } = self;
         let maps = planner.maps(scenario);
         // The optima of the scenario's own cut serve for all points, and make them comparable.
-        let scenario = match planner.normalised(&maps, scenario)? {
+        let scenario = match planner.normalised(&maps, scenario, watch)? {
             Outcome::Found(scenario) => scenario,
             Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
         };
         let points = path::points(&scenario).ok_or(PlanError::NoCircle)?;
-        let continuous = path::continuous(&points, &maps.library, reborrow(&mut observer))?;
-        let mut separate = Vec::with_capacity(points.len());
-        for point in &points {
-            let warm = planner.warm_starts(&maps, point)?;
+        let continuous = path::continuous(&points, &maps.library, watch)?;
+        let plan = |(index, point): (usize, &Scenario)| {
+            begin(watch, Phase::Point { number: index as u64 + 1, of: points.len() as u64 });
+            let warm = planner.warm_starts(&maps, point, watch)?;
             // A point of a circle has neighbours that are searched too.
-            separate.push(best_plan(point, &maps, &warm, false, reborrow(&mut observer))?.found());
+            best_plan(point, &maps, &warm, false, watch)
+        };
+        let found = |planned| match planned {
+            Ok(outcome) => Ok(Outcome::found(outcome)),
+            Err(PlanError::Stopped) => Ok(None),
+            Err(error) => Err(error),
+        };
+        let separate = points.iter().enumerate().map(plan).map(found).collect::<Result<Vec<_>, _>>()?;
+        let plans = CirclePlans { continuous, separate };
+        if plans.is_empty() {
+            go_on(watch)?;
         }
-        Ok(Outcome::Found(CirclePlans { continuous, separate }))
+        Ok(Outcome::Found(plans))
     }
 }

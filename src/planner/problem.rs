@@ -8,6 +8,7 @@ use crate::{
         frames::Pose,
         operation::Operation,
         scenario::{ComfortSettings, Limits, Scenario, StabilityKind},
+        stop::Stop,
         wrench::Wrench,
     },
 };
@@ -16,6 +17,7 @@ use super::{
     library::{ArmGrasp, GraspingRobot, PostureLoad, PostureMap},
     outcome::PlanError,
     params::{COMPLIANT_SAFETY_FACTOR, SearchBudget, refine::GRASP},
+    watch::Watch,
 };
 
 /// Rounding of a joint at the end of its motion, rad or m.
@@ -45,6 +47,8 @@ pub struct Problem<'a> {
     pub reachable: Option<Reachable>,
     /// Scales of the variables of a grasp, see [`super::params::refine::GRASP`]; zero if the grasps are to stay as they are.
     pub grasp_scales: [f64; 3],
+    /// Ends what takes long.
+    pub stop: &'a dyn Stop,
 }
 
 impl<'a> Problem<'a> {
@@ -52,7 +56,7 @@ impl<'a> Problem<'a> {
     ///
     /// # Errors
     /// When the scenario's person or tool is invalid.
-    pub fn new(scenario: &'a Scenario, robot: &'a GraspingRobot) -> Result<Self, PlanError> {
+    pub fn new(scenario: &'a Scenario, robot: &'a GraspingRobot, stop: &'a dyn Stop) -> Result<Self, PlanError> {
         Ok(Self {
             scenario,
             robot,
@@ -62,6 +66,7 @@ impl<'a> Problem<'a> {
             normal_t: scenario.operation.face_normal_t(scenario.object.size_m[2]),
             reachable: None,
             grasp_scales: GRASP,
+            stop,
         })
     }
 
@@ -106,13 +111,13 @@ pub fn wrench_t(operation: &Operation) -> Wrench {
     Wrench::new(to_tool * operation.wrench_o.force_n, to_tool * operation.wrench_o.moment_nm)
 }
 
-/// The posture map of a scenario's person.
-pub fn posture_map(scenario: &Scenario, human: &Human) -> PostureMap {
-    posture_map_of(scenario, human, &SearchBudget::of(scenario))
+/// The posture map of a scenario's person; after a stop it is not complete.
+pub fn posture_map(scenario: &Scenario, human: &Human, watch: &dyn Watch) -> PostureMap {
+    posture_map_of(scenario, human, &SearchBudget::of(scenario), watch)
 }
 
 /// The posture map of a scenario's person, as large as a budget says.
-pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget) -> PostureMap {
+pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget, watch: &dyn Watch) -> PostureMap {
     let operation = &scenario.operation;
     PostureMap::new(
         human,
@@ -124,5 +129,6 @@ pub fn posture_map_of(scenario: &Scenario, human: &Human, budget: &SearchBudget)
         &scenario.planner.kind.objective(scenario.comfort),
         budget,
         scenario.planner.seed,
+        watch,
     )
 }

@@ -82,7 +82,11 @@ fn with_response(
     let problem = &evaluator.problem;
     let points_w = comfort::robot_points_w(&problem.robot.robot, link_poses);
     let query = evaluate::response_query(problem, problem.scenario.operation, link_poses, grasp.x_wo, &points_w);
-    let response = comfort::best_response(&query).ok_or(Rejection::PersonReach)?;
+    let response = comfort::best_response(&query);
+    if problem.stop.is_stopped() {
+        return Err(Rejection::NotEvaluated);
+    }
+    let response = response.ok_or(Rejection::PersonReach)?;
     let ahead = response.x_wb.rotation * Vector3::x();
     candidate.work = WorkPose {
         q_h_rad: response.q_rad,

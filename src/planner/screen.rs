@@ -69,6 +69,9 @@ pub fn screen<'e>(
     }
     keep_best(&mut pairs, SECOND_RANKING * budget.evaluated_pairs);
     for Pair { entry, posture, estimate: estimated } in &mut pairs {
+        if problem.stop.is_stopped() {
+            break;
+        }
         let x_wb = Alignment::new(problem, &entry.grasp, &posture.x_bt).x_wb;
         *estimated = estimate(problem, &x_wb, posture, &entry.robot_points_w, &posture.medium_points_b);
     }

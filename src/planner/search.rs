@@ -12,6 +12,7 @@ use super::{
     random, refine, screen,
     task_family::TaskFamily,
     warm_starts::WarmStarts,
+    watch::Watch,
 };
 use crate::{
     comfort,
@@ -25,6 +26,7 @@ pub fn search(
     library: &GraspLibrary,
     warm: &WarmStarts,
     budget: &SearchBudget,
+    watch: &dyn Watch,
 ) -> Vec<Feasible> {
     let PlannerSettings { kind, seed, .. } = evaluator.problem.scenario.planner;
     let found = if kind == PlannerKind::Random {
@@ -34,8 +36,10 @@ pub fn search(
         match &budget.warm_rounds {
             Some(rounds) if !starts.is_empty() => refine::refine(evaluator, starts, rounds),
             _ => {
-                let natural = warm.natural_entries(&library.robot);
-                starts.extend(screened(evaluator, library, warm.postures(), natural, budget));
+                // Without them the search has been stopped: it goes on with what it has.
+                if let (Ok(postures), Ok(natural)) = (warm.postures(watch), warm.natural_entries(&library.robot, watch)) {
+                    starts.extend(screened(evaluator, library, postures, natural, budget, watch));
+                }
                 refine::refine(evaluator, starts, &budget.rounds)
             }
         }
@@ -50,19 +54,22 @@ pub fn screened(
     postures: &PostureMap,
     natural: &[LibraryEntry],
     budget: &SearchBudget,
+    watch: &dyn Watch,
 ) -> Vec<Feasible> {
     let Problem { scenario, human, robot, .. } = &evaluator.problem;
-    let of_place = entries_for_place(scenario, human, robot, postures, budget.natural_boards);
-    let entries: Vec<_> = library.entries().iter().chain(natural).chain(&of_place).collect();
+    // After a stop there is no library.
+    let (Ok(entries), Ok(failures)) = (library.entries(watch), library.failures(watch)) else { return Vec::new() };
+    let of_place = entries_for_place(scenario, human, robot, postures, budget.natural_boards, watch);
+    let entries: Vec<_> = entries.iter().chain(natural).chain(&of_place).collect();
     if entries.is_empty() {
-        evaluator.stats.count_failed_draws(library.failures().rejections());
+        evaluator.stats.count_failed_draws(failures.rejections());
     }
     screen::screen(evaluator, entries.into_iter(), postures, budget)
 }
 
 /// The posture map of the scenario's task family.
-pub fn own_postures(human: &Human, scenario: &Scenario) -> PostureMap {
-    problem::posture_map(TaskFamily::of(scenario).scenario(), human)
+pub fn own_postures(human: &Human, scenario: &Scenario, watch: &dyn Watch) -> PostureMap {
+    problem::posture_map(TaskFamily::of(scenario).scenario(), human, watch)
 }
 
 /// Ranks candidates by the person's response that the scenario asks for, the best first.
@@ -80,11 +87,14 @@ pub fn rank(evaluator: &mut Evaluator<'_>, found: Vec<Feasible>) -> Vec<Feasible
         .take(MEAN_RESPONSES)
         .filter_map(|mut found| {
             let Some(mean) = evaluate::mean_response(problem, &found) else {
-                stats.reject(Rejection::PersonReach);
+                // After a stop the mean is not known.
+                let is_stopped = problem.stop.is_stopped();
+                stats.reject(if is_stopped { Rejection::NotEvaluated } else { Rejection::PersonReach });
                 return None;
             };
             comfort::use_mean_response(&mut found.comfort, mean, &problem.objective);
             found.objective = found.comfort.objective;
+            stats.tell_found();
             Some(found)
         })
         .collect();

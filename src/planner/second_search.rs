@@ -10,25 +10,32 @@ use super::{
     library::GraspLibrary,
     natural_boards::{entries_for_place, natural_entries},
     near_miss::Miss,
+    outcome::PlanError,
     params::{
         SearchBudget,
         second_search::{NEARLY_STABLE, REPAIR_ROUNDS, REPAIRED, SEED_STEP},
     },
     problem::{Problem, posture_map_of},
     refine, screen,
+    watch::{Phase, Watch, begin},
 };
 use crate::model::scenario::{PlannerSettings, Scenario};
 
 /// The candidates that the second search finds, the best first. It uses the library's further grasps too.
-pub fn search_again(evaluator: &mut Evaluator<'_>, library: &GraspLibrary) -> Vec<Feasible> {
+pub fn search_again(
+    evaluator: &mut Evaluator<'_>,
+    library: &GraspLibrary,
+    watch: &dyn Watch,
+) -> Result<Vec<Feasible>, PlanError> {
     let budget = SearchBudget::of_second_search();
     let Problem { scenario, human, robot, .. } = &evaluator.problem;
     let seed = scenario.planner.seed.wrapping_add(SEED_STEP);
     let reseeded = Scenario { planner: PlannerSettings { seed, ..scenario.planner.clone() }, ..(*scenario).clone() };
-    let postures = posture_map_of(&reseeded, human, &budget);
-    let natural = natural_entries(&reseeded, human, robot, &postures, budget.natural_boards);
-    let of_place = entries_for_place(&reseeded, human, robot, &postures, budget.natural_boards);
-    let [first, further] = [library.entries(), library.further_entries()];
+    let [first, further] = [library.entries(watch)?, library.further_entries(watch)?];
+    let postures = posture_map_of(&reseeded, human, &budget, watch);
+    let natural = natural_entries(&reseeded, human, robot, &postures, budget.natural_boards, watch);
+    let of_place = entries_for_place(&reseeded, human, robot, &postures, budget.natural_boards, watch);
+    begin(watch, Phase::SecondSearch);
     let entries: Vec<_> = first.iter().chain(further).chain(&natural).chain(&of_place).collect();
     let grasps: Vec<_> = entries.iter().map(|entry| &entry.grasp).collect();
     let mut ranked: Vec<_> = utilisations(&evaluator.problem, &grasps).into_iter().zip(entries).collect();
@@ -41,7 +48,7 @@ pub fn search_again(evaluator: &mut Evaluator<'_>, library: &GraspLibrary) -> Ve
         starts = screen::screen(evaluator, nearly, &postures, &budget);
         starts.extend(repaired(evaluator));
     }
-    refine::refine(evaluator, starts, &budget.rounds)
+    Ok(refine::refine(evaluator, starts, &budget.rounds))
 }
 
 /// Feasible candidates near the nearest misses. What a failed repair comes to is a nearest miss itself and is repaired in the next

@@ -13,6 +13,7 @@ use super::{
     refine,
     search::search,
     warm_starts::WarmStarts,
+    watch::Watch,
 };
 use crate::model::{
     grasp::grasped_edge,
@@ -43,14 +44,20 @@ pub fn differ(one: &Plan, other: &Plan) -> bool {
 
 /// The best `wanted` plans that [`differ`] from one another, perhaps fewer than wanted. The search is that of one
 /// plan with more starts; the best grasps are also tried with other configurations of the arms. Every plan is checked.
-pub fn top(evaluator: &mut Evaluator<'_>, library: &GraspLibrary, warm: &WarmStarts, wanted: usize) -> Vec<Plan> {
+pub fn top(
+    evaluator: &mut Evaluator<'_>,
+    library: &GraspLibrary,
+    warm: &WarmStarts,
+    wanted: usize,
+    watch: &dyn Watch,
+) -> Vec<Plan> {
     let budget = SearchBudget::of(evaluator.problem.scenario);
     let starts = budget.starts.max(STARTS_PER_PLAN.saturating_mul(wanted));
     let mut budget = SearchBudget { starts, warm_rounds: None, ..budget };
     for round in &mut budget.rounds {
         round.candidates = round.candidates.max(2 * wanted) + budget.warm_starts;
     }
-    let found = search(evaluator, library, warm, &budget);
+    let found = search(evaluator, library, warm, &budget, watch);
     best_that_differ(evaluator, found, wanted)
 }
 
@@ -78,11 +85,12 @@ pub fn best_that_differ(evaluator: &mut Evaluator<'_>, found: Vec<Feasible>, wan
 /// The candidates, the best `wanted` of them also with other configurations of the arms, refined; the best first.
 fn with_other_configurations(evaluator: &mut Evaluator<'_>, found: Vec<Feasible>, wanted: usize) -> Vec<Feasible> {
     // The mean response ranks candidates by another objective than refinement's.
-    if evaluator.problem.objective.person == ResponseKind::Mean {
+    if evaluator.problem.objective.person == ResponseKind::Mean || evaluator.problem.stop.is_stopped() {
         return found;
     }
+    let stop = evaluator.problem.stop;
     let other = |found: &Feasible| other_configurations(evaluator, found, JOINT_APART_RAD);
-    let others: Vec<_> = found.iter().take(wanted).flat_map(other).collect();
+    let others: Vec<_> = found.iter().take(wanted).take_while(|_| !stop.is_stopped()).flat_map(other).collect();
     let round = RefinementRound { candidates: others.len(), steps: CONFIGURATION_STEPS };
     let mut all = found;
     all.extend(refine::refine(evaluator, others, &[round]));

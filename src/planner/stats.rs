@@ -1,60 +1,43 @@
-//! Search statistics, the limit of evaluations, and the observer.
+//! Search statistics, and the limit of evaluations.
 //!
-//! A search counts its candidates and what rejected them. It reports every evaluated candidate and every improvement to
-//! its observer, which may stop it; nothing is evaluated after that and the best candidate so far is the result. The search
-//! knows no clock. An observer that never stops the search does not change its result.
+//! A search counts its candidates and what rejected them. It tells its watch of every evaluated candidate and every
+//! improvement; nothing is evaluated after a stop, and the best candidate so far is the result.
 
-use std::{collections::BTreeMap, ops::ControlFlow};
+use std::collections::BTreeMap;
 
-use super::outcome::{Infeasible, Rejection};
+use super::{
+    outcome::{Infeasible, Rejection},
+    watch::{Event, Progress, Watch},
+};
 use crate::model::plan::Comfort;
-
-/// What a search reports to its observer.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress<'a> {
-    /// Candidates so far.
-    pub evaluations: u64,
-    /// The comfort of a feasible candidate that is better than all before; `None` for any other candidate.
-    pub better: Option<&'a Comfort>,
-}
-
-/// Called with the progress of a search; `Break` stops the search.
-pub type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
-
-/// A shorter borrow of an observer.
-pub fn reborrow<'s>(observer: &'s mut Option<&mut Observer<'_>>) -> Option<&'s mut Observer<'s>> {
-    match observer {
-        Some(observer) => Some(&mut **observer),
-        None => None,
-    }
-}
 
 /// The statistics of one search.
 pub struct SearchStats<'a> {
     candidates: u64,
     limit: u64,
-    stopped: bool,
     best_objective: f64,
     removed: BTreeMap<Rejection, u64>,
-    observer: Option<&'a mut Observer<'a>>,
+    watch: &'a dyn Watch,
+    /// True if the watch is told of candidates.
+    tells: bool,
 }
 
 impl<'a> SearchStats<'a> {
-    /// Statistics of a search of at most `limit` candidates, with an observer.
-    pub fn new(limit: Option<u64>, observer: Option<&'a mut Observer<'a>>) -> Self {
+    /// Statistics of a search of at most `limit` candidates, of which the watch is told.
+    pub fn new(limit: Option<u64>, watch: &'a dyn Watch) -> Self {
         Self {
             candidates: 0,
             limit: limit.unwrap_or(u64::MAX),
-            stopped: false,
             best_objective: f64::NEG_INFINITY,
             removed: BTreeMap::new(),
-            observer,
+            watch,
+            tells: true,
         }
     }
 
-    /// Statistics without limit or observer.
-    pub fn unlimited() -> Self {
-        Self::new(None, None)
+    /// Statistics without a limit; the watch may stop the search, but is not told of its candidates.
+    pub fn unlimited(watch: &'a dyn Watch) -> Self {
+        Self { tells: false, ..Self::new(None, watch) }
     }
 
     /// Number of candidates; those beyond the limit were not evaluated and do not count.
@@ -64,7 +47,7 @@ impl<'a> SearchStats<'a> {
 
     /// True if no further candidate may be drawn.
     pub fn is_exhausted(&self) -> bool {
-        self.stopped || self.candidates >= self.limit
+        self.candidates >= self.limit || self.watch.is_stopped()
     }
 
     /// Counts a candidate.
@@ -87,20 +70,20 @@ impl<'a> SearchStats<'a> {
         }
     }
 
-    /// True if the candidate counted last may be evaluated; reports it to the observer.
+    /// True if the candidate counted last may be evaluated; the watch is told of it.
     pub fn may_evaluate(&mut self) -> bool {
-        if self.stopped || self.candidates > self.limit {
+        if self.candidates > self.limit || self.watch.is_stopped() {
             return false;
         }
-        self.report(None);
-        !self.stopped
+        self.tell(None);
+        !self.watch.is_stopped()
     }
 
-    /// Reports a feasible candidate if it is the best so far.
+    /// Tells of a feasible candidate if it is the best so far.
     pub fn found(&mut self, comfort: &Comfort) {
         if comfort.objective > self.best_objective {
             self.best_objective = comfort.objective;
-            self.report(Some(comfort));
+            self.tell(Some(comfort));
         }
     }
 
@@ -114,12 +97,16 @@ impl<'a> SearchStats<'a> {
         Infeasible { candidates, removed, ended_early, ..Infeasible::default() }
     }
 
-    fn report(&mut self, better: Option<&Comfort>) {
-        let progress = Progress { evaluations: self.candidates(), better };
-        if let Some(observer) = &mut self.observer
-            && observer(&progress).is_break()
-        {
-            self.stopped = true;
+    fn tell(&self, better: Option<&Comfort>) {
+        if self.tells {
+            self.watch.tell(&Event::Search(Progress { evaluations: self.candidates(), better }));
+        }
+    }
+
+    /// Tells that a stopped search would now return something.
+    pub fn tell_found(&self) {
+        if self.tells {
+            self.watch.tell(&Event::Found);
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::{
     model::{
         plan::{Comfort, LeastDistance, MeanComfort, Plan},
         scenario::{ResponseKind, Scenario, StabilityKind},
+        stop::Never,
     },
     robot::Robot,
     statics::{LoadCases, Prediction, StabilityWorkspace},
@@ -152,6 +153,7 @@ fn mean_response(
         floor_z_m: checked.robot().floor_z_m,
         robot_points_w,
         scene: checked.scene(),
+        stop: &Never,
     })
 }
 

@@ -19,7 +19,7 @@ use super::{
     outcome::{PlanError, Rejection},
     params::{
         SearchBudget, WarmStartBudget, per_pattern,
-        screening::STARTS_PER_PATTERN,
+        screening::{STARTS_PER_PATTERN, TRANSFERS},
         warm_starts::{KEPT, KEPT_PER_PATTERN, SAME_OPTIMUM},
     },
     problem::{self, Problem},
@@ -28,6 +28,7 @@ use super::{
     stats::SearchStats,
     task_family::{TaskFamily, solved_tasks},
     transfer::Solution,
+    watch::{Counter, Phase, Watch, go_on},
 };
 use crate::{
     comfort,
@@ -61,8 +62,13 @@ impl WarmStarts {
     /// optima of a normalised objective filled in.
     ///
     /// # Errors
-    /// When the scenario's person or tool is invalid.
-    pub fn new(family: TaskFamily, shared: &Scenario, library: &GraspLibrary) -> Result<Self, PlanError> {
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn new(
+        family: TaskFamily,
+        shared: &Scenario,
+        library: &GraspLibrary,
+        watch: &dyn Watch,
+    ) -> Result<Self, PlanError> {
         let mut warm = Self {
             family,
             shared: shared.clone(),
@@ -76,27 +82,42 @@ impl WarmStarts {
         let tasks = solved_tasks(shared);
         let source = library.source(MapKind::WarmStarts, Some(shared));
         let kept: Option<KeptSolutions> = map_store::read(library.store(), &source);
-        match kept.map(|kept| solutions_of_kept(kept, &tasks, &library.robot)).transpose()?.flatten() {
+        match kept.map(|kept| solutions_of_kept(kept, &tasks, &library.robot, watch)).transpose()?.flatten() {
             Some(solutions) => warm.solutions = solutions,
             None => {
-                warm.solve(&tasks, library, &budget, shared.planner.seed)?;
+                warm.solve(&tasks, library, &budget, shared.planner.seed, watch)?;
+                go_on(watch)?;
                 map_store::write(library.store(), &source, &warm.kept());
             }
         }
+        go_on(watch)?;
         Ok(warm)
     }
 
     /// The posture map of the family.
-    pub fn postures(&self) -> &PostureMap {
-        self.postures.get_or_make(|| problem::posture_map(&self.shared, &self.human))
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn postures(&self, watch: &dyn Watch) -> Result<&PostureMap, PlanError> {
+        self.postures.get_or_make(|| {
+            let postures = problem::posture_map(&self.shared, &self.human, watch);
+            go_on(watch)?;
+            Ok(postures)
+        })
     }
 
     /// Grasps of the boards that natural postures ask for.
-    pub fn natural_entries(&self, robot: &GraspingRobot) -> &[LibraryEntry] {
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn natural_entries(&self, robot: &GraspingRobot, watch: &dyn Watch) -> Result<&[LibraryEntry], PlanError> {
         self.natural_entries.get_or_make(|| {
             let count = SearchBudget::of(&self.shared).natural_boards;
-            natural_entries(&self.shared, &self.human, robot, self.postures(), count)
-        })
+            let entries =
+                natural_entries(&self.shared, &self.human, robot, self.postures(watch)?, count, watch);
+            go_on(watch)?;
+            Ok(entries)
+        }).map(Vec::as_slice)
     }
 
     /// The solutions as they are kept.
@@ -117,21 +138,27 @@ impl WarmStarts {
         library: &GraspLibrary,
         budget: &WarmStartBudget,
         seed: u64,
+        watch: &dyn Watch,
     ) -> Result<(), PlanError> {
-        let of_place = self.entries_for_place(tasks, library, budget.later.natural_boards)?;
+        let of_place = self.entries_for_place(tasks, library, budget.later.natural_boards, watch)?;
         for pass in 0..budget.passes {
+            go_on(watch)?;
+            let counter = Counter::new(watch, Phase::WarmStarts { pass: pass + 1, passes: budget.passes }, tasks.len());
             let resampled;
             let (entries, natural, task_budget) = if pass == 0 {
-                (library.entries(), self.natural_entries(&library.robot), &budget.first)
+                (library.entries(watch)?, self.natural_entries(&library.robot, watch)?, &budget.first)
             } else {
                 let boards: Vec<_> = self.solutions().map(|solution| solution.x_wo).collect();
-                resampled = resample(&library.robot, &boards, budget.resampled_boards, [seed, pass]);
+                resampled =
+                    resample(&library.robot, &boards, budget.resampled_boards, [seed, pass], &Counter::quiet(watch));
                 (&resampled[..], &[][..], &budget.later)
             };
             let entries: Vec<_> = entries.iter().chain(natural).collect();
             // Each task uses the solutions of the pass before, so their order does not matter.
             let solve = |(task, of_place): (&Scenario, &Vec<LibraryEntry>)| {
-                self.solve_task(task, &library.robot, &entries, of_place, task_budget)
+                let solved = self.solve_task(task, &library.robot, &entries, of_place, task_budget, watch);
+                counter.advance();
+                solved
             };
             let found: Result<Vec<_>, PlanError> = tasks.par_iter().zip(&of_place).map(solve).collect();
             self.solutions = found?;
@@ -145,10 +172,11 @@ impl WarmStarts {
         tasks: &[Scenario],
         library: &GraspLibrary,
         count: usize,
+        watch: &dyn Watch,
     ) -> Result<Vec<Vec<LibraryEntry>>, PlanError> {
         let of_task = |task: &Scenario| {
             let human = Human::new(&task.human, &task.tool)?;
-            Ok(entries_for_place(task, &human, &library.robot, self.postures(), count))
+            Ok(entries_for_place(task, &human, &library.robot, self.postures(watch)?, count, watch))
         };
         tasks.iter().map(of_task).collect()
     }
@@ -161,11 +189,12 @@ impl WarmStarts {
         entries: &[&LibraryEntry],
         of_place: &[LibraryEntry],
         budget: &SearchBudget,
+        watch: &dyn Watch,
     ) -> Result<Vec<Solution>, PlanError> {
-        let mut evaluator = Evaluator::new(Problem::new(task, robot)?, SearchStats::unlimited());
+        let mut evaluator = Evaluator::new(Problem::new(task, robot, watch)?, SearchStats::unlimited(watch));
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
         let entries = entries.iter().copied().chain(of_place);
-        starts.extend(screen::screen(&mut evaluator, entries, self.postures(), budget));
+        starts.extend(screen::screen(&mut evaluator, entries, self.postures(watch)?, budget));
         let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds), &robot.board);
         Ok(found.into_iter().map(|found| Solution::new(&evaluator.problem, found.candidate)).collect())
     }
@@ -187,23 +216,21 @@ impl WarmStarts {
                         continue;
                     };
                     let objective = evaluator.objective(&candidate);
-                    transferred.push((if crate::planner::params::knob("SORT", 1) == 1 { objective.min(at_origin) } else { objective + at_origin }, candidate));
+                    transferred.push((objective + at_origin, candidate));
                 }
             }
         }
         transferred.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut kept: Vec<Feasible> = Vec::with_capacity(count);
-        let mut repairs = 0;
         let most_alike = per_pattern(STARTS_PER_PATTERN, evaluator.problem.robot.arms.len());
-        for (_, candidate) in transferred {
-            if kept.len() == count || repairs == crate::planner::params::knob("TRIES", 64) || evaluator.stats.is_exhausted() {
+        for (_, candidate) in transferred.into_iter().take(TRANSFERS) {
+            if kept.len() == count || evaluator.stats.is_exhausted() {
                 break;
             }
             let alike = kept.iter().filter(|other| other.candidate.pattern() == candidate.pattern()).count();
             if alike == most_alike {
                 continue;
             }
-            repairs += 1;
             kept.extend(refine::repair(evaluator, candidate));
         }
         kept
@@ -220,13 +247,14 @@ fn solutions_of_kept(
     KeptSolutions(kept): KeptSolutions,
     tasks: &[Scenario],
     robot: &GraspingRobot,
+    watch: &dyn Watch,
 ) -> Result<Option<Vec<Vec<Solution>>>, PlanError> {
     let mut candidates = kept.iter().flatten();
     if kept.len() != tasks.len() || !candidates.all(|candidate| robot.has_form_of(&candidate.arms)) {
         return Ok(None);
     }
     let solved = |(task, candidates): (&Scenario, Vec<Candidate>)| {
-        let problem = Problem::new(task, robot)?;
+        let problem = Problem::new(task, robot, watch)?;
         Ok(candidates.into_iter().map(|candidate| Solution::new(&problem, candidate)).collect())
     };
     tasks.iter().zip(kept).map(solved).collect::<Result<_, _>>().map(Some)

@@ -85,7 +85,7 @@ impl std::fmt::Display for SkipReason {
         f.pad(match self {
             Self::Filtered => "left out by --filter",
             Self::AfterFailure => "not run after a failure, by --fail-fast",
-            Self::Interrupted => "not run before the interruption",
+            Self::Interrupted => "not finished before the interruption",
         })
     }
 }

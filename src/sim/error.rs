@@ -39,4 +39,7 @@ pub enum SimError {
     /// The engine refused a part of the scene.
     #[error("failed to build the scene: the robot's joints do not form a tree")]
     Engine,
+    /// The caller stopped the simulation.
+    #[error("stopped before the end of the simulation")]
+    Stopped,
 }

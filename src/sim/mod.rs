@@ -114,7 +114,10 @@ use tool_load::ToolLoad;
 
 use crate::{
     check::{CheckedArm, CheckedPlan},
-    model::trace::{ArmTrace, Trace},
+    model::{
+        stop::{Never, Stop},
+        trace::{ArmTrace, Trace},
+    },
     robot::Holding,
 };
 
@@ -135,6 +138,14 @@ const LOST_AFTER_S: f64 = 0.1;
 /// # Errors
 /// If the settings or the load over time are invalid, or a moving part of the robot has no mass.
 pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Trace, SimError> {
+    simulate_until(checked, conditions, &Never)
+}
+
+/// As [`simulate`], until a stop, which is asked for in every step.
+///
+/// # Errors
+/// As [`simulate`], and [`SimError::Stopped`] after a stop.
+pub fn simulate_until(checked: &CheckedPlan<'_>, conditions: &Conditions, stop: &dyn Stop) -> Result<Trace, SimError> {
     let tool = ToolLoad::new(checked, conditions)?;
     let timestep_s = conditions.settings.timestep_s;
     let mut scene = SimScene::new(checked, conditions)?;
@@ -142,6 +153,9 @@ pub fn simulate(checked: &CheckedPlan<'_>, conditions: &Conditions) -> Result<Tr
     let mut trace = empty_trace(checked, conditions, tool.steps() + 1);
     let mut untouched_s = 0.0;
     for step in 0..=tool.steps() {
+        if stop.is_stopped() {
+            return Err(SimError::Stopped);
+        }
         let (phase, state) = tool.at(step);
         if step > 0 {
             scene.step_under(state);

@@ -12,6 +12,7 @@ mod commands;
 mod determinism;
 mod import;
 mod inputs;
+mod interrupt;
 mod margin_and_export;
 mod messages;
 mod partial_plans;

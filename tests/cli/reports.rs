@@ -205,7 +205,7 @@ fn an_interrupted_run_reports_the_finished_scenarios() {
     std::io::Read::read_to_string(&mut stderr, &mut messages).unwrap();
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{messages}");
-    assert!(messages.contains("interrupted: the scenarios in progress are finished and reported"), "{messages}");
+    assert!(messages.contains("interrupted: the finished scenarios are reported"), "{messages}");
 
     let summary = json(&folder.path().join("out/summary.json"));
     assert_eq!(summary["interrupted"], true);

@@ -18,3 +18,4 @@ mod natural;
 mod planner;
 mod plans;
 mod suction;
+mod watch;

@@ -1,6 +1,4 @@
-//! Searches that are stopped or limited, and searches for several plans: the best few, the Pareto front, a whole circle.
-
-use std::{cell::Cell, ops::ControlFlow};
+//! Searches that are limited, and searches for several plans: the best few, the Pareto front, a whole circle.
 
 use benchdog::{
     collision::{BoardBody, CollisionModel, Scene},
@@ -10,7 +8,7 @@ use benchdog::{
         plan::Plan,
         scenario::{Budget, PlannerKind},
     },
-    planner::{self, Outcome, Progress, path},
+    planner::{self, Outcome, path},
     robot::{ArmState, Chain},
 };
 
@@ -26,53 +24,6 @@ fn objective(plan: &Plan) -> f64 {
 fn comforts(plan: &Plan) -> [f64; 2] {
     let comfort = plan.comfort.as_ref().unwrap();
     [comfort.muscular_regularised, comfort.peripersonal_m]
-}
-
-#[test]
-fn the_observer_sees_every_improvement_and_changes_nothing() {
-    let scenario = fast("quickstart");
-    let alone = plan(&scenario);
-    let mut seen = Vec::new();
-    let mut observer = |progress: &Progress<'_>| {
-        seen.extend(progress.better.map(|comfort| comfort.objective));
-        ControlFlow::Continue(())
-    };
-    let observed = PLANNER.search(&scenario).observer(&mut observer).plan();
-    assert_eq!(serde_json::to_string(&found(observed.unwrap())).unwrap(), serde_json::to_string(&alone).unwrap());
-    assert!(seen.len() > 2 && seen.windows(2).all(|pair| pair[0] < pair[1]), "{seen:?}");
-    // The last improvement is the plan, but for rounding of one evaluation.
-    assert!((seen[seen.len() - 1] - objective(&alone)).abs() < 1e-9);
-}
-
-#[test]
-fn a_stopped_search_has_the_best_plan_so_far() {
-    let scenario = fast("quickstart");
-    let full = plan(&scenario);
-    let (improvements, after) = (Cell::new(0), Cell::new(0));
-    let best = Cell::new(f64::NAN);
-    let mut observer = |progress: &Progress<'_>| {
-        if improvements.get() == 3 {
-            after.set(after.get() + 1);
-        }
-        if let Some(comfort) = progress.better {
-            improvements.set(improvements.get() + 1);
-            best.set(comfort.objective);
-        }
-        if improvements.get() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
-    let stopped = found(PLANNER.search(&scenario).observer(&mut observer).plan().unwrap());
-    verified(&stopped, &scenario);
-    assert!((objective(&stopped) - best.get()).abs() < 1e-9);
-    assert!(objective(&stopped) < objective(&full));
-    assert_eq!(after.get(), 0, "nothing is evaluated once the search is stopped");
-}
-
-#[test]
-fn a_search_that_is_stopped_at_once_finds_nothing() {
-    let scenario = fast("quickstart");
-    let mut observer = |_: &Progress<'_>| ControlFlow::Break(());
-    let outcome = PLANNER.search(&scenario).observer(&mut observer).plan().unwrap();
-    assert!(matches!(outcome, Outcome::Infeasible(_)));
 }
 
 #[test]

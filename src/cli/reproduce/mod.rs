@@ -35,17 +35,21 @@ use crate::{
 };
 use runner::JobRunner;
 
+/// What is left after Ctrl-C.
+const CONTINUES: &str = "finished results are kept, and the same command continues from them";
+
 /// Runs the evaluation and writes its results.
 pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
+    let progress = Progress::counting("reading the operations", CONTINUES)?;
     let operations = operations(args)?;
     let Some(first) = operations.first() else { return Ok(Exit::Met) };
     let out = args.folder();
     file::check_folder(&out)?;
-    interrupt::listen("finished results are kept, and the same command continues from them")?;
+    progress.keep();
     let scope = args.scope();
     let schedule = Schedule::new(&operations, &scope);
-    let runner = JobRunner::new(&first.robot, &out, args)?;
-    let Some(rows) = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs))?? else {
+    let runner = JobRunner::new(&first.robot, &out, args, &progress)?;
+    let Some(rows) = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs, &progress))?? else {
         let folder = runner.folder();
         let folder = folder.display();
         output::message(&format!(
@@ -86,8 +90,8 @@ fn operations(args: &ReproduceArgs) -> Result<Vec<LoadedScenario>, CliError> {
 }
 
 /// Runs all jobs and returns their results in order; `None` if the user stopped the run.
-fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job]) -> Result<Option<Vec<HoldRow>>, CliError> {
-    let progress = Progress::new(jobs.len());
+fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result<Option<Vec<HoldRow>>, CliError> {
+    progress.expect(jobs.len());
     // An error such as a full disk would repeat, so no job starts after the first one.
     let first_error: Mutex<Option<CliError>> = Mutex::new(None);
     runner.prepare(jobs);
@@ -101,6 +105,7 @@ fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job]) -> Result<Option<Vec<HoldRow>>
                 progress.advances(result.line(job).as_deref());
                 Some(result.row)
             }
+            Err(error) if error.is_stop() => None,
             Err(error) => {
                 first_error.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
                 None

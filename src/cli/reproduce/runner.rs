@@ -21,10 +21,11 @@ use crate::{
         margin,
         pipeline::{self, Run},
         planners::Planners,
+        progress::Progress,
         recording,
     },
-    model::plan::Plan,
-    planner::Outcome,
+    model::{plan::Plan, stop::Stop as _},
+    planner::{Outcome, PlanError},
     report::file,
     reproduce::{
         evaluation::HoldRow,
@@ -53,6 +54,7 @@ impl JobResult {
 /// Runs jobs and caches their results in a folder.
 pub struct JobRunner<'a> {
     robot: &'a Robot,
+    progress: &'a Progress,
     planners: Planners,
     out: PathBuf,
     /// SHA-256 of this executable.
@@ -73,12 +75,13 @@ impl<'a> JobRunner<'a> {
     ///
     /// # Errors
     /// If the executable file cannot be read.
-    pub fn new(robot: &'a Robot, out: &Path, args: &ReproduceArgs) -> Result<Self, CliError> {
+    pub fn new(robot: &'a Robot, out: &Path, args: &ReproduceArgs, progress: &'a Progress) -> Result<Self, CliError> {
         let executable = std::env::current_exe()
             .and_then(fs::read)
             .map_err(|error| CliError::Machine(format!("failed to read this program's own file: {error}")))?;
         Ok(Self {
             robot,
+            progress,
             planners: Planners::new(args.cache),
             out: out.to_owned(),
             executable: base16ct::lower::encode_string(&Sha256::digest(executable)),
@@ -94,7 +97,7 @@ impl<'a> JobRunner<'a> {
     /// Computes the planner's maps for all jobs without a cached result.
     pub fn prepare(&self, jobs: &[Job]) {
         let uncached = jobs.iter().filter(|job| self.cached(job, &self.fingerprint(job)).is_none());
-        self.planners.prepare(&uncached.map(|job| (self.robot, &job.scenario)).collect::<Vec<_>>());
+        self.planners.prepare(&uncached.map(|job| (self.robot, &job.scenario)).collect::<Vec<_>>(), self.progress);
     }
 
     /// The cached result of a job, unless it lacks a recording that is now wanted.
@@ -149,7 +152,11 @@ impl<'a> JobRunner<'a> {
     fn compute(&self, job: &Job) -> Result<HoldRow, CliError> {
         let scenario = &job.scenario;
         let start = Instant::now();
-        let outcome = self.planners.timed_plan(scenario, self.robot, None)?;
+        let outcome = self.planners.timed_plan(scenario, self.robot, self.progress)?;
+        // The best plan so far is not the result of the job.
+        if self.progress.is_stopped() {
+            return Err(CliError::Plan(PlanError::Stopped));
+        }
         let mut row = HoldRow {
             operation: scenario.name.clone(),
             kind: scenario.operation.kind,
@@ -179,13 +186,13 @@ impl<'a> JobRunner<'a> {
 
     fn simulate(&self, job: &Job, plan: &Plan, row: &mut HoldRow) -> Result<(), CliError> {
         let start = Instant::now();
-        let run = pipeline::run_plan(&job.scenario, self.robot, plan.clone(), &[])?;
+        let run = pipeline::run_plan(&job.scenario, self.robot, plan.clone(), &[], self.progress)?;
         row.simulate_ms = Some(start.elapsed().as_secs_f64() * 1e3);
         self.write_recording(job, &run)?;
         if job.stage == Stage::FailingLoad && run.simulated.is_some() {
             let guess = plan.stability.as_ref().map_or(1.0, |stability| stability.compliant_load_factor);
             let checked = CheckedPlan::new(self.robot, plan, &job.scenario.human, &job.scenario.tool)?;
-            let found = margin::simulated(&checked, &job.scenario, guess)?;
+            let found = margin::simulated(&checked, &job.scenario, guess, self.progress)?;
             row.load_factor_simulated = Some(found.holds_at);
             row.ended_by = Some(found.judgement.verdict);
         }

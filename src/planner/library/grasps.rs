@@ -20,15 +20,17 @@ use super::{
 };
 use crate::{
     collision::Violation,
-    model::{board::BoardShape, frames::Pose, scenario::Scenario},
+    model::{board::BoardShape, frames::Pose, scenario::Scenario, stop::Stop as _},
     planner::{
         domain::{draw_edge, draw_other_edge},
         made_once::MadeOnce,
         map_store::{self, MapKind, MapSource, MapStore},
+        outcome::PlanError,
         params::library::{
             BOARDS_AT_ONCE, BOARDS_PER_GRASP, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASPS,
             GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
         },
+        watch::{Counter, Phase, Watch, go_on},
     },
     robot::Robot,
 };
@@ -71,25 +73,40 @@ impl GraspLibrary {
     }
 
     /// The grasps.
-    pub fn entries(&self) -> &[LibraryEntry] {
-        &self.drawn().entries
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn entries(&self, watch: &dyn Watch) -> Result<&[LibraryEntry], PlanError> {
+        Ok(&self.drawn(watch)?.entries)
     }
 
     /// What the draws failed at that gave no grasp.
-    pub fn failures(&self) -> &DrawFailures {
-        &self.drawn().failures
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn failures(&self, watch: &dyn Watch) -> Result<&DrawFailures, PlanError> {
+        Ok(&self.drawn(watch)?.failures)
     }
 
     /// Further grasps for the same boards, from random numbers of their own: for a search that found nothing among the
     /// library's.
-    pub fn further_entries(&self) -> &[LibraryEntry] {
-        let make = || self.kept_or_drawn(MapKind::FurtherGrasps, FURTHER_GRASPS, 1);
-        &self.further.get_or_make(make).entries
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn further_entries(&self, watch: &dyn Watch) -> Result<&[LibraryEntry], PlanError> {
+        let make = || {
+            let counter = Counter::new(watch, Phase::SecondSearch, FURTHER_GRASPS);
+            self.kept_or_drawn(MapKind::FurtherGrasps, FURTHER_GRASPS, 1, &counter)
+        };
+        Ok(&self.further.get_or_make(make)?.entries)
     }
 
     /// True if there is no grasp, neither among the library's nor among further ones if these were drawn.
-    pub fn is_empty(&self) -> bool {
-        self.entries().is_empty() && self.further.get().is_none_or(|further| further.entries.is_empty())
+    ///
+    /// # Errors
+    /// After a stop.
+    pub fn is_empty(&self, watch: &dyn Watch) -> Result<bool, PlanError> {
+        Ok(self.entries(watch)?.is_empty() && self.further.get().is_none_or(|further| further.entries.is_empty()))
     }
 
     /// The store of its maps.
@@ -103,21 +120,32 @@ impl GraspLibrary {
         MapSource { kind, robot, board, clearance_m: *clearance_m, task }
     }
 
-    fn drawn(&self) -> &DrawnGrasps {
-        self.drawn.get_or_make(|| self.kept_or_drawn(MapKind::Grasps, GRASPS, 0))
+    fn drawn(&self, watch: &dyn Watch) -> Result<&DrawnGrasps, PlanError> {
+        self.drawn.get_or_make(|| {
+            let counter = Counter::new(watch, Phase::GraspLibrary, GRASPS);
+            self.kept_or_drawn(MapKind::Grasps, GRASPS, 0, &counter)
+        })
     }
 
     /// At most `wanted` grasps from a stream of random numbers, from the store if it has them.
-    fn kept_or_drawn(&self, kind: MapKind, wanted: usize, stream: u128) -> DrawnGrasps {
+    fn kept_or_drawn(
+        &self,
+        kind: MapKind,
+        wanted: usize,
+        stream: u128,
+        counter: &Counter<'_>,
+    ) -> Result<DrawnGrasps, PlanError> {
         let source = self.source(kind, None);
         let kept = map_store::read(self.store(), &source).and_then(|kept| self.of_kept(kept));
-        kept.unwrap_or_else(|| {
-            let (entries, failures) = draw_entries(&self.robot, wanted, stream);
-            let grasps = entries.iter().map(|entry| entry.grasp.clone()).collect();
-            let kept = KeptGrasps { grasps, failures };
-            map_store::write(self.store(), &source, &kept);
-            DrawnGrasps { entries, failures: kept.failures }
-        })
+        if let Some(kept) = kept {
+            return Ok(kept);
+        }
+        let (entries, failures) = draw_entries(&self.robot, wanted, stream, counter);
+        go_on(counter)?;
+        let grasps = entries.iter().map(|entry| entry.grasp.clone()).collect();
+        let kept = KeptGrasps { grasps, failures };
+        map_store::write(self.store(), &source, &kept);
+        Ok(DrawnGrasps { entries, failures: kept.failures })
     }
 
     /// The drawn grasps of kept ones; `None` if these are not of this robot and board.
@@ -131,19 +159,28 @@ impl GraspLibrary {
     }
 }
 
-/// At most `wanted` grasps from a stream of random numbers, and what the other draws failed at.
-fn draw_entries(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+/// At most `wanted` grasps from a stream of random numbers, and what the other draws failed at. After a stop they are not
+/// complete.
+fn draw_entries(
+    robot: &GraspingRobot,
+    wanted: usize,
+    stream: u128,
+    counter: &Counter<'_>,
+) -> (Vec<LibraryEntry>, DrawFailures) {
     if robot.arms.len() > 2 {
-        return draw_entries_by_board(robot, wanted, stream);
+        return draw_entries_by_board(robot, wanted, stream, counter);
     }
     let mut random = Pcg64::new(SEED, stream);
     let mut entries = Vec::with_capacity(wanted);
     let mut failures = DrawFailures::default();
     let mut draws = 0;
-    while entries.len() < wanted && draws < max_draws(wanted, entries.len()) {
+    while entries.len() < wanted && draws < max_draws(wanted, entries.len()) && !counter.is_stopped() {
         draws += 1;
         match draw_entry(robot, &mut random) {
-            Ok(entry) => entries.push(entry),
+            Ok(entry) => {
+                counter.advance();
+                entries.push(entry);
+            }
             Err(failure) => failures.count(failure),
         }
     }
@@ -157,8 +194,16 @@ fn max_draws(wanted: usize, found: usize) -> u64 {
 
 /// As [`draw_entries`] for more than two arms, whose single draws hardly ever fit together: grasps of all arms are drawn for
 /// each board. Every board has a random stream of its own.
-fn draw_entries_by_board(robot: &GraspingRobot, wanted: usize, stream: u128) -> (Vec<LibraryEntry>, DrawFailures) {
+fn draw_entries_by_board(
+    robot: &GraspingRobot,
+    wanted: usize,
+    stream: u128,
+    counter: &Counter<'_>,
+) -> (Vec<LibraryEntry>, DrawFailures) {
     let of_board = |number: usize| {
+        if counter.is_stopped() {
+            return Ok(Vec::new());
+        }
         let mut random = Pcg64::new(SEED, (stream << 64) + number as u128 + 1);
         let (_, x_wo) = draw_first(robot, &mut random)?;
         grasps_of_board(robot, &x_wo, &mut random)
@@ -167,13 +212,17 @@ fn draw_entries_by_board(robot: &GraspingRobot, wanted: usize, stream: u128) -> 
     let mut failures = DrawFailures::default();
     let most = BOARDS_PER_GRASP * wanted;
     for first in (0..most).step_by(BOARDS_AT_ONCE) {
-        if entries.len() >= wanted || (entries.is_empty() && first >= most / HOPELESS_SHARE) {
+        let is_hopeless = entries.is_empty() && first >= most / HOPELESS_SHARE;
+        if entries.len() >= wanted || is_hopeless || counter.is_stopped() {
             break;
         }
         let boards = first..most.min(first + BOARDS_AT_ONCE);
         for found in boards.into_par_iter().map(of_board).collect::<Vec<_>>() {
             match found {
-                Ok(found) => entries.extend(found.into_iter().take(GRASPS_PER_BOARD)),
+                Ok(found) => {
+                    let kept = found.into_iter().take(GRASPS_PER_BOARD);
+                    entries.extend(kept.inspect(|_| counter.advance()));
+                }
                 Err(failure) => failures.count(failure),
             }
         }

@@ -14,13 +14,14 @@ use rand_pcg::Pcg64;
 use super::direction::{direction_cell, direction_cells};
 use crate::{
     human::{ArmAngles, BODY_POINTS, Human, Muscular},
-    model::{frames::Pose, scenario::ComfortSettings, wrench::Wrench},
+    model::{frames::Pose, scenario::ComfortSettings, stop::Stop as _, wrench::Wrench},
     planner::{
         domain::uniform,
         params::{
             SearchBudget,
             library::{POSTURE_CELL_M, POSTURE_DIRECTIONS, POSTURE_HEIGHT_M, POSTURE_RINGS},
         },
+        watch::{Counter, Phase, Watch},
     },
 };
 
@@ -71,20 +72,26 @@ pub struct PostureMap {
 }
 
 impl PostureMap {
-    /// The map of a person with a tool under a load. `objective` ranks the postures of a cell.
+    /// The map of a person with a tool under a load. `objective` ranks the postures of a cell. After a stop it is not complete.
     pub fn new(
         human: &Human,
         load: &PostureLoad,
         objective: &ComfortSettings,
         budget: &SearchBudget,
         seed: u64,
+        watch: &dyn Watch,
     ) -> Self {
         let mut map =
             Self { roll_is_free: load.roll_is_free, cells: Vec::new(), ranked: Vec::new(), has_natural: false };
         let mut found = vec![Vec::new(); map.cell_count()];
         let mut random = Pcg64::new(u128::from(seed), 0);
         let draws = if human.posture().is_natural() { budget.natural_postures } else { budget.postures };
+        let counter = Counter::new(watch, Phase::Postures, draws);
         for _ in 0..draws {
+            if counter.is_stopped() {
+                break;
+            }
+            counter.advance();
             let q_h_rad = human.arm().ranges.at_shares([(); 7].map(|()| uniform(&mut random, 0.0, 1.0)));
             let x_bt = human.tool_pose_b(&q_h_rad);
             if !human.arm().permits_shoulder(&q_h_rad) || human.work_violation(&x_bt, &load.normal_t).is_some() {

@@ -48,7 +48,7 @@ struct Located {
 }
 
 impl ReachMap {
-    /// The map of an arm.
+    /// The map of an arm. It takes some hundredths of a second, too little to be stopped.
     pub fn new(chain: &Chain) -> Self {
         let reach_m = chain.reach_m();
         let rings = (reach_m / REACH_CELL_M).ceil() as usize;

@@ -13,47 +13,57 @@ use rayon::prelude::*;
 
 use super::{board_grasps::grasps_of_board, entry::LibraryEntry, grasping_robot::GraspingRobot, postures::Posture};
 use crate::{
-    model::frames::Pose,
-    planner::domain::{SearchDomain, uniform},
+    model::{frames::Pose, stop::Stop as _},
+    planner::{
+        domain::{SearchDomain, uniform},
+        watch::Counter,
+    },
 };
 
 /// Grasps of `count` boards with the height and tilt of the given ones; boards outside the search domain have none. The same
-/// arguments give the same grasps, whatever the number of threads.
-pub fn resample(robot: &GraspingRobot, boards: &[Pose], count: usize, stream: [u64; 2]) -> Vec<LibraryEntry> {
+/// arguments give the same grasps, whatever the number of threads. After a stop they are not complete.
+pub fn resample(
+    robot: &GraspingRobot,
+    boards: &[Pose],
+    count: usize,
+    stream: [u64; 2],
+    counter: &Counter<'_>,
+) -> Vec<LibraryEntry> {
     let board = |number: usize, random: &mut Pcg64| moved(&boards[number % boards.len()], &robot.domain, random);
-    if boards.is_empty() { Vec::new() } else { grasps_of(robot, count, stream, board).collect() }
+    if boards.is_empty() {
+        return Vec::new();
+    }
+    numbered_grasps_of(robot, count, stream, board, counter).map(|(_, entry)| entry).collect()
 }
 
 /// Grasps of boards where postures have them, each entry with its posture; boards outside the search domain have none. The same
-/// arguments give the same grasps, whatever the number of threads.
-pub fn grasps_for(robot: &GraspingRobot, boards: &[(Pose, Posture)], stream: [u64; 2]) -> Vec<LibraryEntry> {
-    numbered_grasps_of(robot, boards.len(), stream, |number, _| boards[number].0)
+/// arguments give the same grasps, whatever the number of threads. After a stop they are not complete.
+pub fn grasps_for(
+    robot: &GraspingRobot,
+    boards: &[(Pose, Posture)],
+    stream: [u64; 2],
+    counter: &Counter<'_>,
+) -> Vec<LibraryEntry> {
+    numbered_grasps_of(robot, boards.len(), stream, |number, _| boards[number].0, counter)
         .map(|(number, entry)| LibraryEntry { posture: Some(boards[number].1), ..entry })
         .collect()
 }
 
-/// Grasps of `count` boards, each board with a random generator of its own.
-fn grasps_of<'r>(
-    robot: &'r GraspingRobot,
-    count: usize,
-    stream: [u64; 2],
-    board: impl Fn(usize, &mut Pcg64) -> Pose + Sync + Send + 'r,
-) -> impl ParallelIterator<Item = LibraryEntry> + 'r {
-    numbered_grasps_of(robot, count, stream, board).map(|(_, entry)| entry)
-}
-
-/// As [`grasps_of`], each grasp with the number of its board.
+/// Grasps of `count` boards, each board with a random generator of its own, each grasp with the number of its board.
 fn numbered_grasps_of<'r>(
     robot: &'r GraspingRobot,
     count: usize,
     [seed, pass]: [u64; 2],
     board: impl Fn(usize, &mut Pcg64) -> Pose + Sync + Send + 'r,
+    counter: &'r Counter<'r>,
 ) -> impl ParallelIterator<Item = (usize, LibraryEntry)> + 'r {
     let of_board = move |number: usize| {
         let stream = (u128::from(pass) << 64) + number as u128;
         let mut random = Pcg64::new(u128::from(seed), stream);
         let x_wo = board(number, &mut random);
-        let entries = if robot.domain.contains(&x_wo) { grasps_of_board(robot, &x_wo, &mut random).ok() } else { None };
+        let is_drawn = robot.domain.contains(&x_wo) && !counter.is_stopped();
+        let entries = if is_drawn { grasps_of_board(robot, &x_wo, &mut random).ok() } else { None };
+        counter.advance();
         entries.into_iter().flatten().map(move |entry| (number, entry))
     };
     (0..count).into_par_iter().flat_map_iter(of_board)
@@ -70,7 +80,7 @@ fn moved(x_wo: &Pose, domain: &SearchDomain, random: &mut Pcg64) -> Pose {
 mod tests {
     use super::*;
     use crate::{
-        model::{board::BoardShape, plate::PlateRecord},
+        model::{board::BoardShape, plate::PlateRecord, stop::Never},
         planner::library::{BoardGrasp, GraspLibrary},
         reproduce::paper,
     };
@@ -83,9 +93,9 @@ mod tests {
     #[test]
     fn every_grasp_is_of_a_similar_board_is_reached_and_collides_with_nothing() {
         let library = library();
-        let (robot, entries) = (&library.robot, library.entries());
+        let (robot, entries) = (&library.robot, library.entries(&Never).unwrap());
         let boards: Vec<_> = entries.iter().take(20).map(|entry| entry.grasp.x_wo).collect();
-        let found = resample(robot, &boards, 200, [1, 1]);
+        let found = resample(robot, &boards, 200, [1, 1], &Counter::quiet(&Never));
         assert!(found.len() > 20, "{}", found.len());
         for LibraryEntry { grasp: BoardGrasp { x_wo, arms }, .. } in &found {
             let similar = |board: &Pose| {
@@ -118,25 +128,25 @@ mod tests {
         let outline_m = vec![[0.015, -0.015], [0.015, 0.015], [-0.015, 0.015], [-0.015, -0.015]];
         let board = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
         let library = GraspLibrary::new(&loaded.robot, &board, 0.005);
-        assert!(library.entries().is_empty() && library.robot.edges.is_empty());
-        assert!(resample(&library.robot, &[Pose::identity()], 20, [1, 1]).is_empty());
-        let text = library.failures().evidence(&loaded.robot).to_string();
+        assert!(library.entries(&Never).unwrap().is_empty() && library.robot.edges.is_empty());
+        assert!(resample(&library.robot, &[Pose::identity()], 20, [1, 1], &Counter::quiet(&Never)).is_empty());
+        let text = library.failures(&Never).unwrap().evidence(&loaded.robot).to_string();
         assert!(text.contains("100.0 % every edge of the board is shorter than a pad is wide"), "{text}");
     }
 
     #[test]
     fn the_number_of_threads_does_not_change_the_grasps() {
         let library = library();
-        let (robot, entries) = (&library.robot, library.entries());
+        let (robot, entries) = (&library.robot, library.entries(&Never).unwrap());
         let boards = [entries[0].grasp.x_wo];
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let found = pool.install(|| resample(robot, &boards, 60, [3, 2]));
+            let found = pool.install(|| resample(robot, &boards, 60, [3, 2], &Counter::quiet(&Never)));
             found.iter().map(|entry| format!("{:?}", entry.grasp)).collect::<Vec<_>>()
         };
         let one = with(1);
         assert!(!one.is_empty());
         assert_eq!(one, with(3));
-        assert!(resample(robot, &[], 60, [3, 2]).is_empty());
+        assert!(resample(robot, &[], 60, [3, 2], &Counter::quiet(&Never)).is_empty());
     }
 }

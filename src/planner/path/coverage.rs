@@ -17,7 +17,8 @@ use super::super::{
     params::{SearchBudget, path::RESPONSE_STARTS},
     problem::{self, Problem},
     screen::standing_pose,
-    stats::{Observer, Progress, SearchStats},
+    stats::SearchStats,
+    watch::{Event, Progress, Watch},
 };
 use crate::{
     comfort::{self, Response},
@@ -36,7 +37,7 @@ pub struct PathProblem<'a> {
     evaluations: u64,
     /// The number of them at which the present search ends.
     last_evaluation: u64,
-    observer: Option<&'a mut Observer<'a>>,
+    pub watch: &'a dyn Watch,
 }
 
 /// A posture that may respond to a grasp at a point.
@@ -52,28 +53,30 @@ impl<'a> PathProblem<'a> {
     pub fn new(
         points: &'a [Scenario],
         library: &'a GraspLibrary,
-        observer: Option<&'a mut Observer<'a>>,
+        watch: &'a dyn Watch,
     ) -> Result<Option<Self>, PlanError> {
-        let evaluator =
-            |scenario| Ok(Evaluator::new(Problem::new(scenario, &library.robot)?, SearchStats::unlimited()));
+        let evaluator = |scenario| {
+            Ok(Evaluator::new(Problem::new(scenario, &library.robot, watch)?, SearchStats::unlimited(watch)))
+        };
         let evaluators = points.iter().map(evaluator).collect::<Result<Vec<_>, PlanError>>()?;
         let Some(Evaluator { problem, .. }) = evaluators.first() else { return Ok(None) };
         let budget = SearchBudget::of(problem.scenario);
         // The posture map draws from stream 0.
         let random = Pcg64::new(u128::from(problem.scenario.planner.seed), 1);
         // Force and person are the same at all points, seen from the tool.
-        let postures = problem::posture_map(problem.scenario, &problem.human);
-        Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, last_evaluation: 0, observer }))
+        let postures = problem::posture_map(problem.scenario, &problem.human, watch);
+        Ok(Some(Self { library, budget, random, evaluators, postures, evaluations: 0, last_evaluation: 0, watch }))
     }
 
     /// Grasps of the boards that natural postures, or those of a person in the given place, ask for.
     pub fn natural_entries(&self) -> Vec<LibraryEntry> {
         let Some(Evaluator { problem, .. }) = self.evaluators.first() else { return Vec::new() };
         let count = self.budget.natural_boards;
-        let mut entries = natural_entries(problem.scenario, &problem.human, problem.robot, &self.postures, count);
+        let mut entries =
+            natural_entries(problem.scenario, &problem.human, problem.robot, &self.postures, count, self.watch);
         let share = count / self.evaluators.len();
         for Evaluator { problem: Problem { scenario, human, robot, .. }, .. } in &self.evaluators {
-            entries.extend(entries_for_place(scenario, human, robot, &self.postures, share));
+            entries.extend(entries_for_place(scenario, human, robot, &self.postures, share, self.watch));
         }
         entries
     }
@@ -131,9 +134,9 @@ impl<'a> PathProblem<'a> {
     }
 
     /// The person's response to a grasp at a point if the grasp is stable there: the best near `known`, or else near the most
-    /// promising postures of the map. `None` beyond the limit of evaluations.
+    /// promising postures of the map. `None` beyond the limit of evaluations and after a stop.
     pub fn response(&mut self, grasp: &BoardGrasp, point: usize, known: Option<&Response>) -> Option<Response> {
-        if self.evaluations >= self.last_evaluation {
+        if self.evaluations >= self.last_evaluation || self.watch.is_stopped() {
             return None;
         }
         self.evaluations += 1;
@@ -154,7 +157,7 @@ impl<'a> PathProblem<'a> {
         responses.max_by(|a, b| a.objective.total_cmp(&b.objective))
     }
 
-    /// The better of a response and the best of the whole grid.
+    /// The better of a response and the best of the whole grid; after a stop the response.
     pub fn best_response(&self, grasp: &BoardGrasp, point: usize, known: Response) -> Response {
         let link_poses = self.library.robot.link_poses(&grasp.arms);
         let points_w = comfort::robot_points_w(&self.library.robot.robot, &link_poses);
@@ -200,13 +203,10 @@ impl<'a> PathProblem<'a> {
         self.evaluators.len()
     }
 
-    /// True if the limit of evaluations is reached or the observer stops the search.
-    pub fn is_stopped(&mut self) -> bool {
-        if self.evaluations >= self.last_evaluation {
-            return true;
-        }
-        let progress = Progress { evaluations: self.evaluations, better: None };
-        self.observer.as_mut().is_some_and(|observer| observer(&progress).is_break())
+    /// True if the limit of evaluations is reached or the watch stops the search, which it is told of.
+    pub fn is_exhausted(&self) -> bool {
+        self.watch.tell(&Event::Search(Progress { evaluations: self.evaluations, better: None }));
+        self.evaluations >= self.last_evaluation || self.watch.is_stopped()
     }
 }
 

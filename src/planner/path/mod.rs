@@ -24,7 +24,7 @@ use coverage::PathProblem;
 use super::{
     library::{BoardGrasp, GraspLibrary},
     outcome::PlanError,
-    stats::Observer,
+    watch::{Event, Phase, Watch, begin},
 };
 use crate::{
     comfort::{Response, curve},
@@ -61,6 +61,15 @@ pub struct CirclePlans {
     pub separate: PlansByPoint,
 }
 
+impl CirclePlans {
+    /// True if there is no plan for any point.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        let Self { continuous: Continuous { hold, sequence, .. }, separate } = self;
+        [hold, sequence, separate].into_iter().flatten().all(Option::is_none)
+    }
+}
+
 /// The two ways to cut a circle without regrasping.
 #[derive(Clone, Debug)]
 pub struct Continuous {
@@ -73,28 +82,32 @@ pub struct Continuous {
     pub motions: Vec<Vec<MotionStep>>,
 }
 
-/// Searches for one grasp and for a sequence that starts from it.
+/// Searches for one grasp and for a sequence that starts from it. After a stop it is what was found.
 ///
 /// # Errors
 /// When the scenario's person or tool is invalid.
 pub fn continuous<'a>(
     points: &'a [Scenario],
     library: &'a GraspLibrary,
-    observer: Option<&'a mut Observer<'a>>,
+    watch: &'a dyn Watch,
 ) -> Result<Continuous, PlanError> {
     let nothing =
         || Continuous { hold: vec![None; points.len()], sequence: vec![None; points.len()], motions: Vec::new() };
-    let Some(mut problem) = PathProblem::new(points, library, observer)? else { return Ok(nothing()) };
+    let Some(mut problem) = PathProblem::new(points, library, watch)? else { return Ok(nothing()) };
     let coverages = single_grasp::search(&mut problem);
     let Some(best) = coverages.first() else { return Ok(nothing()) };
+    watch.tell(&Event::Found);
     let hold = plans(&mut problem, best.responses.iter().map(|response| (&best.grasp, *response)));
-    let waypoints = sequence::search(&mut problem, &coverages).unwrap_or_default();
+    begin(watch, Phase::Sequence);
+    let Some(waypoints) = sequence::search(&mut problem, &coverages) else {
+        return Ok(Continuous { hold, ..nothing() });
+    };
     let sequence = plans(&mut problem, waypoints.iter().map(|waypoint| (&waypoint.grasp, waypoint.response)));
     let motions = sequence::motions(&problem, &waypoints);
     Ok(Continuous { hold, sequence, motions })
 }
 
-/// The plans of grasps and responses, each with the best response of the whole grid.
+/// The plans of grasps and responses, each with the best response of the whole grid; after a stop with the response.
 fn plans<'h>(
     problem: &mut PathProblem<'_>,
     covered: impl Iterator<Item = (&'h BoardGrasp, Option<Response>)>,

@@ -23,17 +23,18 @@ use super::{
 };
 use crate::{comfort::Response, model::frames::Pose};
 
-/// The best sequence from these grasps; `None` without a grasp. It covers no fewer points than the first of them, whose pose
-/// is one of its poses.
+/// The best sequence from these grasps; `None` without a grasp, or after a stop before there was one. It covers no fewer points
+/// than the first of them, whose pose is one of its poses.
 pub fn search(problem: &mut PathProblem<'_>, roots: &[Coverage]) -> Option<Vec<Waypoint>> {
     problem.begin_search();
     let mut best: Option<(f64, Vec<Waypoint>)> = None;
     for root in roots {
-        if best.is_some() && problem.is_stopped() {
+        if best.is_some() && problem.is_exhausted() {
             break;
         }
         let poses = pose_tree(problem, root.grasp.clone());
-        let mut waypoints = Graph::new(problem, poses, root).best_path(problem);
+        let graph = Graph::new(problem, poses, root);
+        let Some(mut waypoints) = graph.best_path(problem) else { break };
         improve(problem, &mut waypoints);
         let value: f64 = waypoints.iter().map(Waypoint::value).sum();
         if best.as_ref().is_none_or(|(before, _)| value > *before) {
@@ -66,7 +67,7 @@ impl Waypoint {
 fn pose_tree(problem: &mut PathProblem<'_>, root: BoardGrasp) -> Vec<BoardGrasp> {
     let mut poses = vec![root];
     for _ in 0..DRAWS_PER_POSE * TREE_POSES {
-        if poses.len() == TREE_POSES {
+        if poses.len() == TREE_POSES || problem.watch.is_stopped() {
             break;
         }
         let number = (uniform(&mut problem.random, 0.0, poses.len() as f64) as usize).min(poses.len() - 1);
@@ -130,9 +131,9 @@ impl Graph {
         Self { poses, values, motions }
     }
 
-    /// The best path, all of it exact.
-    fn best_path(mut self, problem: &mut PathProblem<'_>) -> Vec<Waypoint> {
-        loop {
+    /// The best path, all of it exact; `None` after a stop.
+    fn best_path(mut self, problem: &mut PathProblem<'_>) -> Option<Vec<Waypoint>> {
+        while !problem.watch.is_stopped() {
             let path = self.path();
             // Every round makes something exact that was not, so the loop ends.
             if !self.make_exact(problem, &path) {
@@ -140,15 +141,17 @@ impl Graph {
                     grasp: self.poses[pose].clone(),
                     response: self.values[pose][point].response,
                 };
-                return path.iter().enumerate().map(waypoint).collect();
+                return Some(path.iter().enumerate().map(waypoint).collect());
             }
         }
+        None
     }
 
-    /// Computes the values and motions of a path; false if all of it was exact.
+    /// Computes the values and motions of a path; false if all of it was exact. After a stop they are not complete.
     fn make_exact(&mut self, problem: &mut PathProblem<'_>, path: &[usize]) -> bool {
         let mut changed = false;
-        for (point, &pose) in path.iter().enumerate() {
+        let stop = problem.watch;
+        for (point, &pose) in path.iter().enumerate().take_while(|_| !stop.is_stopped()) {
             let value = self.values[pose][point];
             if !value.exact {
                 let response = if value.value > 0.0 { problem.response(&self.poses[pose], point, None) } else { None };
@@ -156,7 +159,7 @@ impl Graph {
                 changed = true;
             }
         }
-        for pair in path.windows(2) {
+        for pair in path.windows(2).take_while(|_| !stop.is_stopped()) {
             let (from, to) = (pair[0], pair[1]);
             if self.motions[from][to].is_none() {
                 let exists = motion::between(problem, &self.poses[from], &self.poses[to]).is_some();
@@ -203,7 +206,7 @@ impl Graph {
 fn improve(problem: &mut PathProblem<'_>, waypoints: &mut [Waypoint]) {
     for point in 0..waypoints.len() {
         for _ in 0..CHANGES {
-            if problem.is_stopped() {
+            if problem.is_exhausted() {
                 return;
             }
             let x_wo = draw_near(problem, &waypoints[point].grasp, CHANGE);

@@ -15,6 +15,7 @@ use super::{
             EVALUATED_PER_START, GRASP, JOINTS_RAD, NARROWER, RESAMPLED_BOARDS, SHIFT_M, TRIES_PER_STEP, TURN_RAD,
             WIDER,
         },
+        watch::{Counter, Phase, begin},
     },
     coverage::{Coverage, PathProblem, Score, displaced},
 };
@@ -34,18 +35,19 @@ pub fn search(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
 /// of the library.
 fn starts(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
     let library = problem.library;
-    let mut estimated = best_estimates(problem, library.entries());
+    let mut estimated = best_estimates(problem, library.entries(problem.watch).unwrap_or_default());
     let natural = problem.natural_entries();
+    begin(problem.watch, Phase::OneGrasp);
     estimated.extend(best_estimates(problem, &natural));
     estimated.sort_by(|a, b| a.0.order(&b.0));
     let boards: Vec<_> = estimated.iter().take(RESAMPLED_BOARDS).map(|(_, grasp)| grasp.x_wo).collect();
     let count = problem.budget.path.resampled_boards;
-    let resampled = resample(&library.robot, &boards, count, [problem.seed(), 1]);
+    let resampled = resample(&library.robot, &boards, count, [problem.seed(), 1], &Counter::quiet(problem.watch));
     estimated.extend(best_estimates(problem, &resampled));
     estimated.sort_by(|a, b| a.0.order(&b.0));
     let mut coverages = Vec::new();
     for (_, grasp) in estimated.into_iter().take(EVALUATED_PER_START * problem.budget.starts) {
-        if problem.is_stopped() {
+        if problem.is_exhausted() {
             break;
         }
         let responses = (0..problem.points()).map(|point| problem.response(grasp, point, None)).collect();
@@ -59,15 +61,16 @@ fn starts(problem: &mut PathProblem<'_>) -> Vec<Coverage> {
 /// The grasps with the best estimates, ordered by them with unstable points removed. Stability costs a hundred times as much as
 /// an estimate, so it is computed for the best only.
 fn best_estimates<'b>(problem: &mut PathProblem<'_>, entries: &'b [LibraryEntry]) -> Vec<(Score, &'b BoardGrasp)> {
+    let until_stopped = entries.iter().take_while(|_| !problem.watch.is_stopped());
     let estimate = |LibraryEntry { grasp, .. }: &'b LibraryEntry| {
         let estimates = problem.estimates(grasp);
         (Score::of(estimates.iter().copied()), grasp, estimates)
     };
-    let mut estimated: Vec<_> = entries.iter().map(estimate).collect();
+    let mut estimated: Vec<_> = until_stopped.map(estimate).collect();
     estimated.sort_by(|a, b| a.0.order(&b.0));
     estimated.truncate(problem.budget.path.estimates);
     for (score, grasp, estimates) in &mut estimated {
-        if problem.is_stopped() {
+        if problem.is_exhausted() {
             break;
         }
         problem.remove_unstable(grasp, estimates);
@@ -82,7 +85,7 @@ fn best_estimates<'b>(problem: &mut PathProblem<'_>, entries: &'b [LibraryEntry]
 fn improve(problem: &mut PathProblem<'_>, mut here: Coverage) -> Coverage {
     let mut scale = 1.0_f64;
     for _ in 0..TRIES_PER_STEP * problem.budget.path.steps {
-        if problem.is_stopped() {
+        if problem.is_exhausted() {
             break;
         }
         let better = displaced_grasp(problem, &here.grasp, scale).and_then(|grasp| better(problem, grasp, &here));

@@ -263,7 +263,10 @@ mod tests {
         *,
     };
     use crate::{
-        model::scenario::{Budget, Scenario, StandingPlace},
+        model::{
+            scenario::{Budget, Scenario, StandingPlace},
+            stop::Never,
+        },
         reproduce::paper,
     };
 
@@ -283,7 +286,8 @@ mod tests {
                 loaded.scenario.planner.budget = Budget::Fast;
                 loaded.scenario.human.place = place;
                 let clearance_m = loaded.scenario.limits.clearance_m();
-                let library = GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), clearance_m);
+                let library =
+                    GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), clearance_m);
                 compare_starts(&loaded.scenario, &library);
             }
         }
@@ -301,11 +305,11 @@ mod tests {
     }
 
     fn compare_starts(scenario: &Scenario, library: &GraspLibrary) {
-        let problem = Problem::new(scenario, &library.robot).unwrap();
-        let postures = own_postures(&problem.human, scenario);
-        let natural = natural_entries(scenario, &problem.human, &library.robot, &postures, 300);
-        let mut evaluator = Evaluator::new(problem, SearchStats::unlimited());
-        let starts = screened(&mut evaluator, library, &postures, &natural, &SearchBudget::of(scenario));
+        let problem = Problem::new(scenario, &library.robot, &Never).unwrap();
+        let postures = own_postures(&problem.human, scenario, &Never);
+        let natural = natural_entries(scenario, &problem.human, &library.robot, &postures, 300, &Never);
+        let mut evaluator = Evaluator::new(problem, SearchStats::unlimited(&Never));
+        let starts = screened(&mut evaluator, library, &postures, &natural, &SearchBudget::of(scenario), &Never);
         assert!(starts.len() > 2, "{}: {}", scenario.name, starts.len());
         starts.iter().for_each(|start| compare(&evaluator.problem, start));
     }

@@ -7,16 +7,17 @@ use super::{
         candidate::Candidate,
         evaluate::{self, Evaluator, Feasible, Rejected},
         outcome::Rejection,
-        params::refine::{RADIUS_RANGE, REPAIR_STEPS},
+        params::refine::{HOPELESS_UTILISATION, RADIUS_RANGE, REPAIR_STEPS},
         qp,
     },
     linearization::Linearization,
 };
+use crate::model::plan::PostureConstraint;
 
 /// The candidate itself if it satisfies every constraint, or else one near it that does: the shortest steps that satisfy the
 /// linearised constraints are made until the exact ones are satisfied. `None` if a few steps do not lead there.
 pub fn repair(evaluator: &mut Evaluator<'_>, mut candidate: Candidate) -> Option<Feasible> {
-    for step_number in 0..=REPAIR_STEPS {
+    for round in 0..=REPAIR_STEPS {
         if evaluator.stats.is_exhausted() {
             return None;
         }
@@ -26,19 +27,24 @@ pub fn repair(evaluator: &mut Evaluator<'_>, mut candidate: Candidate) -> Option
             Err(rejected) => *rejected,
         };
         evaluator.stats.reject(rejected.why);
-        if crate::planner::params::knob("GIVEUP", 1) == 1 {
-            let utilisation = if rejected.why == Rejection::Collision && step_number == 0 {
-                evaluator.assess(&rejected.candidate, &rejected.configuration.placement.x_wo).utilisation
-            } else {
-                rejected.stability.utilisation
-            };
-            if utilisation > 2.0 {
-                return None;
-            }
+        if is_hopeless(evaluator, &rejected, round == 0) {
+            return None;
         }
         candidate = step(evaluator, rejected)?;
     }
     None
+}
+
+/// True if a candidate is too far from stability for a repair. That of one that collides is tested at the `first` round alone.
+fn is_hopeless(evaluator: &mut Evaluator<'_>, rejected: &Rejected, first: bool) -> bool {
+    let Rejected { candidate, configuration, stability, why } = rejected;
+    let collides = matches!(why, Rejection::Collision | Rejection::Posture(PostureConstraint::LineOfSight));
+    let utilisation = if collides && first {
+        evaluator.assess(candidate, &configuration.placement.x_wo).utilisation
+    } else {
+        stability.utilisation
+    };
+    utilisation > HOPELESS_UTILISATION
 }
 
 /// The shortest step that satisfies the linearised constraints. Stability is among them only if it is what is violated: it
