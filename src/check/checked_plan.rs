@@ -31,6 +31,8 @@ pub struct CheckedPlan<'a> {
     link_poses: Vec<Pose>,
     holding: Vec<usize>,
     board: BoardBody,
+    /// That of the robot if it exists already.
+    given_collision: Option<&'a CollisionModel>,
     /// Made when it is needed.
     collision: OnceLock<CollisionModel>,
 }
@@ -88,9 +90,17 @@ impl<'a> CheckedPlan<'a> {
                 plan,
                 arms,
                 person,
+                given_collision: None,
                 collision: OnceLock::new(),
             }),
         }
+    }
+
+    /// With a collision model of this robot, so that none is made.
+    #[must_use]
+    pub fn with_collision(mut self, collision: &'a CollisionModel) -> Self {
+        self.given_collision = Some(collision);
+        self
     }
 
     /// The robot.
@@ -152,7 +162,7 @@ impl<'a> CheckedPlan<'a> {
     /// The collision model of the robot.
     #[must_use]
     pub fn collision(&self) -> &CollisionModel {
-        self.collision.get_or_init(|| CollisionModel::new(self.robot))
+        self.given_collision.unwrap_or_else(|| self.collision.get_or_init(|| CollisionModel::new(self.robot)))
     }
 
     /// The first two bodies that are closer than docs/method.md#35-clearances allows, `clearance_m` being that of the robot from

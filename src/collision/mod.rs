@@ -6,6 +6,7 @@
 mod bars;
 mod board_distance;
 mod clearances;
+mod convex;
 mod link_shapes;
 mod near_pairs;
 mod nearest;

@@ -1,9 +1,10 @@
 //! Pairs of primitives that are near each other, with their closest points.
 
 use nalgebra::{Point3, Vector3};
+use parry3d_f64::glamx::DVec3;
 
 use super::{
-    CollisionModel, Scene,
+    CollisionModel, PlacedLink, Scene,
     shapes::{Piece, Placed},
 };
 use crate::model::frames::Pose;
@@ -33,9 +34,13 @@ pub struct NearPair {
 }
 
 /// A body with its primitives in W.
+#[derive(Clone, Copy)]
 struct PlacedBody<'a> {
     body: BodyRef,
-    pieces: Vec<Placed<'a>>,
+    pieces: &'a [Placed<'a>],
+    /// Bounding sphere.
+    centre_w: DVec3,
+    radius_m: f64,
 }
 
 impl CollisionModel {
@@ -43,29 +48,28 @@ impl CollisionModel {
     /// [`CollisionModel::first_violation`]. `scene` must be finite.
     #[must_use]
     pub fn near(&self, scene: &Scene<'_>, within_m: f64) -> Vec<NearPair> {
-        let links = self.links.iter().zip(scene.link_poses).enumerate();
-        let links: Vec<_> = links
-            .map(|(link, (shapes, x_wl))| PlacedBody {
-                body: BodyRef::Link(link),
-                pieces: shapes.pieces.iter().map(|piece| piece.placed(x_wl)).collect(),
-            })
-            .collect();
-        let board = PlacedBody { body: BodyRef::Board, pieces: vec![scene.board.piece.placed(&scene.x_wo)] };
-        let capsules: Vec<_> =
-            scene.person.iter().map(|part| Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m)).collect();
+        let placed = self.placed_primitives(scene.link_poses);
+        let of_link = |(link, PlacedLink { pieces, centre_w, radius_m })| PlacedBody {
+            body: BodyRef::Link(link),
+            pieces,
+            centre_w,
+            radius_m,
+        };
+        let links: Vec<_> = self.placed_links(scene.link_poses, &placed).into_iter().enumerate().map(of_link).collect();
+        let board = [scene.board.piece.placed(&scene.x_wo)];
+        let board = PlacedBody::of_piece(BodyRef::Board, &board);
         let mut found = Vec::new();
         for pair in &self.self_pairs {
-            let ([a, b], required_m) = (pair.links, pair.required_m(scene.clearance_m));
-            let centres_m = (self.centre_w(scene, a) - self.centre_w(scene, b)).norm();
-            if centres_m <= self.links[a].radius_m + self.links[b].radius_m + required_m + within_m {
-                pairs(&links[a], &links[b], required_m, within_m, &mut found);
-            }
+            let [a, b] = pair.links.map(|link| &links[link]);
+            pairs(a, b, pair.required_m(scene.clearance_m), within_m, &mut found);
         }
         for link in (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)) {
             pairs(&links[link], &board, self.board_clearance_m(link, scene.clearance_m), within_m, &mut found);
         }
-        for (index, (part, capsule)) in scene.person.iter().zip(&capsules).enumerate() {
-            let body = PlacedBody { body: BodyRef::Person(index), pieces: vec![capsule.placed(&Pose::identity())] };
+        for (index, part) in scene.person.iter().enumerate() {
+            let capsule = Piece::capsule_w(&part.p0_w, &part.p1_w, part.radius_m);
+            let capsule = [capsule.placed(&Pose::identity())];
+            let body = PlacedBody::of_piece(BodyRef::Person(index), &capsule);
             if let Some(clearance_m) = part.board_clearance_m {
                 pairs(&board, &body, clearance_m, within_m, &mut found);
             }
@@ -75,16 +79,28 @@ impl CollisionModel {
         }
         found
     }
+}
 
-    fn centre_w(&self, scene: &Scene<'_>, link: usize) -> Point3<f64> {
-        scene.link_poses[link] * self.links[link].centre_l
+impl<'a> PlacedBody<'a> {
+    /// A body of one primitive.
+    fn of_piece(body: BodyRef, piece: &'a [Placed<'a>; 1]) -> Self {
+        let (centre_w, radius_m) = piece[0].sphere();
+        Self { body, pieces: piece, centre_w, radius_m }
     }
 }
 
 fn pairs(a: &PlacedBody<'_>, b: &PlacedBody<'_>, required_m: f64, within_m: f64, found: &mut Vec<NearPair>) {
+    let apart_m = required_m + within_m;
+    let reach_m = a.radius_m + b.radius_m + apart_m;
+    if (a.centre_w - b.centre_w).length_squared() > reach_m * reach_m {
+        return;
+    }
     for (i, piece) in a.pieces.iter().enumerate() {
+        if !piece.may_meet_sphere(b.centre_w, b.radius_m + apart_m) {
+            continue;
+        }
         for (j, other) in b.pieces.iter().enumerate() {
-            if let Some(closest) = piece.closest(other, required_m + within_m) {
+            if let Some(closest) = piece.closest(other, apart_m) {
                 found.push(NearPair {
                     bodies: [(a.body, i), (b.body, j)],
                     p_w: closest.p_w,

@@ -4,10 +4,11 @@ use nalgebra::{Point3, Unit, Vector3};
 use parry3d_f64::{
     glamx::{DQuat, DVec3},
     math::Pose as ParryPose,
-    query::{self, gjk, gjk::GJKResult},
+    query,
     shape::{SharedShape, SupportMap},
 };
 
+use super::convex::{Bounds, ClosestPoints, Core, Round, Search};
 use crate::{
     model::frames::Pose,
     robot::{Link, Shape},
@@ -18,6 +19,10 @@ use crate::{
 pub struct Piece {
     x_ls: ParryPose,
     shape: SharedShape,
+    core: Core,
+    /// The radius about the core, m.
+    round_m: f64,
+    /// The radius of the bounding sphere, m.
     radius_m: f64,
 }
 
@@ -41,10 +46,10 @@ pub struct Closest {
 }
 
 /// A primitive in W.
+#[derive(Clone, Copy)]
 pub struct Placed<'a> {
     pose: ParryPose,
-    shape: &'a SharedShape,
-    radius_m: f64,
+    piece: &'a Piece,
 }
 
 impl Piece {
@@ -102,7 +107,8 @@ impl Piece {
     }
 
     fn at(x_ls: &Pose, shape: SharedShape, radius_m: f64) -> Self {
-        Self { x_ls: to_parry(x_ls), shape, radius_m }
+        let (core, round_m) = Core::of_shape(&shape);
+        Self { x_ls: to_parry(x_ls), shape, core, round_m, radius_m }
     }
 
     /// The primitive of a link at `x_wl`.
@@ -111,7 +117,7 @@ impl Piece {
     }
 
     fn placed_by(&self, x_wl: &ParryPose) -> Placed<'_> {
-        Placed { pose: x_wl * self.x_ls, shape: &self.shape, radius_m: self.radius_m }
+        Placed { pose: x_wl * self.x_ls, piece: self }
     }
 }
 
@@ -137,54 +143,49 @@ pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
 }
 
 impl Placed<'_> {
-    /// True if two primitives overlap or are closer than `required_m`.
-    pub fn closer_than(&self, other: &Placed<'_>, required_m: f64) -> bool {
-        if !self.may_meet_sphere(other.pose.translation, other.radius_m + required_m)
-            || !other.may_meet_sphere(self.pose.translation, self.radius_m + required_m)
-        {
-            return false;
-        }
-        if required_m > 0.0 { !self.is_beyond(other, required_m) } else { self.overlaps(other) }
+    /// Its core in W.
+    fn round(&self) -> Round<'_> {
+        Round::new(&self.piece.core, self.piece.round_m, &self.pose)
     }
 
-    /// True if the distance of two primitives exceeds `within_m`, which is above 0. It is faster than a distance: the search for
-    /// the closest points ends with a plane between the primitives that tells that they are too far apart.
-    fn is_beyond(&self, other: &Placed<'_>, within_m: f64) -> bool {
-        let by_distance = || self.distance_m(other) > within_m;
-        let is_searched = |shape: &SharedShape| shape.as_ball().is_none();
-        let are_boxes = self.shape.as_cuboid().is_some() && other.shape.as_cuboid().is_some();
-        let (Some(own), Some(others)) = (self.shape.as_support_map(), other.shape.as_support_map()) else {
-            return by_distance();
-        };
-        if are_boxes || !is_searched(self.shape) || !is_searched(other.shape) {
-            return by_distance();
+    /// Its bounding sphere in W: centre and radius, m.
+    pub fn sphere(&self) -> (DVec3, f64) {
+        (self.pose.translation, self.piece.radius_m)
+    }
+
+    /// False only if the bounding spheres are more than `within_m` apart.
+    fn spheres_within(&self, other: &Placed<'_>, within_m: f64) -> bool {
+        let reach_m = self.piece.radius_m + other.piece.radius_m + within_m;
+        (self.pose.translation - other.pose.translation).length_squared() <= reach_m * reach_m
+    }
+
+    /// True if two primitives overlap or are closer than `required_m`.
+    pub fn closer_than(&self, other: &Placed<'_>, required_m: f64) -> bool {
+        if !self.spheres_within(other, required_m) {
+            return false;
         }
-        let x_so = self.pose.inv_mul(&other.pose);
-        let start = (-x_so.translation).try_normalize().unwrap_or(DVec3::X);
-        let mut simplex = gjk::VoronoiSimplex::new();
-        simplex.reset(gjk::CsoPoint::from_shapes(&x_so, own, others, start));
-        match gjk::closest_points(&x_so, own, others, within_m, true, &mut simplex) {
-            GJKResult::ClosestPoints(one, other, _) => (one - other).length() > within_m,
-            GJKResult::NoIntersection(towards) => {
-                // The search may also have ended without a result.
-                let apart = gjk::CsoPoint::from_shapes(&x_so, own, others, towards).point.dot(-towards);
-                apart > within_m || by_distance()
-            }
-            GJKResult::Intersection | GJKResult::Proximity(_) => false,
+        let (one, two) = (self.round(), other.round());
+        match one.bounds(&two, required_m) {
+            Bounds::Beyond => false,
+            Bounds::Within(_) => true,
+            Bounds::Unknown(towards) => match one.closest(&two, required_m, towards) {
+                Search::Beyond => false,
+                Search::Found(found) => found.distance_m <= required_m,
+                Search::Overlap | Search::Failed if required_m > 0.0 => self.distance_m(other) <= required_m,
+                Search::Overlap | Search::Failed => self.overlaps(other),
+            },
         }
     }
 
     /// True if two primitives overlap. Faster than a distance.
     fn overlaps(&self, other: &Placed<'_>) -> bool {
-        query::intersection_test(&self.pose, &**self.shape, &other.pose, &**other.shape)
+        query::intersection_test(&self.pose, &*self.piece.shape, &other.pose, &*other.piece.shape)
             .is_ok_and(|found| found.intersecting)
     }
 
     /// Minimum of `bound_m` and the measure between two primitives, m.
     pub fn distance_within(&self, other: &Placed<'_>, bound_m: f64, measure: Measure) -> f64 {
-        let centres_m = (self.pose.translation - other.pose.translation).length();
-        let within = centres_m < self.radius_m + other.radius_m + bound_m;
-        if !within {
+        if !self.spheres_within(other, bound_m) {
             return bound_m;
         }
         bound_m.min(match measure {
@@ -196,29 +197,32 @@ impl Placed<'_> {
     /// Minimum of `bound_m` and the signed distance of two primitives, m. Each is first tested against the other's bounding
     /// sphere.
     pub fn signed_distance_within(&self, other: &Placed<'_>, bound_m: f64) -> f64 {
-        let near = self.may_meet_sphere(other.pose.translation, other.radius_m + bound_m)
-            && other.may_meet_sphere(self.pose.translation, self.radius_m + bound_m);
+        let near = self.may_meet_sphere(other.pose.translation, other.piece.radius_m + bound_m)
+            && other.may_meet_sphere(self.pose.translation, self.piece.radius_m + bound_m);
         if near { bound_m.min(self.signed_distance_m(other)) } else { bound_m }
     }
 
     /// False only if the primitive does not intersect a sphere in W. For polyhedra one plane is tested, normal to the line
     /// between the centres.
     pub fn may_meet_sphere(&self, centre_w: DVec3, radius_m: f64) -> bool {
-        let Some(polyhedron) = self.shape.as_convex_polyhedron() else { return self.meets_sphere(centre_w, radius_m) };
-        let centre_s = self.pose.inverse_transform_point(centre_w);
-        let reach_m = self.radius_m + radius_m;
-        if centre_s.length_squared() > reach_m * reach_m {
+        let reach_m = self.piece.radius_m + radius_m;
+        if (self.pose.translation - centre_w).length_squared() > reach_m * reach_m {
             return false;
         }
-        let Some(towards) = centre_s.try_normalize() else { return true };
-        towards.dot(centre_s - polyhedron.local_support_point(towards)) <= radius_m
+        match &self.piece.core {
+            Core::Hull(_) => {
+                let centre_s = self.pose.inverse_transform_point(centre_w);
+                let Some(towards) = centre_s.try_normalize() else { return true };
+                towards.dot(centre_s - self.piece.core.local_support_point(towards)) <= radius_m
+            }
+            _ => (self.round().nearest(centre_w) - centre_w).length() <= self.piece.round_m + radius_m,
+        }
     }
 
     /// True if the primitive intersects a sphere in W.
+    #[cfg(test)]
     pub fn meets_sphere(&self, centre_w: DVec3, radius_m: f64) -> bool {
-        let reach_m = self.radius_m + radius_m;
-        (self.pose.translation - centre_w).length_squared() <= reach_m * reach_m
-            && self.shape.distance_to_point(&self.pose, centre_w, true) <= radius_m
+        self.piece.shape.distance_to_point(&self.pose, centre_w, true) <= radius_m
     }
 
     /// Distance between two primitives, or the penetration depth as a negative number, m.
@@ -227,36 +231,53 @@ impl Placed<'_> {
         if distance_m > 0.0 {
             return distance_m;
         }
-        let contact = query::contact(&self.pose, &**self.shape, &other.pose, &**other.shape, 0.0);
-        contact.ok().flatten().map_or(0.0, |contact| contact.dist.min(0.0))
+        self.contact(other, 0.0).map_or(0.0, |contact| contact.distance_m.min(0.0))
     }
 
     /// The closest points of two primitives; `None` if they are farther apart than `within_m`.
     pub fn closest(&self, other: &Placed<'_>, within_m: f64) -> Option<Closest> {
-        let reach_m = self.radius_m + other.radius_m + within_m;
-        if (self.pose.translation - other.pose.translation).length_squared() > reach_m * reach_m {
+        if !self.spheres_within(other, within_m) {
             return None;
         }
-        let found = query::contact(&self.pose, &**self.shape, &other.pose, &**other.shape, within_m);
-        let point = |p: DVec3| Point3::new(p.x, p.y, p.z);
-        found.ok().flatten().map(|found| Closest {
-            p_w: [point(found.point1), point(found.point2)],
-            normal_w: Vector3::new(found.normal1.x, found.normal1.y, found.normal1.z),
-            distance_m: found.dist,
-        })
+        let (one, two) = (self.round(), other.round());
+        let towards = match one.bounds(&two, within_m) {
+            Bounds::Beyond => return None,
+            Bounds::Within(towards) | Bounds::Unknown(towards) => towards,
+        };
+        match one.closest(&two, within_m, towards) {
+            Search::Beyond => None,
+            Search::Found(found) => Some(found.into()),
+            Search::Overlap | Search::Failed => self.contact(other, within_m),
+        }
+    }
+
+    /// As [`Placed::closest`], also for primitives that overlap.
+    fn contact(&self, other: &Placed<'_>, within_m: f64) -> Option<Closest> {
+        let (shape, others) = (&*self.piece.shape, &*other.piece.shape);
+        let found = query::contact(&self.pose, shape, &other.pose, others, within_m).ok().flatten()?;
+        let points = [found.point1, found.point2];
+        Some(ClosestPoints { points, normal: found.normal1, distance_m: found.dist }.into())
     }
 
     /// Distance along a ray to the primitive if it is less than `within_m`, m; zero from inside.
     pub fn ray_m(&self, origin_w: &Point3<f64>, direction_w: &Unit<Vector3<f64>>, within_m: f64) -> Option<f64> {
         let vector = |v: [f64; 3]| DVec3::from_array(v);
         let ray = query::Ray::new(vector(origin_w.coords.into()), vector(direction_w.into_inner().into()));
-        self.shape.cast_ray(&self.pose, &ray, within_m, true)
+        self.piece.shape.cast_ray(&self.pose, &ray, within_m, true)
     }
 
     /// Distance between two primitives, m; zero if they overlap.
     pub fn distance_m(&self, other: &Placed<'_>) -> f64 {
         // All pairs are supported, since boxes, cylinders, balls, capsules and convex polyhedra are support-mapped.
-        query::distance(&self.pose, &**self.shape, &other.pose, &**other.shape).map_or(0.0, |found| found.distance)
+        query::distance(&self.pose, &*self.piece.shape, &other.pose, &*other.piece.shape)
+            .map_or(0.0, |found| found.distance)
+    }
+}
+
+impl From<ClosestPoints> for Closest {
+    fn from(ClosestPoints { points, normal, distance_m }: ClosestPoints) -> Self {
+        let p_w = points.map(|p| Point3::new(p.x, p.y, p.z));
+        Self { p_w, normal_w: Vector3::new(normal.x, normal.y, normal.z), distance_m }
     }
 }
 

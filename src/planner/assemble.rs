@@ -4,9 +4,10 @@ use super::{
     candidate::{Candidate, Placement},
     contact::{placed_object, plan_arms},
     evaluate::{Configuration, Evaluator, Feasible},
+    library::GraspingRobot,
     outcome::Rejection,
     scores::{self, scored},
-    verify::verify,
+    verify::verify_with,
 };
 use crate::{
     comfort,
@@ -91,7 +92,8 @@ fn rejection(evaluator: &Evaluator<'_>, plan: &Plan) -> Option<Rejection> {
     let problem = &evaluator.problem;
     let by_scores = plan.comfort.and_then(|comfort| scores::rejection(&comfort, &problem.scenario.limits));
     by_scores.or_else(|| {
-        let flaws = verify(plan, problem.scenario, &problem.robot.robot);
+        let GraspingRobot { robot, collision, .. } = problem.robot;
+        let flaws = verify_with(plan, problem.scenario, robot, collision);
         (!flaws.is_empty()).then_some(Rejection::Verification)
     })
 }

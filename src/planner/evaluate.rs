@@ -162,12 +162,13 @@ impl<'a> Evaluator<'a> {
 
     /// The equilibrium at a candidate under the load of a case, from which those nearby are cheap; `None` if stability is not compliant or there is no
     /// equilibrium.
-    pub fn local_equilibrium(&self, candidate: &Candidate, x_wo: &Pose, case: usize) -> Option<LocalEquilibrium> {
+    pub fn local_equilibrium(&mut self, candidate: &Candidate, x_wo: &Pose, case: usize) -> Option<LocalEquilibrium> {
         if self.problem.scenario.planner.stability != StabilityKind::Compliant {
             return None;
         }
         let model = load_cases(&self.problem, candidate, x_wo).ok()?.into_case(case);
-        LocalEquilibrium::new(&model, self.problem.stability_limits().load_factor)
+        let load_factor = self.problem.stability_limits().load_factor;
+        LocalEquilibrium::new(&mut self.stability, &model, load_factor)
     }
 
     /// The predicted stability of a plan's grasp, with its clearances; `None` if there is no equilibrium.

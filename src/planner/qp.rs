@@ -2,12 +2,16 @@
 //! 1983), for a few dozen variables.
 //!
 //! Starting at the unconstrained optimum, the most violated constraint becomes active and constraints whose multipliers would
-//! turn negative become inactive, until none is violated. The Hessian is positive definite, so every step is unique. With so
-//! few variables the projections are computed from scratch at every change of the active set.
+//! turn negative become inactive, until none is violated. The Hessian is positive definite, so every step is unique. The
+//! factorisation of the active constraints is updated at every change, as in the paper ([`factors`]).
 //!
 //! It is our own because it is called a hundred times per plan: `benches/qp.rs` measures it beside clarabel.
 
+mod factors;
+
 use nalgebra::{DMatrix, DVector};
+
+use factors::{Factors, axpy, dot};
 
 /// A linear constraint on the step d: `margin + gradient . d >= 0`.
 #[derive(Clone, Debug)]
@@ -31,144 +35,144 @@ pub fn solve(
     constraints: &[LinearConstraint],
     radius: f64,
 ) -> Option<DVector<f64>> {
-    let inverse = hessian.clone().cholesky()?.inverse();
-    let program = Program { constraints: relevant(constraints, radius), radius, count: gradient.len() };
-    let mut d = &inverse * gradient;
-    let mut active: Vec<Active> = Vec::new();
+    let mut factors = Factors::new(hessian)?;
+    let program = Program::new(constraints, radius, gradient.len());
+    let mut d = factors.unconstrained(gradient);
+    let mut multipliers: Vec<f64> = Vec::with_capacity(gradient.len());
+    let mut workspace = Workspace::new(&program);
+    let least_curvature = TOLERANCE * factors.largest_of_inverse();
     let mut changes = 0;
-    while let Some(violated) = program.most_violated(&d) {
-        let normal = program.normal(violated);
-        let along = &inverse * &normal;
+    while let Some(violated) = program.most_violated(&d, &mut workspace.margins) {
+        let Workspace { normal, primal, dual, .. } = &mut workspace;
+        program.normal(violated, normal);
         let mut multiplier = 0.0;
         loop {
             changes += 1;
             if changes > MAX_CHANGES {
                 return None;
             }
-            let Direction { primal, dual } = direction(&active, &normal, &along)?;
-            let curvature = primal.dot(&normal);
-            let full = if curvature > TOLERANCE * inverse.amax() {
-                -program.margin(violated, &d) / curvature
+            let curvature = factors.direction(normal, primal, dual);
+            let full = if curvature > least_curvature {
+                -program.margin(violated, normal, &d) / curvature
             } else {
                 f64::INFINITY
             };
-            let (first, partial) = first_to_leave(&active, &dual);
+            let (first, partial) = first_to_leave(&multipliers, dual);
             let step = full.min(partial);
             if step.is_infinite() {
                 return None;
             }
             if full.is_finite() {
-                d += &primal * step;
+                axpy(&mut d, step, primal);
             }
-            for (constraint, rate) in active.iter_mut().zip(dual.iter()) {
-                constraint.multiplier -= step * rate;
-            }
+            multipliers.iter_mut().zip(dual.iter()).for_each(|(multiplier, rate)| *multiplier -= step * rate);
             multiplier += step;
             if full <= partial {
                 break;
             }
-            active.remove(first);
+            factors.remove(first);
+            multipliers.remove(first);
         }
-        active.push(Active { normal, along, multiplier });
+        factors.add();
+        multipliers.push(multiplier);
     }
-    Some(d)
+    Some(DVector::from_vec(d))
 }
 
-/// A constraint that holds with equality.
-struct Active {
-    normal: DVector<f64>,
-    /// The inverse Hessian times the normal.
-    along: DVector<f64>,
-    multiplier: f64,
+/// Memory of one program.
+struct Workspace {
+    margins: Vec<f64>,
+    normal: Vec<f64>,
+    /// How the step changes as a further constraint's multiplier grows.
+    primal: Vec<f64>,
+    /// The rates at which the active multipliers then fall.
+    dual: Vec<f64>,
+}
+
+impl Workspace {
+    fn new(program: &Program) -> Self {
+        let zeros = vec![0.0; program.count];
+        Self { margins: vec![0.0; program.margins.len()], normal: zeros.clone(), primal: zeros.clone(), dual: zeros }
+    }
 }
 
 /// All constraints, with normals of length 1.
 struct Program {
-    constraints: Vec<LinearConstraint>,
+    /// The normals of the linear constraints by columns: the entries of all constraints for one variable are adjacent.
+    normals: Vec<f64>,
+    /// Their margins at d = 0.
+    margins: Vec<f64>,
     radius: f64,
     count: usize,
 }
 
-/// Constraints with gradients of length 1, without those that no step within the trust region can violate.
-fn relevant(constraints: &[LinearConstraint], radius: f64) -> Vec<LinearConstraint> {
-    constraints
-        .iter()
-        .filter(|constraint| constraint.margin < radius * constraint.gradient.lp_norm(1))
-        .map(|constraint| (constraint, constraint.gradient.norm()))
-        .filter(|(_, length)| *length > 0.0)
-        .map(|(LinearConstraint { gradient, margin }, length)| LinearConstraint {
-            gradient: gradient / length,
-            margin: margin / length,
-        })
-        .collect()
-}
-
 impl Program {
+    /// The constraints without those that no step within the trust region can violate.
+    fn new(constraints: &[LinearConstraint], radius: f64, count: usize) -> Self {
+        let relevant: Vec<_> = constraints
+            .iter()
+            .filter(|constraint| {
+                constraint.margin < radius * constraint.gradient.iter().map(|entry| entry.abs()).sum::<f64>()
+            })
+            .map(|constraint| (constraint, constraint.gradient.norm()))
+            .filter(|(_, length)| *length > 0.0)
+            .collect();
+        let rows = relevant.len();
+        let mut normals = vec![0.0; rows * count];
+        for (row, (constraint, length)) in relevant.iter().enumerate() {
+            for (variable, entry) in constraint.gradient.iter().enumerate() {
+                normals[variable * rows + row] = entry / length;
+            }
+        }
+        let margins = relevant.iter().map(|(constraint, length)| constraint.margin / length).collect();
+        Self { normals, margins, radius, count }
+    }
+
     /// The most violated constraint, as an index: the linear constraints come first, then `radius - d_i` and `radius + d_i`
     /// alternately.
-    fn most_violated(&self, d: &DVector<f64>) -> Option<usize> {
-        let margins = (0..self.constraints.len() + 2 * self.count).map(|number| (number, self.margin(number, d)));
-        margins.filter(|(_, margin)| *margin < -TOLERANCE).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| number)
-    }
-
-    fn margin(&self, number: usize, d: &DVector<f64>) -> f64 {
-        match self.constraints.get(number) {
-            Some(constraint) => constraint.margin + constraint.gradient.dot(d),
-            None => {
-                let (variable, sign) = self.bound(number);
-                self.radius + sign * d[variable]
+    fn most_violated(&self, d: &[f64], margins: &mut [f64]) -> Option<usize> {
+        let rows = self.margins.len();
+        margins.copy_from_slice(&self.margins);
+        for (variable, step) in d.iter().enumerate() {
+            axpy(margins, *step, &self.normals[variable * rows..(variable + 1) * rows]);
+        }
+        let bounds = d.iter().flat_map(|step| [self.radius - step, self.radius + step]);
+        let mut most = (None, -TOLERANCE);
+        for (number, margin) in margins.iter().copied().chain(bounds).enumerate() {
+            if margin < most.1 {
+                most = (Some(number), margin);
             }
         }
+        most.0
     }
 
-    fn normal(&self, number: usize) -> DVector<f64> {
-        match self.constraints.get(number) {
-            Some(constraint) => constraint.gradient.clone(),
-            None => {
-                let (variable, sign) = self.bound(number);
-                let mut normal = DVector::zeros(self.count);
-                normal[variable] = sign;
-                normal
-            }
+    /// The margin of a constraint with this normal.
+    fn margin(&self, number: usize, normal: &[f64], d: &[f64]) -> f64 {
+        self.margins.get(number).unwrap_or(&self.radius) + dot(normal, d)
+    }
+
+    /// Writes the normal of a constraint.
+    fn normal(&self, number: usize, normal: &mut [f64]) {
+        let rows = self.margins.len();
+        if number < rows {
+            normal.iter_mut().enumerate().for_each(|(variable, entry)| *entry = self.normals[variable * rows + number]);
+        } else {
+            let bound = number - rows;
+            normal.fill(0.0);
+            normal[bound / 2] = if bound.is_multiple_of(2) { -1.0 } else { 1.0 };
         }
     }
-
-    fn bound(&self, number: usize) -> (usize, f64) {
-        let number = number - self.constraints.len();
-        (number / 2, if number.is_multiple_of(2) { -1.0 } else { 1.0 })
-    }
-}
-
-/// How the step and the active multipliers change as a further constraint's multiplier grows.
-struct Direction {
-    primal: DVector<f64>,
-    /// The rates at which the multipliers fall.
-    dual: DVector<f64>,
-}
-
-/// With H the inverse Hessian, N the active normals and `along` = H n: `dual = (N' H N)^-1 N' H n`,
-/// `primal = H (n - N dual)`.
-fn direction(active: &[Active], normal: &DVector<f64>, along: &DVector<f64>) -> Option<Direction> {
-    if active.is_empty() {
-        return Some(Direction { primal: along.clone(), dual: DVector::zeros(0) });
-    }
-    let gram = DMatrix::from_fn(active.len(), active.len(), |a, b| active[a].normal.dot(&active[b].along));
-    let mut dual = DVector::from_fn(active.len(), |a, _| active[a].along.dot(normal));
-    gram.cholesky()?.solve_mut(&mut dual);
-    let mut primal = along.clone();
-    for (active, rate) in active.iter().zip(dual.iter()) {
-        primal.axpy(-rate, &active.along, 1.0);
-    }
-    Some(Direction { primal, dual })
 }
 
 /// The active constraint whose multiplier reaches zero first, and the step at which it does.
-fn first_to_leave(active: &[Active], dual: &DVector<f64>) -> (usize, f64) {
-    let steps = active.iter().zip(dual.iter()).enumerate().filter(|(_, (_, rate))| **rate > 0.0);
-    steps
-        .map(|(number, (active, rate))| (number, active.multiplier / rate))
-        .min_by(|a, b| a.1.total_cmp(&b.1))
-        .unwrap_or((0, f64::INFINITY))
+fn first_to_leave(multipliers: &[f64], dual: &[f64]) -> (usize, f64) {
+    let mut first = (0, f64::INFINITY);
+    for (number, (multiplier, rate)) in multipliers.iter().zip(dual).enumerate() {
+        if *rate > 0.0 && multiplier / rate < first.1 {
+            first = (number, multiplier / rate);
+        }
+    }
+    first
 }
 
 #[cfg(test)]
@@ -198,6 +202,51 @@ mod tests {
     }
 
     proptest! {
+        /// The conditions of Karush, Kuhn and Tucker, with multipliers by least squares: the gradient at the solution is a
+        /// combination of the active constraints' normals with coefficients of one sign. As in a refinement there are more
+        /// constraints than variables, many of them active, and some twice.
+        #[test]
+        fn the_gradient_is_held_by_the_active_constraints(
+            numbers in prop::collection::vec(-1.0..1.0_f64, 19 * 19 + 19 + 40 * 20),
+            radius in 0.05..2.0_f64,
+        ) {
+            let count = 19;
+            let (root, rest) = numbers.split_at(count * count);
+            let root = DMatrix::from_column_slice(count, count, root);
+            let hessian = &root * root.transpose() + DMatrix::identity(count, count) * 0.1;
+            let gradient = DVector::from_column_slice(&rest[..count]) * 5.0;
+            let mut constraints: Vec<_> =
+                rest[count..].chunks(20).map(|numbers| constraint(&numbers[..19], 0.2 * numbers[19].abs())).collect();
+            constraints.extend_from_within(..5);
+            let d = solve(&gradient, &hessian, &constraints, radius).unwrap();
+            let mut normals: Vec<DVector<f64>> = Vec::new();
+            for constraint in &constraints {
+                let margin = constraint.margin + constraint.gradient.dot(&d);
+                prop_assert!(margin > -1e-8);
+                if margin < 1e-8 && !normals.contains(&constraint.gradient) {
+                    normals.push(constraint.gradient.clone());
+                }
+            }
+            for variable in 0..count {
+                prop_assert!(d[variable].abs() < radius + 1e-8);
+                if d[variable].abs() > radius - 1e-8 {
+                    let mut normal = DVector::zeros(count);
+                    normal[variable] = -d[variable].signum();
+                    normals.push(normal);
+                }
+            }
+            let residual = &gradient - &hessian * &d;
+            if normals.is_empty() {
+                prop_assert!(residual.amax() < 1e-8);
+            } else {
+                // gradient - hessian d + sum multiplier normal = 0.
+                let normals = DMatrix::from_columns(&normals);
+                let multipliers = -normals.clone().svd(true, true).solve(&residual, 1e-12).unwrap();
+                prop_assert!((residual + &normals * &multipliers).amax() < 1e-7);
+                prop_assert!(multipliers.min() > -1e-7);
+            }
+        }
+
         /// The solution is feasible, and no drawn feasible point has a higher objective.
         #[test]
         fn no_feasible_step_is_better(

@@ -7,6 +7,7 @@
 use super::{assessment::load_shift, load_shift::Held, scores::scored};
 use crate::{
     check::{CheckedPerson, CheckedPlan, FIGURE_TOLERANCE, Flaw},
+    collision::CollisionModel,
     comfort,
     human::Human,
     model::{
@@ -26,20 +27,32 @@ const SOLVER_TOLERANCE: f64 = 1e-4;
 /// All flaws of a plan under a scenario; empty if it satisfies every constraint and states its figures correctly.
 #[must_use]
 pub fn verify(plan: &Plan, scenario: &Scenario, robot: &Robot) -> Vec<Flaw> {
-    let checked = match CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool) {
-        Ok(checked) => checked,
-        Err(flaws) => return flaws.iter().cloned().collect(),
-    };
+    match CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool) {
+        Ok(checked) => flaws_of(&checked, scenario),
+        Err(flaws) => flaws.iter().cloned().collect(),
+    }
+}
+
+/// As [`verify`], with the collision model of the robot, which depends on nothing else.
+pub fn verify_with(plan: &Plan, scenario: &Scenario, robot: &Robot, collision: &CollisionModel) -> Vec<Flaw> {
+    match CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool) {
+        Ok(checked) => flaws_of(&checked.with_collision(collision), scenario),
+        Err(flaws) => flaws.iter().cloned().collect(),
+    }
+}
+
+fn flaws_of(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Vec<Flaw> {
+    let plan = checked.plan();
     let mut flaws = checked.inexact();
-    verify_stability(&checked, scenario, &mut flaws);
-    verify_clearance(&checked, scenario, &mut flaws);
+    verify_stability(checked, scenario, &mut flaws);
+    verify_clearance(checked, scenario, &mut flaws);
     match (checked.person(), &plan.comfort) {
         (Some(person), Some(stated)) => {
-            verify_comfort(&checked, person, stated, scenario, &mut flaws);
+            verify_comfort(checked, person, stated, scenario, &mut flaws);
             let contact = checked.first_contact(scenario.limits.clearance_m());
             flaws.extend(contact.map(|contact| Flaw::Contact(contact.reason)));
             flaws.extend(checked.posture_flaws());
-            flaws.extend(other_posture(&checked, person));
+            flaws.extend(other_posture(checked, person));
         }
         (None, _) => flaws.push(Flaw::Missing { key: "human" }),
         (_, None) => flaws.push(Flaw::Missing { key: "comfort" }),

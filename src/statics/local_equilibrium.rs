@@ -10,6 +10,7 @@ use super::{
     equilibrium::{CompliantResponse, Equilibrium},
     solvers::{energy::HandEnergy, interior_point::InteriorPoint},
     welded::WeldedStiffness,
+    workspace::StabilityWorkspace,
 };
 use crate::model::scenario::Limits;
 
@@ -32,14 +33,15 @@ impl LocalEquilibrium {
     /// `None` without an equilibrium under the weight alone or at the load factor, or if a pad has no friction.
     /// Also `None` if pads are at their limits beside a measured gripper: the interior point has pads alone.
     #[must_use]
-    pub fn new(model: &ContactModel, load_factor: f64) -> Option<Self> {
+    pub fn new(workspace: &mut StabilityWorkspace, model: &ContactModel, load_factor: f64) -> Option<Self> {
         let welded = WeldedStiffness::new(model);
         let energies = HandEnergy::of_hands(model);
-        let base = |load_factor: f64| {
+        let mut base = |load_factor: f64| {
             if welded.as_ref().is_some_and(|welded| elastic::equilibrium(model, welded, load_factor).is_some()) {
                 return Some(Base::Welded);
             }
-            InteriorPoint::solve(model, &energies, load_factor).map(|point| Base::InteriorPoint(Box::new(point)))
+            let point = workspace.interior_point(model, &energies, load_factor);
+            point.map(|point| Base::InteriorPoint(Box::new(point)))
         };
         Some(Self { load_factor, unloaded: base(0.0)?, loaded: base(load_factor)? })
     }

@@ -13,6 +13,7 @@ use super::{
         energy::HandEnergy,
         interior_point::{InteriorPoint, Solution},
     },
+    workspace::StabilityWorkspace,
 };
 use crate::{check::CheckedPlan, human::default_tool, model::scenario::Person, scenario::read_plan};
 
@@ -66,6 +67,22 @@ fn the_interior_point_agrees_with_clarabel() {
         }
     }
     assert!(found > 30, "{found}");
+}
+
+/// A workspace keeps its last equilibria: whatever it was asked for before, its answers are those of a new one.
+#[test]
+fn an_equilibrium_does_not_depend_on_earlier_ones() {
+    let (models, mut kept) = (models(), StabilityWorkspace::new());
+    for _ in 0..2 {
+        for model in &models {
+            let energies = HandEnergy::of_hands(model);
+            for load_factor in [0.0, 1.0, 1.0, 0.0, 50.0] {
+                let solve =
+                    |workspace: &mut StabilityWorkspace| workspace.solve_equilibrium(model, &energies, load_factor);
+                assert_eq!(solve(&mut kept), solve(&mut StabilityWorkspace::new()), "at {load_factor}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Solvers that are kept between contact models.
 
+use std::collections::VecDeque;
+
 use super::{
     contact_model::{ContactModel, ContactModelError},
     elastic,
@@ -19,6 +21,35 @@ pub struct StabilityWorkspace {
     load: ReusedSolver,
     friction: ReusedSolver,
     equilibrium: ReusedSolver,
+    recent: RecentPoints,
+}
+
+/// The last equilibria by the interior point, the newest first: a planner that has assessed a grasp asks for the derivatives of
+/// its response soon. An equilibrium that is taken from here is that of a new solve, bit for bit.
+#[derive(Default)]
+struct RecentPoints(VecDeque<RecentPoint>);
+
+struct RecentPoint {
+    model: ContactModel,
+    load_factor: f64,
+    point: InteriorPoint,
+}
+
+/// Two of each of a few grasps, with and without the load.
+const RECENT_POINTS: usize = 8;
+
+impl RecentPoints {
+    /// The equilibrium of a contact model; `None` if it is not found, see [`InteriorPoint::solve`].
+    fn solve(&mut self, model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<&InteriorPoint> {
+        let is_same = |recent: &RecentPoint| recent.load_factor == load_factor && recent.model == *model;
+        if let Some(number) = self.0.iter().position(is_same) {
+            return self.0.get(number).map(|recent| &recent.point);
+        }
+        let point = InteriorPoint::solve(model, energies, load_factor)?;
+        self.0.truncate(RECENT_POINTS - 1);
+        self.0.push_front(RecentPoint { model: model.clone(), load_factor, point });
+        self.0.front().map(|recent| &recent.point)
+    }
 }
 
 /// What of a response does not depend on the load: it is the same for all loads of a grasp.
@@ -79,9 +110,9 @@ impl StabilityWorkspace {
         model.check()?;
         let energies = HandEnergy::of_hands(model);
         Ok(match solver {
-            EquilibriumSolver::InteriorPoint => by_interior_point(model, &energies, load_factor).map_or_else(
+            EquilibriumSolver::InteriorPoint => InteriorPoint::solve(model, &energies, load_factor).map_or_else(
                 || EquilibriumOutcome::Unknown { status: "not converged".into() },
-                EquilibriumOutcome::Found,
+                |point| EquilibriumOutcome::Found(of_point(model, load_factor, &point)),
             ),
             EquilibriumSolver::Clarabel => self.by_clarabel(model, &energies, load_factor),
         })
@@ -134,8 +165,20 @@ impl StabilityWorkspace {
         energies: &[HandEnergy],
         load_factor: f64,
     ) -> EquilibriumOutcome {
-        by_interior_point(model, energies, load_factor)
-            .map_or_else(|| self.by_clarabel(model, energies, load_factor), EquilibriumOutcome::Found)
+        match self.recent.solve(model, energies, load_factor) {
+            Some(point) => EquilibriumOutcome::Found(of_point(model, load_factor, point)),
+            None => self.by_clarabel(model, energies, load_factor),
+        }
+    }
+
+    /// The converged equilibrium with its factorised system; `None` without convergence.
+    pub(super) fn interior_point(
+        &mut self,
+        model: &ContactModel,
+        energies: &[HandEnergy],
+        load_factor: f64,
+    ) -> Option<InteriorPoint> {
+        self.recent.solve(model, energies, load_factor).cloned()
     }
 
     fn by_clarabel(&mut self, model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> EquilibriumOutcome {
@@ -151,9 +194,9 @@ impl StabilityWorkspace {
     }
 }
 
-fn by_interior_point(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Equilibrium> {
-    let found = InteriorPoint::solve(model, energies, load_factor)?.solution(model);
-    Some(Equilibrium::of_hands(model, load_factor, found.hand_wrenches, found.board))
+fn of_point(model: &ContactModel, load_factor: f64, point: &InteriorPoint) -> Equilibrium {
+    let found = point.solution(model);
+    Equilibrium::of_hands(model, load_factor, found.hand_wrenches, found.board)
 }
 
 fn solve_load(solver: &mut ReusedSolver, model: &ContactModel, kind: ProgramKind) -> LoadFactorOutcome {

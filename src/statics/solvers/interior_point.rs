@@ -14,10 +14,11 @@
 //! conditions of a slightly different contact model, is exact to first order. A derivative of an equilibrium therefore
 //! costs a fraction of an equilibrium.
 
-use nalgebra::{Cholesky, Const, SMatrix, SVector, Vector6};
+use nalgebra::{SMatrix, SVector, Vector6};
 
 use super::{
     energy::HandEnergy,
+    lower::Lower,
     pad_cone::{self, Scaling, Slack},
     units::{self, DISPLACEMENT_UNIT_M, FORCE_UNIT_N, balance_twist, pad_wrench},
 };
@@ -152,16 +153,16 @@ struct HandStep {
 struct Factor {
     hands: Vec<HandFactor>,
     /// `sum rows' M^-1 rows`, with ones for absent grips.
-    balance: Cholesky<f64, Const<ROWS>>,
+    balance: Lower<ROWS>,
 }
 
 #[derive(Clone, Debug)]
 struct HandFactor {
     scalings: [Scaling; 2],
-    /// M, the energy plus the curvature of the limits.
-    own: Cholesky<f64, Const<12>>,
-    /// `M^-1 rows`.
-    solved_rows: HandRows,
+    /// `M = L L'`, the energy plus the curvature of the limits.
+    own: Lower<12>,
+    /// `L^-1 rows`.
+    half_solved_rows: HandRows,
 }
 
 /// A converged equilibrium with its factorised Newton system.
@@ -312,35 +313,35 @@ fn factorised(program: &EquilibriumProgram, points: &[HandPoint]) -> Option<Fact
             let mut block = own.fixed_view_mut::<6, 6>(6 * pad, 6 * pad);
             block += scaling.curvature(hand.friction[pad]);
         }
-        let own = own.cholesky()?;
-        let solved_rows = own.solve(&hand.rows);
-        let part = hand.rows.tr_mul(&solved_rows);
+        let own = Lower::new(&own)?;
+        let half_solved_rows = own.forward_matrix(&hand.rows);
+        let part = half_solved_rows.tr_mul(&half_solved_rows);
         let mut shared = balance.fixed_view_mut::<6, 6>(0, 0);
         shared += part.fixed_view::<6, 6>(0, 0);
         balance.fixed_view_mut::<6, 1>(0, 6 + number).copy_from(&part.fixed_view::<6, 1>(0, 6));
         balance.fixed_view_mut::<1, 6>(6 + number, 0).copy_from(&part.fixed_view::<1, 6>(6, 0));
         balance[(6 + number, 6 + number)] = part[(6, 6)];
-        hands.push(HandFactor { scalings, own, solved_rows });
+        hands.push(HandFactor { scalings, own, half_solved_rows });
     }
-    Some(Factor { hands, balance: balance.cholesky()? })
+    Some(Factor { hands, balance: Lower::new(&balance)? })
 }
 
 /// The step that removes the residuals and changes the scaled complementarity, `W dz + W^-1 ds`, by `target`, one entry
 /// a pad.
 fn newton_step(program: &EquilibriumProgram, factor: &Factor, residual: &Residuals, target: &[[Slack; 2]]) -> Step {
     let mut missing = residual.primal;
-    let mut free = Vec::with_capacity(program.hands.len());
+    let mut half_solved = Vec::with_capacity(program.hands.len());
     for (number, hand) in program.hands.iter().enumerate() {
-        let HandFactor { scalings, own, .. } = &factor.hands[number];
+        let HandFactor { scalings, own, half_solved_rows } = &factor.hands[number];
         let pull = [0, 1].map(|pad| scalings[pad].apply_inverse(&target[number][pad]));
-        let x = own.solve(&(joined_gradient(&pull, &hand.friction) - residual.dual[number]));
-        add_own(&mut missing, number, &hand.rows.tr_mul(&x));
-        free.push(x);
+        let free = own.forward(&(joined_gradient(&pull, &hand.friction) - residual.dual[number]));
+        add_own(&mut missing, number, &half_solved_rows.tr_mul(&free));
+        half_solved.push(free);
     }
     let y = factor.balance.solve(&missing);
-    let hands = program.hands.iter().zip(free).enumerate().map(|(number, (hand, free))| {
+    let hands = program.hands.iter().zip(half_solved).enumerate().map(|(number, (hand, free))| {
         let (factor, target) = (&factor.hands[number], &target[number]);
-        let x = free - factor.solved_rows * own(&y, number);
+        let x = factor.own.backward(&(free - factor.half_solved_rows * own(&y, number)));
         let s = [0, 1].map(|pad| pad_cone::slack(&pad_part(&x, pad), hand.friction[pad]));
         let z = [0, 1].map(|pad| {
             let scaling = &factor.scalings[pad];

@@ -14,5 +14,6 @@ pub mod cone_program;
 pub mod energy;
 pub mod interior_point;
 pub mod layout;
+pub mod lower;
 pub mod pad_cone;
 pub mod units;
