@@ -12,6 +12,7 @@ mod commands;
 mod determinism;
 mod import;
 mod inputs;
+mod maps;
 mod margin_and_export;
 mod messages;
 mod partial_plans;
