@@ -145,11 +145,13 @@ fn a_damaged_map_is_made_and_written_again() {
 fn a_killed_process_leaves_no_half_map() {
     let first = fresh();
     let (_parent, maps) = new_folder();
-    for attempt in 0..12 {
+    for attempt in 0..6 {
         let mut child = planned_in(&maps).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         // From the moment that a file appears, a little later each time; then it is written, or being written.
-        while names(&maps).is_empty() && child.try_wait().unwrap().is_none() {}
-        std::thread::sleep(Duration::from_micros(200 * attempt));
+        while names(&maps).is_empty() && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_micros(100));
+        }
+        std::thread::sleep(Duration::from_micros(400 * attempt));
         killed(child);
         let finished = names(&maps).into_iter().filter(|name| name.ends_with(".map")).count();
         let listed = cache(&maps, "list");
