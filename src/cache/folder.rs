@@ -5,6 +5,7 @@
 //! be written, the maps are made every time, and the host is told once.
 
 use std::{
+    cmp::Reverse,
     fs,
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
@@ -143,7 +144,7 @@ impl Folder {
     /// cannot be removed stays.
     fn tidy(&self) {
         let mut entries = self.entries();
-        entries.sort_by(|a, b| b.used.cmp(&a.used));
+        entries.sort_by_key(|entry| Reverse(entry.used));
         let mut total = 0;
         for entry in &entries {
             total += entry.bytes;
