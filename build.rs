@@ -8,7 +8,7 @@ use std::{
 use sha2::{Digest, Sha256};
 
 /// What maps depend on, relative to the package. A module that these use is one of them (ARCHITECTURE.md).
-const SOURCES: [&str; 11] = [
+const SOURCES: [&str; 10] = [
     "src/model",
     "src/robot",
     "src/human",
@@ -19,7 +19,6 @@ const SOURCES: [&str; 11] = [
     "src/statics",
     "src/planner",
     "assets/human",
-    "Cargo.lock",
 ];
 
 /// What the compiler is told, and the version.
@@ -31,15 +30,17 @@ fn main() {
         hash.update((bytes.len() as u64).to_le_bytes());
         hash.update(bytes);
     };
+    let read = |path: &Path| fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     for source in SOURCES {
-        // Cargo.lock is not part of a package that others depend on. Naming what does not exist would run this script every time.
-        if Path::new(source).exists() {
-            println!("cargo::rerun-if-changed={source}");
-        }
+        println!("cargo::rerun-if-changed={source}");
         for file in files(Path::new(source)) {
             add(file.to_string_lossy().replace('\\', "/").as_bytes());
-            add(&fs::read(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display())));
+            add(&read(&file));
         }
+    }
+    if let Some(lock) = lock() {
+        println!("cargo::rerun-if-changed={}", lock.display());
+        add(&read(&lock));
     }
     println!("cargo::rerun-if-changed=build.rs");
     for setting in SETTINGS {
@@ -50,10 +51,18 @@ fn main() {
     println!("cargo::rustc-env=BENCHDOG_TARGET={}", env::var("TARGET").unwrap_or_default());
 }
 
-/// A file, or all files of a folder in the order of their names; nothing if there is none.
+/// The versions of all crates: the Cargo.lock of the workspace that is built, which is above the folder of the build, or else that of
+/// this package.
+fn lock() -> Option<PathBuf> {
+    let out = PathBuf::from(env::var_os("OUT_DIR")?);
+    let locks = out.ancestors().map(|folder| folder.join("Cargo.lock"));
+    locks.chain(["Cargo.lock".into()]).find(|lock| lock.is_file())
+}
+
+/// A file, or all files of a folder in the order of their names.
 fn files(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() {
-        return path.exists().then(|| path.to_owned()).into_iter().collect();
+        return vec![path.to_owned()];
     }
     let entries = fs::read_dir(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();

@@ -5,6 +5,7 @@
 //! be written, the maps are made every time, and the host is told once.
 
 use std::{
+    cmp::Reverse,
     fs,
     path::{Path, PathBuf},
     sync::atomic::{AtomicBool, Ordering},
@@ -143,7 +144,7 @@ impl Folder {
     /// cannot be removed stays.
     fn tidy(&self) {
         let mut entries = self.entries();
-        entries.sort_by(|a, b| b.used.cmp(&a.used));
+        entries.sort_by_key(|entry| Reverse(entry.used));
         let mut total = 0;
         for entry in &entries {
             total += entry.bytes;
@@ -187,5 +188,76 @@ impl MapStore for Folder {
             }
             Err(_) => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        model::board::BoardShape,
+        planner::MapKind,
+        robot::{BUILTIN, Robot},
+    };
+
+    /// Some minutes after the times that the test sets.
+    fn now() -> SystemTime {
+        SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000)
+    }
+
+    const HOST: Host = Host { now, tell: |trouble| panic!("{trouble}") };
+
+    /// Bytes that do not become fewer.
+    fn bytes(seed: u64) -> Vec<u8> {
+        let next =
+            |state: &u64| Some(state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407));
+        std::iter::successors(Some(seed), next).skip(1).take(1_000).map(|state| (state >> 56) as u8).collect()
+    }
+
+    #[test]
+    fn what_was_not_used_for_longest_is_removed_first() {
+        let (robot, board) = (Robot::load(BUILTIN[0], Path::new("")).unwrap(), BoardShape::cuboid([0.5, 0.4, 0.03]));
+        let source =
+            |clearance_m| MapSource { kind: MapKind::Grasps, robot: &robot, board: &board, clearance_m, task: None };
+        let temporary = tempfile::tempdir().unwrap();
+        // Two records of a thousand bytes and their labels, not three.
+        let folder = Folder::new(&temporary.path().join("maps"), 2_800, HOST);
+        let used = |number: f64, seconds_ago: u64| {
+            let file = fs::File::options().append(true).open(folder.path_of(&source(number))).unwrap();
+            file.set_modified(now() - Duration::from_secs(seconds_ago)).unwrap();
+        };
+        let has = |number: f64| folder.path_of(&source(number)).exists();
+        folder.write(&source(0.0), &bytes(0));
+        used(0.0, 300);
+        folder.write(&source(1.0), &bytes(1));
+        used(1.0, 200);
+        assert!(has(0.0) && has(1.0));
+        // Reading is a use.
+        assert_eq!(folder.read(&source(0.0)), Some(bytes(0)));
+        folder.write(&source(2.0), &bytes(2));
+        assert!(has(0.0) && !has(1.0) && has(2.0));
+        assert_eq!(folder.read(&source(1.0)), None);
+        assert_eq!(folder.read(&source(2.0)), Some(bytes(2)));
+        let maps = folder.maps();
+        assert!(maps.len() == 2 && maps.iter().all(|map| map.is_current && map.bytes > 1_000), "{maps:?}");
+        let bytes = maps.iter().map(|map| map.bytes).sum();
+        assert_eq!(folder.clear().unwrap(), Cleared { files: 2, bytes });
+        assert_eq!(folder.clear().unwrap(), Cleared::default());
+    }
+
+    /// Anything but a file may have the name of a map, and a map larger than all may be is not read.
+    #[test]
+    fn what_is_not_a_file_of_a_size_that_is_kept_is_absent() {
+        let (robot, board) = (Robot::load(BUILTIN[0], Path::new("")).unwrap(), BoardShape::cuboid([0.5, 0.4, 0.03]));
+        let source = MapSource { kind: MapKind::Grasps, robot: &robot, board: &board, clearance_m: 0.0, task: None };
+        let temporary = tempfile::tempdir().unwrap();
+        let large = Folder::new(temporary.path(), 10_000, HOST);
+        large.write(&source, &bytes(0));
+        assert_eq!(large.read(&source), Some(bytes(0)));
+        assert_eq!(Folder::new(temporary.path(), 1_000, HOST).read(&source), None);
+        fs::remove_file(large.path_of(&source)).unwrap();
+        fs::create_dir(large.path_of(&source)).unwrap();
+        assert_eq!(large.read(&source), None);
+        assert!(large.maps().is_empty());
     }
 }

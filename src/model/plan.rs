@@ -532,7 +532,7 @@ pub struct PlannerRecord {
     /// Duration of the search, ms. Only this and `map_ms` differ between two equal runs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall_ms: Option<f64>,
-    /// Duration of the precomputation that the plan uses, ms. Plans of one command may share it.
+    /// Duration of making or reading the maps that the plan uses, ms. Plans of one command may share it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_ms: Option<f64>,
     /// Number of candidates that the search evaluated.

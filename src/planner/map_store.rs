@@ -142,9 +142,10 @@ fn write_robot(text: &mut dyn fmt::Write, robot: &Robot) -> fmt::Result {
     with_linkages.as_ref().map_or(Ok(()), |robot| write_robot(text, robot))
 }
 
-/// What a store has for a source, if it can be read; numbers are exactly those that were written.
+/// What a store has for a source, if it can be read to its last byte; numbers are exactly those that were written.
 pub fn read<T: DeserializeOwned>(store: Option<&dyn MapStore>, source: &MapSource<'_>) -> Option<T> {
-    postcard::from_bytes(&store?.read(source)?).ok()
+    let bytes = store?.read(source)?;
+    postcard::take_from_bytes(&bytes).ok().filter(|(_, rest)| rest.is_empty()).map(|(map, _)| map)
 }
 
 /// Gives a store what was made for a source.

@@ -198,7 +198,7 @@ fn jobs_bounds_the_threads_of_maps_plans_and_simulations() {
     }
     for jobs in [1, 3] {
         let (code, threads) =
-            most_threads(&["run", ".", "--record", "never", "--jobs", &jobs.to_string()], folder.path());
+            most_threads(&["run", ".", "--no-cache", "--record", "never", "--jobs", &jobs.to_string()], folder.path());
         assert_eq!(code, Some(0));
         // The main thread and that of the signal handler do no work of their own.
         assert_eq!(threads, jobs + 2, "--jobs {jobs}");

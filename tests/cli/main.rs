@@ -13,6 +13,7 @@ mod determinism;
 mod import;
 mod inputs;
 mod interrupt;
+mod maps;
 mod margin_and_export;
 mod messages;
 mod partial_plans;

@@ -21,7 +21,11 @@ fn folder(names: &[(&str, &str)]) -> TempDir {
 
 fn benchdog(folder: &Path, arguments: &[&str]) -> Output {
     // So that a viewer installed on this machine is not found.
-    command(folder, arguments).env("PATH", folder.join("bin")).output().unwrap()
+    command(folder, arguments)
+        .env("PATH", folder.join("bin"))
+        .env("BENCHDOG_CACHE", folder.join("maps"))
+        .output()
+        .unwrap()
 }
 
 /// Output and exit code, without paths and times.
@@ -85,6 +89,7 @@ fn the_help_of_every_command() {
         "reproduce",
         "inspect",
         "view",
+        "cache",
         "doctor",
         "schema",
         "completions",

@@ -96,7 +96,8 @@ pub fn contents(folder: &Path) -> Files {
 pub fn run_both(jobs: &str) -> Files {
     let out = tempfile::tempdir().unwrap();
     let scenarios = ["scenarios/quickstart.toml", "scenarios/cut-rim.toml"];
-    let output = command(root(), &["run", "--jobs", jobs, "--out", argument(out.path())]).args(scenarios).output();
+    let output =
+        command(root(), &["run", "--no-cache", "--jobs", jobs, "--out", argument(out.path())]).args(scenarios).output();
     let output = output.unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
     contents(out.path())

@@ -11,6 +11,7 @@ mod check;
 mod clearance;
 mod comfort;
 mod infeasible;
+mod kept_maps;
 mod lateral;
 mod many_arms;
 mod muscles;
