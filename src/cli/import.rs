@@ -121,7 +121,7 @@ fn all(
                 plan.name = format!("{}-{}", plan.name, output::file_stem(&grasp.name));
                 let _writing = interrupt::writing();
                 report::file::write_whole(&path_of(grasp), report::json::plan(&plan).as_bytes())?;
-                progress.wrote();
+                progress.leaves("the plans that were written stay");
                 progress.print(&format!("wrote {}: {}\n", path_of(grasp).display(), notes.join("; ")))?;
                 exit = Exit::Met;
                 continue;

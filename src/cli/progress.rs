@@ -21,6 +21,11 @@ use crate::{
 /// Interval at which the line is redrawn.
 const TICK: Duration = Duration::from_millis(200);
 
+/// What stays of a command that has found nothing.
+const NOTHING_LEFT: &str = "nothing was found yet and nothing is written";
+/// What stays of one whose finding was refused.
+const UNCHECKED_LEFT: &str = "what was found did not pass its check, and nothing is written";
+
 /// Every so many candidates their number is shown.
 const CANDIDATES_SHOWN: u64 = 50;
 
@@ -42,8 +47,8 @@ pub struct Progress {
     keeps: AtomicBool,
     /// What is done after Ctrl-C, if there is something to keep.
     ending: &'static str,
-    /// True once a file is written that stays whatever happens.
-    wrote: AtomicBool,
+    /// What stays of a command that is ended at once, in words.
+    left: Mutex<String>,
 }
 
 /// What is done at present.
@@ -95,7 +100,7 @@ impl Progress {
             counts: items.is_some(),
             keeps: AtomicBool::new(false),
             ending,
-            wrote: AtomicBool::new(false),
+            left: Mutex::new(NOTHING_LEFT.to_owned()),
         });
         progress.style(if progress.counts { COUNTING } else { OPEN });
         progress.bar.set_message(doing.to_owned());
@@ -127,22 +132,17 @@ impl Progress {
         self.keeps.load(Ordering::SeqCst).then_some(self.ending)
     }
 
-    /// A file is written that stays whatever happens.
-    pub fn wrote(&self) {
-        self.wrote.store(true, Ordering::SeqCst);
+    /// Says what stays of the command if it is ended at once from now on.
+    pub fn leaves(&self, what: &str) {
+        what.clone_into(&mut self.left.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     /// How a command was interrupted that writes nothing more.
     pub fn interrupted(&self) -> String {
         let elapsed_s = self.begun.elapsed().as_secs_f64();
         let doing = self.with_now(|now| now.words());
-        let left = if self.keeps.load(Ordering::SeqCst) {
-            "what was found did not pass its check, and nothing is written"
-        } else if self.wrote.load(Ordering::SeqCst) {
-            "the files that were finished stay"
-        } else {
-            "nothing was found yet and nothing is written"
-        };
+        let left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
+        let left = if self.ending().is_some() { UNCHECKED_LEFT } else { &left };
         format!("interrupted after {elapsed_s:.1} s, while {doing}: {left}")
     }
 

@@ -21,7 +21,10 @@ use super::{
 };
 use crate::{
     model::{operation::OperationKind, scenario::PlannerKind},
-    report::{self, file},
+    report::{
+        self,
+        file::{self, WriteError},
+    },
     reproduce::{
         claims, csv_files,
         evaluation::{HoldRow, KINDS, Reproduction},
@@ -35,28 +38,20 @@ use crate::{
 };
 use runner::JobRunner;
 
-/// What is left after Ctrl-C.
-const CONTINUES: &str = "finished results are kept, and the same command continues from them";
-
 /// Runs the evaluation and writes its results.
 pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
-    let progress = Progress::counting("reading the operations", CONTINUES)?;
+    let progress = Progress::counting("reading the operations", "")?;
     let operations = operations(args)?;
     let Some(first) = operations.first() else { return Ok(Exit::Met) };
     let out = args.folder();
     file::check_folder(&out)?;
-    progress.keep();
     let scope = args.scope();
     let schedule = Schedule::new(&operations, &scope);
     let runner = JobRunner::new(&first.robot, &out, args, &progress)?;
-    let Some(rows) = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs, &progress))?? else {
-        let folder = runner.folder();
-        let folder = folder.display();
-        output::message(&format!(
-            "stopped: finished results are kept in {folder}, and the same command continues from them"
-        ));
-        return Ok(Exit::Interrupted);
-    };
+    let folder = runner.folder();
+    let folder = folder.display();
+    progress.leaves(&format!("finished results are kept in {folder}, and the same command continues from them"));
+    let rows = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs, &progress))??;
     let reproduction = schedule.reproduction(rows, &scope, left_out(args, operations.len()));
     if args.natural {
         write_natural_results(&reproduction, &first.robot, &out)?;
@@ -65,6 +60,12 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     }
     output::print(&summary(&reproduction, &out))?;
     Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
+}
+
+/// Writes a file that Ctrl-C leaves whole.
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    let _writing = interrupt::writing();
+    file::write_whole(path, bytes)
 }
 
 /// The exit code for one result.
@@ -89,14 +90,14 @@ fn operations(args: &ReproduceArgs) -> Result<Vec<LoadedScenario>, CliError> {
     Ok(operations)
 }
 
-/// Runs all jobs and returns their results in order; `None` if the user stopped the run.
-fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result<Option<Vec<HoldRow>>, CliError> {
+/// Runs all jobs and returns their results in order.
+fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result<Vec<HoldRow>, CliError> {
     progress.expect(jobs.len());
     // An error such as a full disk would repeat, so no job starts after the first one.
     let first_error: Mutex<Option<CliError>> = Mutex::new(None);
     runner.prepare(jobs);
     let rows = threads::map_in_parallel(jobs, |job| {
-        if interrupt::requested() || first_error.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
+        if first_error.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
             return None;
         }
         progress.begins(&job.name());
@@ -105,7 +106,6 @@ fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result
                 progress.advances(result.line(job).as_deref());
                 Some(result.row)
             }
-            Err(error) if error.is_stop() => None,
             Err(error) => {
                 first_error.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
                 None
@@ -115,7 +115,8 @@ fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result
     progress.finish();
     match first_error.into_inner().unwrap_or_else(PoisonError::into_inner) {
         Some(error) => Err(error),
-        None => Ok(rows.into_iter().collect()),
+        // Without an error every job has a result.
+        None => Ok(rows.into_iter().flatten().collect()),
     }
 }
 
@@ -141,7 +142,7 @@ fn write_results(
     robot: &Robot,
     out: &Path,
 ) -> Result<(), CliError> {
-    let write = |name: &str, text: &str| file::write_whole(&out.join(name), text.as_bytes());
+    let write = |name: &str, text: &str| write_file(&out.join(name), text.as_bytes());
     file::remove(&out.join("report.md"))?;
     write("table1.csv", &csv_files::table1(reproduction))?;
     write("plans.csv", &csv_files::plans(reproduction))?;
@@ -163,7 +164,7 @@ fn write_results(
 
 /// Writes all files of the evaluation for a person who stands naturally, the report last.
 fn write_natural_results(reproduction: &Reproduction, robot: &Robot, out: &Path) -> Result<(), CliError> {
-    let write = |name: &str, text: &str| file::write_whole(&out.join(name), text.as_bytes());
+    let write = |name: &str, text: &str| write_file(&out.join(name), text.as_bytes());
     file::remove(&out.join("report.md"))?;
     write("table1.csv", &csv_files::table1(reproduction))?;
     write("plans.csv", &csv_files::plans(reproduction))?;
@@ -189,7 +190,7 @@ fn write_pictures(
     for row in PlannerKind::ALL.iter().filter_map(|&planner| reproduction.hold(operation, planner)) {
         if let Some(plan) = &row.plan {
             let svg = picture::svg(plan, robot, &markdown::picture_title(row))?;
-            file::write_whole(&folder.join(markdown::picture_name(row)), svg.as_bytes())?;
+            write_file(&folder.join(markdown::picture_name(row)), svg.as_bytes())?;
         }
     }
     Ok(())
@@ -199,8 +200,8 @@ fn write_pictures(
 fn write_curve(operations: &[LoadedScenario], out: &Path) -> Result<(), CliError> {
     let Some(cut) = operations.iter().find(|o| o.scenario.operation.kind == OperationKind::Cut) else { return Ok(()) };
     let curve = curve::curve_of(cut)?;
-    file::write_whole(&out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
-    file::write_whole(&out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
+    write_file(&out.join("muscular_curve.csv"), report::curve::csv(&curve).as_bytes())?;
+    write_file(&out.join("muscular_curve.svg"), report::curve::svg(&curve).as_bytes())?;
     Ok(())
 }
 

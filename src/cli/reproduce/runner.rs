@@ -18,14 +18,14 @@ use crate::{
     cli::{
         args::{RecordChoice, ReproduceArgs},
         exit::CliError,
-        margin,
+        interrupt, margin,
         pipeline::{self, Run},
         planners::Planners,
         progress::Progress,
         recording,
     },
-    model::{plan::Plan, stop::Stop as _},
-    planner::{Outcome, PlanError},
+    model::plan::Plan,
+    planner::Outcome,
     report::file,
     reproduce::{
         evaluation::HoldRow,
@@ -121,6 +121,7 @@ impl<'a> JobRunner<'a> {
         let result = CachedResult { fingerprint, hold: self.compute(job)? };
         // Serialisation fails only for maps whose keys are not strings; there are none.
         let bytes = serde_json::to_vec(&result).expect("a result has only string keys");
+        let _writing = interrupt::writing();
         file::write_whole(&self.cache_path(job), &bytes)?;
         Ok(JobResult { row: result.hold, is_new: true })
     }
@@ -153,10 +154,6 @@ impl<'a> JobRunner<'a> {
         let scenario = &job.scenario;
         let start = Instant::now();
         let outcome = self.planners.timed_plan(scenario, self.robot, self.progress)?;
-        // The best plan so far is not the result of the job.
-        if self.progress.is_stopped() {
-            return Err(CliError::Plan(PlanError::Stopped));
-        }
         let mut row = HoldRow {
             operation: scenario.name.clone(),
             kind: scenario.operation.kind,
@@ -205,6 +202,7 @@ impl<'a> JobRunner<'a> {
         if self.is_recorded(run.verdict.met)
             && let Some(bytes) = recording::encode(run, &job.scenario, self.robot)?
         {
+            let _writing = interrupt::writing();
             return Ok(file::write_whole(&path, &bytes)?);
         }
         // A recording of an earlier run does not belong to this result.
