@@ -26,7 +26,9 @@ fn main() {
     let filter = option("--filter").unwrap_or_default();
     let mut operations: Vec<_> = paper::natural_operations();
     let more = std::env::var("BD_MORE").unwrap_or_default().replace("\\n", "\n");
-    for operation in &mut operations { operation.text.push_str(&more); }
+    for operation in &mut operations {
+        operation.text.push_str(&more);
+    }
     let operations = operations.iter().filter(|operation| operation.name.contains(&filter));
     let loaded: Vec<_> = operations.map(|operation| operation.load().expect("they are valid")).collect();
     let Some(first) = loaded.first() else { return };

@@ -59,7 +59,8 @@ fn walk(planner: &mut Planner, scenario: &Scenario, every: usize, turn_deg: f64)
         let mut moved = scenario.clone();
         moved.human.place = place;
         let start = Instant::now();
-        let outcome = planner.replan(&moved, &Replanning { search: false, ..Replanning::default() }, &Never).expect("valid");
+        let outcome =
+            planner.replan(&moved, &Replanning { search: false, ..Replanning::default() }, &Never).expect("valid");
         let ms = start.elapsed().as_secs_f64() * 1e3;
         if step > 0 {
             wall_ms.push(ms);
@@ -83,11 +84,20 @@ fn walk(planner: &mut Planner, scenario: &Scenario, every: usize, turn_deg: f64)
             if let Outcome::Found(fresh) = planner.plan(&moved).expect("a valid person") {
                 let fresh = fresh.comfort.map_or(f64::NAN, |comfort| comfort.objective);
                 least = least.min(objective / fresh);
-                println!("     fresh {fresh:8.3} share {:.4} {:.1} s", objective / fresh, start.elapsed().as_secs_f64());
+                println!(
+                    "     fresh {fresh:8.3} share {:.4} {:.1} s",
+                    objective / fresh,
+                    start.elapsed().as_secs_f64()
+                );
             }
         }
     }
     wall_ms.sort_by(f64::total_cmp);
     let at = |share: f64| wall_ms[((wall_ms.len() - 1) as f64 * share).round() as usize];
-    println!("median {:.2} ms, 95th percentile {:.2} ms, most {:.2} ms; least share of a fresh plan {least:.4}", at(0.5), at(0.95), at(1.0));
+    println!(
+        "median {:.2} ms, 95th percentile {:.2} ms, most {:.2} ms; least share of a fresh plan {least:.4}",
+        at(0.5),
+        at(0.95),
+        at(1.0)
+    );
 }

@@ -1,18 +1,21 @@
-//! Plans one scenario again and again while it changes, on precomputed maps.
+//! Replans while the person walks past the robot, then for another hole, for a larger force, and with the grasps kept.
 //!
 //! ```sh
 //! cargo run --release --example replan_in_a_loop
 //! ```
 //!
-//! A [`Planner`] keeps what its plans share: a grasp library per size of board, and warm starts per task family. Holes of
-//! one board that differ only in place are one family. Its first plan takes seconds, each further one a fraction of a
-//! second. A changed force is another family; `prepare` makes its warm starts ahead of time.
+//! `Planner::replan` starts from the holds that it knows from the calls before. The first call needs the maps of the task
+//! family: some seconds, unless the planner has a store that keeps them. Every further call takes some milliseconds, makes no
+//! maps, and is checked like every plan.
 
 use std::{error::Error, path::Path, process::ExitCode, time::Instant};
 
 use benchdog::{
-    model::scenario::Scenario,
-    planner::{Outcome, Planner},
+    model::{
+        scenario::{Scenario, StandingPlace},
+        stop::Never,
+    },
+    planner::{Outcome, Planner, Replanned, Replanning},
     scenario,
 };
 
@@ -28,45 +31,54 @@ fn main() -> ExitCode {
 
 fn run() -> Result<(), Box<dyn Error>> {
     let loaded = scenario::load(Path::new("scenarios/quickstart.toml"))?;
-    let planner = Planner::new(&loaded.robot);
+    let mut planner = Planner::new(&loaded.robot);
     let mut scenario = loaded.scenario;
+    let free = Replanning::default();
 
-    prepare(&planner, &scenario)?;
-    for step in 0..8 {
-        let x_m = -0.14 + 0.04 * f64::from(step);
-        scenario.operation.x_ot.translation.x = x_m;
-        replan(&planner, &scenario, &format!("hole at x = {x_m:+.2} m"))?;
+    let Some(first) = replan(&mut planner, &scenario, &free, "a person who may stand anywhere")? else { return Ok(()) };
+    // Where the plan has them stand.
+    let x_wb = first.plan.human.ok_or("the plan has no person")?.x_wb;
+    let ahead = x_wb.rotation * benchdog::nalgebra::Vector3::x();
+    for step in 0..5 {
+        scenario.human.place = StandingPlace::Given {
+            p_wb_m: [x_wb.translation.x, x_wb.translation.y + 0.02 * f64::from(step)],
+            heading_deg: ahead.y.atan2(ahead.x).to_degrees(),
+            tolerance_m: 0.05,
+            tolerance_deg: 5.0,
+        };
+        replan(&mut planner, &scenario, &free, &format!("the person {} cm to the side", 2 * step))?;
     }
-
-    scenario.operation.wrench_o.force_n *= 10.0;
-    prepare(&planner, &scenario)?;
-    replan(&planner, &scenario, "the last hole with ten times the force")?;
-
-    // The planner checks the person and the tool. A scenario from a file has been checked already.
-    scenario.human.height_m = -1.0;
-    if let Err(error) = planner.plan(&scenario) {
-        println!("a person of -1 m: {error}");
-    }
+    scenario.operation.x_ot.translation.x += 0.04;
+    replan(&mut planner, &scenario, &free, "a hole 4 cm further")?;
+    scenario.operation.wrench_o.force_n *= 1.5;
+    replan(&mut planner, &scenario, &free, "half as much force again")?;
+    scenario.operation.x_ot.translation.x -= 0.02;
+    let held = Replanning { keep_grasps: true, most_motion_rad: Some(10_f64.to_radians()), ..free };
+    replan(&mut planner, &scenario, &held, "a hole 2 cm back, the grasps kept, at most 10 degrees")?;
     Ok(())
 }
 
-fn prepare(planner: &Planner, scenario: &Scenario) -> Result<(), Box<dyn Error>> {
+fn replan(
+    planner: &mut Planner,
+    scenario: &Scenario,
+    how: &Replanning,
+    title: &str,
+) -> Result<Option<Replanned>, Box<dyn Error>> {
     let start = Instant::now();
-    planner.prepare(scenario)?;
-    println!("{:>7.3} s  maps", start.elapsed().as_secs_f64());
-    Ok(())
-}
-
-fn replan(planner: &Planner, scenario: &Scenario, title: &str) -> Result<(), Box<dyn Error>> {
-    let start = Instant::now();
-    let outcome = planner.plan(scenario)?;
-    let wall_s = start.elapsed().as_secs_f64();
+    let outcome = planner.replan(scenario, how, &Never)?;
+    let wall_ms = start.elapsed().as_secs_f64() * 1e3;
     match outcome {
-        Outcome::Found(plan) => {
-            let objective = plan.comfort.map_or(f64::NAN, |comfort| comfort.objective);
-            println!("{wall_s:>7.3} s  {title}: objective {objective:.2}");
+        Outcome::Found(found) => {
+            let objective = found.plan.comfort.map_or(f64::NAN, |comfort| comfort.objective);
+            let motion = found.motion.map_or(String::new(), |motion| {
+                format!(", joints move by at most {:.1} degrees", motion.largest_joint_rad.to_degrees())
+            });
+            println!("{wall_ms:>9.1} ms  {title}: objective {objective:.2}{motion}");
+            Ok(Some(found))
         }
-        Outcome::Infeasible(why) => println!("{wall_s:>7.3} s  {title}: {why}"),
+        Outcome::Infeasible(why) => {
+            println!("{wall_ms:>9.1} ms  {title}: {why}");
+            Ok(None)
+        }
     }
-    Ok(())
 }

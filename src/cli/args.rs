@@ -26,6 +26,8 @@ pub enum Command {
     Run(RunArgs),
     /// Plan a scenario and write the plan
     Plan(PlanArgs),
+    /// Answer requests on standard input with plans, while the person moves
+    Replan(ReplanArgs),
     /// Write the Pareto front of muscular and peripersonal comfort as CSV, SVG and plans
     Front(FrontArgs),
     /// Plan the cut of a whole circle: with one grasp, with a sequence of poses, and with 16 separate plans
@@ -180,6 +182,23 @@ pub struct PlanArgs {
     /// The planner.
     #[command(flatten)]
     pub planner: PlannerArgs,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
+}
+
+/// `benchdog replan`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::REPLAN)]
+pub struct ReplanArgs {
+    /// Scenario file
+    pub scenario: PathBuf,
+    /// Plan file of the hold to start from; by default the first answer plans it
+    #[arg(long, value_name = "FILE")]
+    pub plan: Option<PathBuf>,
+    /// Budget and seed.
+    #[command(flatten)]
+    pub search: SearchArgs,
     /// Maps between runs.
     #[command(flatten)]
     pub cache: CacheArgs,
@@ -565,6 +584,10 @@ pub enum SchemaOf {
     Plan,
     /// Verdict files (JSON)
     Verdict,
+    /// Requests to `benchdog replan` (a line of JSON each)
+    ReplanRequest,
+    /// Answers of `benchdog replan` (a line of JSON each)
+    ReplanAnswer,
 }
 
 #[cfg(test)]

@@ -38,6 +38,23 @@ Examples:
 Ctrl-C ends the search: the best plan so far is checked and written. Before there is one, nothing is
 written. The exit code is 130.";
 
+/// `benchdog replan --help`.
+pub const REPLAN: &str = "\
+Example:
+  echo '{\"human\": {\"x_m\": 1.25, \"y_m\": -0.1, \"heading_deg\": 180}}' | benchdog replan scenarios/quickstart.toml
+
+A request is a line of JSON; what it leaves out stays as it was:
+  {\"id\": 7,                                    any value, which the answer repeats
+   \"human\": {\"x_m\": 1.1, \"y_m\": -0.2, \"heading_deg\": 180},        or {\"place\": \"free\"}
+   \"operation\": {\"kind\": \"drill\", \"point_m\": [0.1, 0.0], \"force_n\": 20},
+   \"most_motion_deg\": 20,                     the most that a joint of the robot may move
+   \"keep_grasps\": true,                       the grippers stay where they are on the board
+   \"search\": false}                           no search from scratch, which may take seconds
+An answer is a line of JSON with `result` (found, infeasible, error), `plan`, `motion` and `wall_ms`.
+`benchdog schema replan-request` and `replan-answer` print the formats.
+
+The exit code is 2 if a request was not valid, 3 if a task had no plan, 0 otherwise.";
+
 /// `benchdog front --help`.
 pub const FRONT: &str = "\
 Example:

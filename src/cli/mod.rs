@@ -29,6 +29,7 @@ mod recording;
 #[cfg(not(feature = "recording"))]
 #[path = "no_recording.rs"]
 mod recording;
+mod replan;
 mod reproduce;
 mod robot;
 mod robot_check;
@@ -62,6 +63,7 @@ pub fn main() -> ExitCode {
     let outcome = std::panic::catch_unwind(|| match &cli.command {
         Command::Run(args) => run::run(args),
         Command::Plan(args) => plan::plan(args),
+        Command::Replan(args) => replan::replan(args),
         Command::Front(args) => front::front(args),
         Command::Circle(args) => circle::circle(args),
         Command::Simulate(args) => simulate::simulate(args),

@@ -6,10 +6,11 @@ use super::{
     args::{SchemaArgs, SchemaOf},
     exit::{CliError, Exit},
     output,
+    replan::Answer,
 };
 use crate::{
     model::verdict::Verdict,
-    scenario::{file::ScenarioFile, plan_input::PlanFile},
+    scenario::{ReplanRequest, file::ScenarioFile, plan_input::PlanFile},
 };
 
 /// Prints a schema.
@@ -24,6 +25,8 @@ fn schema_text(of: SchemaOf) -> String {
         SchemaOf::Scenario => schema_for!(ScenarioFile),
         SchemaOf::Plan => schema_for!(PlanFile),
         SchemaOf::Verdict => schema_for!(Verdict),
+        SchemaOf::ReplanRequest => schema_for!(ReplanRequest),
+        SchemaOf::ReplanAnswer => schema_for!(Answer),
     };
     // A JSON value can always be printed: its keys are strings and its numbers finite.
     let text = serde_json::to_string_pretty(&schema).expect("a JSON value prints");

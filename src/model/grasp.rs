@@ -120,11 +120,7 @@ mod tests {
                     let z_g = x_og.rotation * Vector3::z();
                     let y_g = x_og.rotation * Vector3::y();
                     let read = EdgeGrasp::of(&x_og, &board).unwrap();
-                    let pairs = [
-                        (read.along_m, 0.05),
-                        (read.depth_m, 0.035),
-                        (read.angle_rad, 0.3),
-                    ];
+                    let pairs = [(read.along_m, 0.05), (read.depth_m, 0.035), (read.angle_rad, 0.3)];
                     assert!(pairs.iter().all(|(found, meant)| (found - meant).abs() < 1e-14), "{read:?}");
                     assert_eq!((read.edge, read.flipped), (edge, flipped));
                     // cos(0.3): the grasp's angle; rounding only.

@@ -31,6 +31,8 @@ pub mod library {
     pub const FIRST_ARM_ATTEMPTS: usize = 200;
     /// Draws per grasp that is wanted, at most.
     pub const DRAWS_PER_GRASP: usize = 200;
+    /// Draws that are made before the grasps so far are counted.
+    pub const DRAWS_AT_ONCE: usize = 1_024;
     /// The share of those draws after which the search is given up if nothing at all was found.
     pub const HOPELESS_SHARE: usize = 20;
     /// Boards whose grasps are drawn for a robot with more than two arms, per grasp that is wanted, at most.
@@ -358,7 +360,11 @@ impl SearchBudget {
         let usual = Self::unrestricted(budget);
         if budget == Budget::Default && scenario.human.posture.is_natural() {
             let n = knob("N", 5);
-            Self { warm_starts: n, warm_rounds: Some(rounds(&[[n, knob("A", 3)], [knob("N2", 2), knob("B", 8)], [1, knob("C", 12)]])), ..usual }
+            Self {
+                warm_starts: n,
+                warm_rounds: Some(rounds(&[[n, knob("A", 3)], [knob("N2", 2), knob("B", 8)], [1, knob("C", 12)]])),
+                ..usual
+            }
         } else {
             usual
         }
@@ -448,7 +454,10 @@ impl WarmStartBudget {
         let usual = Self::unrestricted(scenario.planner.budget)?;
         let natural = scenario.human.posture.is_natural();
         let further = if natural { warm_starts::NATURAL_PASSES } else { 0 };
-        Some(Self { passes: if natural { knob("PASSES", (usual.passes + further) as usize) as u64 } else { usual.passes }, ..usual })
+        Some(Self {
+            passes: if natural { knob("PASSES", (usual.passes + further) as usize) as u64 } else { usual.passes },
+            ..usual
+        })
     }
 
     /// The numbers of a budget for an unrestricted posture.
@@ -461,7 +470,11 @@ impl WarmStartBudget {
                     evaluated_pairs: knob("PAIRS", 4_000),
                     starts: knob("S", 48),
                     starts_per_pattern: 2,
-                    rounds: rounds(&[[56, knob("OA", 8)], [knob("O2", 24), knob("OB", 30)], [knob("O3", 1), knob("OC", 0)]]),
+                    rounds: rounds(&[
+                        [56, knob("OA", 8)],
+                        [knob("O2", 24), knob("OB", 30)],
+                        [knob("O3", 1), knob("OC", 0)],
+                    ]),
                     warm_starts: knob("OW", 8),
                     ..plan
                 };

@@ -142,6 +142,14 @@ impl Planner {
         self.search_instead(&maps, &scenario, watch)
     }
 
+    /// Makes the maps that the first [`Planner::replan`] of a scenario needs, unless they are kept already.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn prepare_replanning(&self, scenario: &Scenario, watch: &dyn Watch) -> Result<(), PlanError> {
+        self.warm_starts(&self.maps(scenario), &anywhere(scenario), watch).map(drop)
+    }
+
     /// Plans a scenario as [`Planner::plan`] does, and makes the plan the one that the next replanning starts from.
     fn search_instead(
         &mut self,

@@ -106,7 +106,11 @@ impl Hold {
 
 fn is_same_grasp(one: &EdgeGrasp, other: &EdgeGrasp) -> bool {
     let parameters = |grasp: &EdgeGrasp| [grasp.along_m, grasp.depth_m, grasp.angle_rad];
-    let near = parameters(one).iter().zip(parameters(other)).zip(GRASP).all(|((a, b), scale)| (a - b).abs() <= SAME_GRASP * scale);
+    let near = parameters(one)
+        .iter()
+        .zip(parameters(other))
+        .zip(GRASP)
+        .all(|((a, b), scale)| (a - b).abs() <= SAME_GRASP * scale);
     one.edge == other.edge && one.flipped == other.flipped && near
 }
 
@@ -184,7 +188,8 @@ impl KnownHolds {
             self.warm.solutions().flat_map(|solution| turns.iter().map(move |turn| (solution, *turn))).collect();
         let known = self.solutions.iter().skip(1).map(|solution| (solution, 0));
         let tried = fresh.iter().cycle().skip(self.next).take(FRESH_PER_CALL.min(fresh.len())).copied();
-        let starts: Vec<_> = known.chain(tried).filter_map(|(solution, turn)| start(evaluator, solution, turn)).collect();
+        let starts: Vec<_> =
+            known.chain(tried).filter_map(|(solution, turn)| start(evaluator, solution, turn)).collect();
         self.next = (self.next + FRESH_PER_CALL) % fresh.len().max(1);
         refined(evaluator, starts, OTHERS_STEPS)
     }

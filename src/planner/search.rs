@@ -37,7 +37,8 @@ pub fn search(
             Some(rounds) if !starts.is_empty() => refine::refine(evaluator, starts, rounds),
             _ => {
                 // Without them the search has been stopped: it goes on with what it has.
-                if let (Ok(postures), Ok(natural)) = (warm.postures(watch), warm.natural_entries(&library.robot, watch)) {
+                if let (Ok(postures), Ok(natural)) = (warm.postures(watch), warm.natural_entries(&library.robot, watch))
+                {
                     starts.extend(screened(evaluator, library, postures, natural, budget, watch));
                 }
                 refine::refine(evaluator, starts, &budget.rounds)

@@ -23,8 +23,7 @@ use super::{
         warm_starts::{KEPT, KEPT_PER_PATTERN, SAME_OPTIMUM},
     },
     problem::{self, Problem},
-    refine,
-    screen,
+    refine, screen,
     stats::SearchStats,
     task_family::{TaskFamily, solved_tasks},
     transfer::Solution,
@@ -111,13 +110,14 @@ impl WarmStarts {
     /// # Errors
     /// After a stop.
     pub fn natural_entries(&self, robot: &GraspingRobot, watch: &dyn Watch) -> Result<&[LibraryEntry], PlanError> {
-        self.natural_entries.get_or_make(|| {
-            let count = SearchBudget::of(&self.shared).natural_boards;
-            let entries =
-                natural_entries(&self.shared, &self.human, robot, self.postures(watch)?, count, watch);
-            go_on(watch)?;
-            Ok(entries)
-        }).map(Vec::as_slice)
+        self.natural_entries
+            .get_or_make(|| {
+                let count = SearchBudget::of(&self.shared).natural_boards;
+                let entries = natural_entries(&self.shared, &self.human, robot, self.postures(watch)?, count, watch);
+                go_on(watch)?;
+                Ok(entries)
+            })
+            .map(Vec::as_slice)
     }
 
     /// The solutions as they are kept.

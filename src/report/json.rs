@@ -23,6 +23,15 @@ pub fn verdicts(outcomes: &[Outcome]) -> String {
     pretty(&outcomes.iter().filter_map(Outcome::verdict).collect::<Vec<_>>())
 }
 
+/// A value in one line, with a final newline.
+#[must_use]
+pub fn line(value: &impl Serialize) -> String {
+    // As for `pretty`.
+    let mut text = serde_json::to_string(value).expect("answers have only string keys");
+    text.push('\n');
+    text
+}
+
 pub(super) fn pretty(value: &impl Serialize) -> String {
     // Serialisation fails only for maps whose keys are not strings; there are none.
     let mut text = serde_json::to_string_pretty(value).expect("reports have only string keys");

@@ -16,6 +16,7 @@ pub mod material;
 mod object_section;
 pub mod plan_file;
 pub mod plan_input;
+pub mod replan_request;
 mod resolve;
 mod robot_file;
 
@@ -24,6 +25,7 @@ use std::path::{Path, PathBuf};
 pub use error::{InputError, InputErrorKind};
 use plan_file::ReadPlan;
 pub use plan_file::read_plan;
+pub use replan_request::{ReplanRequest, read_replan_request};
 pub use robot_file::robot_parameters;
 
 use crate::{

@@ -93,6 +93,11 @@ pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> 
 
 /// The person of a file, with the place checked.
 fn person(check: &Checker<'_>, section: &HumanSection) -> Result<Person, InputError> {
+    Ok(Person { place: place(check, section)?, ..person_with_defaults(section) })
+}
+
+/// Where the person of a file stands.
+pub fn place(check: &Checker<'_>, section: &HumanSection) -> Result<StandingPlace, InputError> {
     let given = [
         ("human.x_m", section.x_m),
         ("human.y_m", section.y_m),
@@ -126,7 +131,7 @@ fn person(check: &Checker<'_>, section: &HumanSection) -> Result<Person, InputEr
             check.finite(key, &[value])?;
         }
     }
-    Ok(Person { place, ..person_with_defaults(section) })
+    Ok(place)
 }
 
 /// Default tolerance of a given place, m: half a foot's length either way.
@@ -226,7 +231,8 @@ fn check_tool(check: &Checker<'_>, tool: &Tool) -> Result<(), InputError> {
     Ok(())
 }
 
-fn operation(check: &Checker<'_>, section: &OperationSection, board: &Board) -> Result<Operation, InputError> {
+/// The operation of a file on a board.
+pub fn operation(check: &Checker<'_>, section: &OperationSection, board: &Board) -> Result<Operation, InputError> {
     let operation = match section.kind {
         OperationKind::Drill | OperationKind::Cut => face_operation(check, section, board)?,
         OperationKind::Wrench => free_operation(check, section)?,

@@ -27,8 +27,8 @@ use crate::{
         map_store::{self, MapKind, MapSource, MapStore},
         outcome::PlanError,
         params::library::{
-            BOARDS_AT_ONCE, BOARDS_PER_GRASP, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS, GRASPS,
-            GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
+            BOARDS_AT_ONCE, BOARDS_PER_GRASP, DRAWS_AT_ONCE, DRAWS_PER_GRASP, FIRST_ARM_ATTEMPTS, FURTHER_GRASPS,
+            GRASPS, GRASPS_PER_BOARD, HOPELESS_SHARE, SEED,
         },
         watch::{Counter, Phase, Watch, go_on},
     },
@@ -167,68 +167,43 @@ fn draw_entries(
     stream: u128,
     counter: &Counter<'_>,
 ) -> (Vec<LibraryEntry>, DrawFailures) {
-    if robot.arms.len() > 2 {
-        return draw_entries_by_board(robot, wanted, stream, counter);
-    }
-    let mut random = Pcg64::new(SEED, stream);
-    let mut entries = Vec::with_capacity(wanted);
-    let mut failures = DrawFailures::default();
-    let mut draws = 0;
-    while entries.len() < wanted && draws < max_draws(wanted, entries.len()) && !counter.is_stopped() {
-        draws += 1;
-        match draw_entry(robot, &mut random) {
-            Ok(entry) => {
-                counter.advance();
-                entries.push(entry);
-            }
-            Err(failure) => failures.count(failure),
-        }
-    }
-    (entries, failures)
-}
-
-/// The search for entries ends sooner if nothing at all was found.
-fn max_draws(wanted: usize, found: usize) -> u64 {
-    (DRAWS_PER_GRASP * if found == 0 { wanted / HOPELESS_SHARE } else { wanted }) as u64
-}
-
-/// As [`draw_entries`] for more than two arms, whose single draws hardly ever fit together: grasps of all arms are drawn for
-/// each board. Every board has a random stream of its own.
-fn draw_entries_by_board(
-    robot: &GraspingRobot,
-    wanted: usize,
-    stream: u128,
-    counter: &Counter<'_>,
-) -> (Vec<LibraryEntry>, DrawFailures) {
-    let of_board = |number: usize| {
+    // Single draws of more than two arms hardly ever fit together: grasps of all arms are drawn for each board.
+    let by_board = robot.arms.len() > 2;
+    let (most, at_once) =
+        if by_board { (BOARDS_PER_GRASP * wanted, BOARDS_AT_ONCE) } else { (DRAWS_PER_GRASP * wanted, DRAWS_AT_ONCE) };
+    let of_draw = |number: usize| {
         if counter.is_stopped() {
             return Ok(Vec::new());
         }
         let mut random = Pcg64::new(SEED, (stream << 64) + number as u128 + 1);
-        let (_, x_wo) = draw_first(robot, &mut random)?;
-        grasps_of_board(robot, &x_wo, &mut random)
+        if by_board { draw_board(robot, &mut random) } else { draw_entry(robot, &mut random).map(|entry| vec![entry]) }
     };
     let mut entries = Vec::with_capacity(wanted);
     let mut failures = DrawFailures::default();
-    let most = BOARDS_PER_GRASP * wanted;
-    for first in (0..most).step_by(BOARDS_AT_ONCE) {
+    for first in (0..most).step_by(at_once) {
+        // The search ends sooner if nothing at all was found.
         let is_hopeless = entries.is_empty() && first >= most / HOPELESS_SHARE;
         if entries.len() >= wanted || is_hopeless || counter.is_stopped() {
             break;
         }
-        let boards = first..most.min(first + BOARDS_AT_ONCE);
-        for found in boards.into_par_iter().map(of_board).collect::<Vec<_>>() {
+        let draws = first..most.min(first + at_once);
+        for found in draws.into_par_iter().map(of_draw).collect::<Vec<_>>() {
             match found {
-                Ok(found) => {
-                    let kept = found.into_iter().take(GRASPS_PER_BOARD);
-                    entries.extend(kept.inspect(|_| counter.advance()));
-                }
+                Ok(found) => entries.extend(found.into_iter().inspect(|_| counter.advance())),
                 Err(failure) => failures.count(failure),
             }
         }
     }
     entries.truncate(wanted);
     (entries, failures)
+}
+
+/// Grasps of all arms on a board that the first one holds.
+fn draw_board(robot: &GraspingRobot, random: &mut Pcg64) -> Result<Vec<LibraryEntry>, DrawFailure> {
+    let (_, x_wo) = draw_first(robot, random)?;
+    let mut found = grasps_of_board(robot, &x_wo, random)?;
+    found.truncate(GRASPS_PER_BOARD);
+    Ok(found)
 }
 
 /// A grasp of the first arm and the pose of the board that it holds.

@@ -286,8 +286,7 @@ mod tests {
                 loaded.scenario.planner.budget = Budget::Fast;
                 loaded.scenario.human.place = place;
                 let clearance_m = loaded.scenario.limits.clearance_m();
-                let library =
-                    GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), clearance_m);
+                let library = GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), clearance_m);
                 compare_starts(&loaded.scenario, &library);
             }
         }
