@@ -138,8 +138,8 @@ pub enum Search {
 }
 
 impl<'a> Round<'a> {
-    pub fn new(core: &'a Core, radius_m: f64, pose: &ParryPose) -> Self {
-        Self { core, radius_m, rotation: DMat3::from_quat(pose.rotation), centre: pose.translation }
+    pub fn new(core: &'a Core, radius_m: f64, rotation: DMat3, centre: DVec3) -> Self {
+        Self { core, radius_m, rotation, centre }
     }
 
     /// The point of the core nearest to `p`, see [`Core::nearest`].
@@ -248,7 +248,10 @@ mod tests {
             let poses = [(); 2].map(|()| drawn_pose(&mut generator));
             let within_m = generator.random_range(0.0..0.2);
             let cores = shapes.each_ref().map(Core::of_shape);
-            let [one, two] = [0, 1].map(|body: usize| Round::new(&cores[body].0, cores[body].1, &poses[body]));
+            let [one, two] = [0, 1].map(|body: usize| {
+                let (core, radius_m) = &cores[body];
+                Round::new(core, *radius_m, DMat3::from_quat(poses[body].rotation), poses[body].translation)
+            });
             let expected_m = query::distance(&poses[0], &*shapes[0], &poses[1], &*shapes[1]).unwrap().distance;
             let towards = match one.bounds(&two, within_m) {
                 Bounds::Beyond => {

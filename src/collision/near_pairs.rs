@@ -96,7 +96,8 @@ fn pairs(a: &PlacedBody<'_>, b: &PlacedBody<'_>, required_m: f64, within_m: f64,
         return;
     }
     for (i, piece) in a.pieces.iter().enumerate() {
-        if !piece.may_meet_sphere(b.centre_w, b.radius_m + apart_m) {
+        // Pays only if it spares more than one test.
+        if b.pieces.len() > 1 && !piece.may_meet_sphere(b.centre_w, b.radius_m + apart_m) {
             continue;
         }
         for (j, other) in b.pieces.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Unit, Vector3};
 use parry3d_f64::{
-    glamx::{DQuat, DVec3},
+    glamx::{DMat3, DQuat, DVec3},
     math::Pose as ParryPose,
     query,
     shape::{SharedShape, SupportMap},
@@ -49,6 +49,8 @@ pub struct Closest {
 #[derive(Clone, Copy)]
 pub struct Placed<'a> {
     pose: ParryPose,
+    /// That of the pose.
+    rotation: DMat3,
     piece: &'a Piece,
 }
 
@@ -117,7 +119,8 @@ impl Piece {
     }
 
     fn placed_by(&self, x_wl: &ParryPose) -> Placed<'_> {
-        Placed { pose: x_wl * self.x_ls, piece: self }
+        let pose = x_wl * self.x_ls;
+        Placed { pose, rotation: DMat3::from_quat(pose.rotation), piece: self }
     }
 }
 
@@ -145,7 +148,7 @@ pub fn sphere_about(pieces: &[Piece]) -> (Point3<f64>, f64) {
 impl Placed<'_> {
     /// Its core in W.
     fn round(&self) -> Round<'_> {
-        Round::new(&self.piece.core, self.piece.round_m, &self.pose)
+        Round::new(&self.piece.core, self.piece.round_m, self.rotation, self.pose.translation)
     }
 
     /// Its bounding sphere in W: centre and radius, m.

@@ -62,15 +62,29 @@ impl ContactModel {
         // Computed once for all mechanisms: they would take most of the time.
         let radii_m: Vec<_> = self.hands.iter().map(radii_m).collect();
         let proof = |(mechanism, twist): (Mechanism, Twist)| {
-            let back = Twist { linear: -twist.linear, angular: -twist.angular };
-            let demand_j = twist.work(&outer);
-            let capacity_j: f64 =
-                self.hands.iter().zip(&radii_m).map(|(hand, radii_m)| work_of_hand(hand, radii_m, &back)).sum();
-            let is_infeasible = demand_j > capacity_j + ROUNDING_MARGIN * demand_j.abs();
-            is_infeasible.then_some(Infeasibility { mechanism, demand_j, capacity_j })
+            let (demand_j, capacity_j) = self.work(&radii_m, &outer, &twist);
+            is_excess(demand_j, capacity_j).then_some(Infeasibility { mechanism, demand_j, capacity_j })
         };
         mechanisms(self, &outer).into_iter().find_map(proof)
     }
+
+    /// True if the hands cannot resist a wrench on the board along this twist of it, which proves that there is no equilibrium.
+    pub(super) fn is_moved(&self, outer: &Wrench, twist: &Twist) -> bool {
+        let radii_m: Vec<_> = self.hands.iter().map(radii_m).collect();
+        let (demand_j, capacity_j) = self.work(&radii_m, outer, twist);
+        is_excess(demand_j, capacity_j)
+    }
+
+    /// The work of a wrench on a twist of the board, and the largest with which the hands can resist it, J.
+    fn work(&self, radii_m: &[[f64; 2]], outer: &Wrench, twist: &Twist) -> (f64, f64) {
+        let back = Twist { linear: -twist.linear, angular: -twist.angular };
+        let of_hands = self.hands.iter().zip(radii_m).map(|(hand, radii_m)| work_of_hand(hand, radii_m, &back));
+        (twist.work(outer), of_hands.sum())
+    }
+}
+
+fn is_excess(demand_j: f64, capacity_j: f64) -> bool {
+    demand_j > capacity_j + ROUNDING_MARGIN * demand_j.abs()
 }
 
 /// The mechanisms tried, as twists at O's origin.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, Const, Matrix3, Matrix6, Vector3};
 
-use super::{contact_model::ContactModel, twist::Twist};
+use super::{contact_model::ContactModel, hand::HandModel, twist::Twist};
 use crate::model::wrench::Wrench;
 
 /// The smallest squared ratio of two pivots of a compliance that still counts as invertible. Rounding leaves about
@@ -29,10 +29,15 @@ impl WeldedStiffness {
     /// stiffness there is not finite.
     #[must_use]
     pub fn new(model: &ContactModel) -> Option<Self> {
+        Self::of(model, model.hands.iter().map(HandModel::compliance))
+    }
+
+    /// The same with the compliances of the hands.
+    pub(super) fn of(model: &ContactModel, compliances: impl IntoIterator<Item = Matrix6<f64>>) -> Option<Self> {
         let mut stiffness_t = Matrix6::zeros();
         let mut hands = Vec::with_capacity(model.hands.len());
-        for hand in &model.hands {
-            let stiffness = inverse(&hand.compliance())?;
+        for (hand, compliance) in model.hands.iter().zip(compliances) {
+            let stiffness = inverse(&compliance)?;
             let map = twist_map(&(hand.grasp_point_o - model.p_ot));
             stiffness_t += map.transpose() * stiffness * map;
             hands.push((stiffness, map));

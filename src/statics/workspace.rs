@@ -8,7 +8,10 @@ use super::{
     equilibrium::{self, CompliantResponse, Equilibrium, EquilibriumOutcome, ResponseOutcome},
     load_factor::{self, LoadFactorOutcome},
     solvers::{
-        clarabel::ReusedSolver, cone_program::ConeProgram, energy::HandEnergy, interior_point::InteriorPoint,
+        clarabel::ReusedSolver,
+        cone_program::ConeProgram,
+        energy::HandEnergy,
+        interior_point::{InteriorPoint, NotFound},
         layout::ProgramKind,
     },
     welded::WeldedStiffness,
@@ -39,16 +42,24 @@ struct RecentPoint {
 const RECENT_POINTS: usize = 8;
 
 impl RecentPoints {
-    /// The equilibrium of a contact model; `None` if it is not found, see [`InteriorPoint::solve`].
-    fn solve(&mut self, model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<&InteriorPoint> {
+    /// The equilibrium of a contact model, as [`InteriorPoint::solve`] finds it.
+    fn solve(
+        &mut self,
+        model: &ContactModel,
+        energies: &[HandEnergy],
+        load_factor: f64,
+    ) -> Result<&InteriorPoint, NotFound> {
         let is_same = |recent: &RecentPoint| recent.load_factor == load_factor && recent.model == *model;
-        if let Some(number) = self.0.iter().position(is_same) {
-            return self.0.get(number).map(|recent| &recent.point);
-        }
-        let point = InteriorPoint::solve(model, energies, load_factor)?;
-        self.0.truncate(RECENT_POINTS - 1);
-        self.0.push_front(RecentPoint { model: model.clone(), load_factor, point });
-        self.0.front().map(|recent| &recent.point)
+        let number = match self.0.iter().position(is_same) {
+            Some(number) => number,
+            None => {
+                let point = InteriorPoint::solve(model, energies, load_factor)?;
+                self.0.truncate(RECENT_POINTS - 1);
+                self.0.push_front(RecentPoint { model: model.clone(), load_factor, point });
+                0
+            }
+        };
+        Ok(&self.0[number].point)
     }
 }
 
@@ -64,8 +75,8 @@ pub(super) struct AtRest {
 /// A solver of the equilibrium program. Both find the same equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EquilibriumSolver {
-    /// Dense and of fixed size, the faster one. Cannot prove that there is no equilibrium: its outcome is then
-    /// [`EquilibriumOutcome::Unknown`].
+    /// Dense and of fixed size, the faster one. It does not prove in all cases that there is no equilibrium: its outcome may then
+    /// be [`EquilibriumOutcome::Unknown`].
     InteriorPoint,
     /// Sparse, with a proof if there is no equilibrium.
     Clarabel,
@@ -110,10 +121,11 @@ impl StabilityWorkspace {
         model.check()?;
         let energies = HandEnergy::of_hands(model);
         Ok(match solver {
-            EquilibriumSolver::InteriorPoint => InteriorPoint::solve(model, &energies, load_factor).map_or_else(
-                || EquilibriumOutcome::Unknown { status: "not converged".into() },
-                |point| EquilibriumOutcome::Found(of_point(model, load_factor, &point)),
-            ),
+            EquilibriumSolver::InteriorPoint => match InteriorPoint::solve(model, &energies, load_factor) {
+                Ok(point) => EquilibriumOutcome::Found(of_point(model, load_factor, &point)),
+                Err(NotFound::NoEquilibrium) => EquilibriumOutcome::NoEquilibrium,
+                Err(NotFound::Unknown) => EquilibriumOutcome::Unknown { status: "not converged".into() },
+            },
             EquilibriumSolver::Clarabel => self.by_clarabel(model, &energies, load_factor),
         })
     }
@@ -166,8 +178,9 @@ impl StabilityWorkspace {
         load_factor: f64,
     ) -> EquilibriumOutcome {
         match self.recent.solve(model, energies, load_factor) {
-            Some(point) => EquilibriumOutcome::Found(of_point(model, load_factor, point)),
-            None => self.by_clarabel(model, energies, load_factor),
+            Ok(point) => EquilibriumOutcome::Found(of_point(model, load_factor, point)),
+            Err(NotFound::NoEquilibrium) => EquilibriumOutcome::NoEquilibrium,
+            Err(NotFound::Unknown) => self.by_clarabel(model, energies, load_factor),
         }
     }
 
@@ -178,7 +191,7 @@ impl StabilityWorkspace {
         energies: &[HandEnergy],
         load_factor: f64,
     ) -> Option<InteriorPoint> {
-        self.recent.solve(model, energies, load_factor).cloned()
+        self.recent.solve(model, energies, load_factor).ok().cloned()
     }
 
     fn by_clarabel(&mut self, model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> EquilibriumOutcome {

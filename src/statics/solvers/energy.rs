@@ -3,7 +3,7 @@
 use nalgebra::Matrix6;
 
 use super::units::{DISPLACEMENT_UNIT_M, FORCE_UNIT_N, wrench_units};
-use crate::statics::{contact_model::ContactModel, hand::HandModel};
+use crate::statics::contact_model::ContactModel;
 
 /// Compliance of a pad against a force through its centre, m/N; against a moment, this over the square of the lever at
 /// which the pad resists it (a half side, or the torsion radius).
@@ -23,17 +23,17 @@ pub struct HandEnergy {
 }
 
 impl HandEnergy {
-    /// The energy of a hand.
-    pub fn new(hand: &HandModel) -> Self {
+    /// The energy of a hand with this compliance, see [`HandModel::compliance`](crate::statics::HandModel::compliance).
+    pub fn new(compliance: &Matrix6<f64>) -> Self {
         let energy_unit_j = FORCE_UNIT_N * DISPLACEMENT_UNIT_M;
         let units = wrench_units();
-        let arm = hand.compliance().component_mul(&(units * units.transpose())) / energy_unit_j;
+        let arm = compliance.component_mul(&(units * units.transpose())) / energy_unit_j;
         // The pads' variables are scaled by the levers that divide their compliance, so one value serves all.
         Self { arm, pads: PAD_COMPLIANCE_M_N * FORCE_UNIT_N * FORCE_UNIT_N / energy_unit_j }
     }
 
     /// The energy of each hand.
     pub fn of_hands(model: &ContactModel) -> Vec<Self> {
-        model.hands.iter().map(Self::new).collect()
+        model.hands.iter().map(|hand| Self::new(&hand.compliance())).collect()
     }
 }

@@ -6,8 +6,9 @@
 //! component of the balance and each grip. Predictor-corrector steps after Mehrotra with the scaling of
 //! [`super::pad_cone`].
 //!
-//! If it does not converge within a few iterations (there is no equilibrium, or barely one), it returns `None`, and the
-//! caller solves the program with clarabel, which can prove infeasibility. A test compares the two.
+//! Without an equilibrium the multipliers of the balance grow along a motion of the board that the hands cannot resist, which
+//! is a proof ([`ContactModel::is_moved`]). If it neither converges within a few iterations nor finds such a motion, the caller
+//! solves the program with clarabel. A test compares the two.
 //!
 //! # Sensitivity to the contact model
 //! After convergence the factorised system remains. One Newton step with it, from this equilibrium to the optimality
@@ -56,6 +57,18 @@ struct HandProgram {
     /// Its columns of the balance rows and of its grip's row, transposed.
     rows: HandRows,
     friction: [f64; 2],
+}
+
+/// Steps shorter than this share of the Newton step suggest that there is no equilibrium.
+const DOUBTFUL_STEP: f64 = 0.3;
+
+/// Why there is no solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotFound {
+    /// A motion of the board that the hands cannot resist proves that there is no equilibrium.
+    NoEquilibrium,
+    /// The program has a pad without friction or a measured gripper, or the iterations did not converge.
+    Unknown,
 }
 
 /// The equilibrium program: minimise the energy subject to `sum rows' x = rhs` and the pads' limits.
@@ -175,9 +188,12 @@ pub struct InteriorPoint {
 }
 
 impl InteriorPoint {
-    /// Solves the program; `None` if a pad has no friction, for a measured gripper, or without convergence.
-    pub fn solve(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Option<Self> {
-        let program = EquilibriumProgram::new(model, energies, load_factor)?;
+    /// Solves the program.
+    ///
+    /// # Errors
+    /// See [`NotFound`].
+    pub fn solve(model: &ContactModel, energies: &[HandEnergy], load_factor: f64) -> Result<Self, NotFound> {
+        let program = EquilibriumProgram::new(model, energies, load_factor).ok_or(NotFound::Unknown)?;
         let starts = program.hands.iter().enumerate();
         let mut hands: Vec<_> =
             starts.map(|(number, hand)| HandPoint::start(hand, program.rhs[6 + number] / 2.0)).collect();
@@ -185,25 +201,28 @@ impl InteriorPoint {
         let degree = pad_cone::DEGREE * 2.0 * hands.len() as f64;
         let mut short_steps = 0;
         for _ in 0..MAX_ITERATIONS {
-            let factor = factorised(&program, &hands)?;
+            let factor = factorised(&program, &hands).ok_or(NotFound::Unknown)?;
             let residual = residuals(&program, &hands, &y);
             let gap = gap(&program, &hands);
             if residual.largest() <= TOLERANCE && gap <= TOLERANCE * degree {
-                return Some(Self { hands, y, factor });
+                return Ok(Self { hands, y, factor });
             }
             let (step, length) = corrected_step(&program, &factor, &residual, &hands, gap / degree);
-            // A NaN length counts as short.
-            short_steps = if length > SHORT_STEP { 0 } else { short_steps + 1 };
-            if short_steps == 2 {
-                return None;
-            }
             for (point, change) in hands.iter_mut().zip(&step.hands) {
                 point.x += change.x * length;
                 (0..2).for_each(|pad| point.z[pad] += change.z[pad] * length);
             }
             y += step.y * length;
+            if length < DOUBTFUL_STEP && model.is_moved(&(model.weight + model.load.scaled(load_factor)), &board(&y)) {
+                return Err(NotFound::NoEquilibrium);
+            }
+            // A NaN length counts as short.
+            short_steps = if length > SHORT_STEP { 0 } else { short_steps + 1 };
+            if short_steps == 2 {
+                break;
+            }
         }
-        None
+        Err(NotFound::Unknown)
     }
 
     /// The equilibrium of a slightly different contact model, to first order in the difference; `None` if it has
@@ -240,10 +259,12 @@ fn solution(model: &ContactModel, hands: impl Iterator<Item = Variables>, y: &Ro
     let of_pair = |(pair, x): (&PadPair, Variables)| {
         HandWrench::Pads([0, 1].map(|pad: usize| pad_wrench(&pair.pads[pad], &pad_part(&x, pad))))
     };
-    Solution {
-        hand_wrenches: pairs.zip(hands).map(of_pair).collect(),
-        board: balance_twist(y.as_slice(), FORCE_UNIT_N * DISPLACEMENT_UNIT_M),
-    }
+    Solution { hand_wrenches: pairs.zip(hands).map(of_pair).collect(), board: board(y) }
+}
+
+/// The displacement of the board at O's origin that the multipliers stand for.
+fn board(y: &Rows) -> Twist {
+    balance_twist(y.as_slice(), FORCE_UNIT_N * DISPLACEMENT_UNIT_M)
 }
 
 /// Residuals of the optimality conditions: of the energy's gradient, one entry a hand, and of balance and grips.
