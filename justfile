@@ -33,6 +33,10 @@ schemas:
 snapshots:
     INSTA_UPDATE=always cargo test --release --test cli messages
 
+# Write the warm starts that come with the program again after a change of the planner that is meant (minutes)
+maps:
+    BENCHDOG_WRITE_MAPS=1 cargo test --release --test cli maps_of_the_program
+
 # Licences, duplicate crates and sources of the dependencies (needs cargo-deny)
 deny:
     cargo deny check licenses bans sources

@@ -1,6 +1,6 @@
 //! Maps that come with the program, so that even the first command finds some.
 //!
-//! Their keys leave out the program: else every change of a source would ask for new ones. A test makes them anew and compares them.
+//! Their keys leave out the program: else every change of a source would ask for new ones. A test makes them again and compares them.
 
 use std::sync::{LazyLock, Mutex, PoisonError};
 
@@ -61,7 +61,7 @@ impl MapStore for BuiltinWriter {
     }
 }
 
-/// The records of a file; `None` if it is none.
+/// The records of a file; `None` if it is not one of these.
 fn records(file: &[u8]) -> Option<Vec<Record>> {
     let records: Vec<Vec<u8>> = postcard::from_bytes(file).ok()?;
     records.iter().map(|bytes| Record::from_bytes(bytes)).collect()

@@ -1,6 +1,6 @@
 //! Planner's maps that are kept between runs: in a folder, and those that come with the program.
 //!
-//! A map is found again by its [`key`]: a hash of everything that it is made from. What is read is compared with its own hash, so it is
+//! A map is found again by its key: a hash of everything that it is made from. What is read is compared with its own hash, so it is
 //! what was written or nothing. So a plan on kept maps is the plan on fresh ones, bit for bit.
 
 mod builtin;

@@ -84,7 +84,7 @@ pub enum CacheCommand {
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[command(next_help_heading = "Maps")]
 pub struct CacheArgs {
-    /// Make all maps anew: read none that an earlier command kept or that come with the program, and keep none
+    /// Make all maps again: read none that an earlier command kept or that come with the program, and keep none
     #[arg(long)]
     pub no_cache: bool,
 }

@@ -40,7 +40,7 @@ pub fn planner(robot: &Robot, args: CacheArgs) -> Planner {
     }
 }
 
-/// The user's folder of maps; `None` if the environment does not tell where it is, or that there is none.
+/// The user's folder of maps; `None` if the environment does not tell where it is, or keeps maps out.
 pub fn folder() -> Option<Folder> {
     let tell = |trouble: &str| output::message(&format!("note: {trouble}"));
     let path = folder_of(|name| env::var_os(name))?;

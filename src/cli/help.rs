@@ -166,11 +166,12 @@ Examples:
   benchdog cache clear
   BENCHDOG_CACHE=maps benchdog run scenarios/quickstart.toml     keep them in the folder maps
 
-Maps are what many plans of a robot, a board and a kind of task share. They take seconds to make, and
-the next command reads them. A plan on kept maps is the plan on new ones, bit for bit: a map is read
-only if everything that it was made from is the same, and only if it is as it was written. The folder
-is that of BENCHDOG_CACHE, or benchdog in the user's folder for caches; empty: no maps are kept. It
-stays below 200 MB: what was not used for longest is removed first.";
+Maps are what many plans of a robot, a board and a kind of task share. They take seconds to make,
+and the next command reads them. A plan on kept maps is the plan on new ones, bit for bit: a map
+is read only if everything that it was made from is the same, and if it is as it was written. The
+folder is that of BENCHDOG_CACHE, or benchdog in the user's folder for caches; if the variable is
+empty, no maps are kept or read. It stays below 200 MB: what was not used for longest is removed
+first.";
 
 /// `benchdog doctor --help`.
 pub const DOCTOR: &str = "\

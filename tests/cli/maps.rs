@@ -83,7 +83,7 @@ fn maps_are_kept_read_listed_and_removed() {
     assert_eq!(first, fresh());
     let map = only_map(&maps);
     let (kept, written) = (fs::read(&map).unwrap(), fs::metadata(&map).unwrap().modified().unwrap());
-    // Used long ago: a use is noted, and nothing is written anew.
+    // Used long ago: a use is noted, and nothing is written again.
     fs::File::options().append(true).open(&map).unwrap().set_modified(written - Duration::from_secs(90)).unwrap();
     assert!(cache(&maps, "list")[1].contains("1 min"));
     assert_eq!(plan_in(&maps), first);
