@@ -8,10 +8,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use super::{
-    exit::{CliError, Exit},
-    progress::Progress,
-};
+use super::exit::{CliError, Exit};
 
 /// True after the first signal, if the command ends in order.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
@@ -19,27 +16,39 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 /// Held by a command that writes what it has made: it is not ended in the middle.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// The progress of the command.
-static PROGRESS: OnceLock<Arc<Progress>> = OnceLock::new();
+/// The command that may be interrupted.
+static COMMAND: OnceLock<Arc<dyn Interruptible>> = OnceLock::new();
+
+/// What Ctrl-C asks of a command and tells its user.
+pub trait Interruptible: Send + Sync {
+    /// What the command still does after Ctrl-C; `None` if there is nothing to keep, so that it ends at once.
+    fn ending(&self) -> Option<&'static str>;
+    /// How it was interrupted, if it writes nothing more.
+    fn interrupted(&self) -> String;
+    /// Prints a line on standard error.
+    fn message(&self, line: &str);
+    /// Leaves the terminal as it was.
+    fn finish(&self);
+}
 
 /// Installs the handler of a command; once in a process.
 ///
 /// # Errors
 /// If the handler cannot be installed.
-pub fn listen(progress: &Arc<Progress>) -> Result<(), CliError> {
-    let progress = PROGRESS.get_or_init(|| progress.clone());
+pub fn listen(command: Arc<dyn Interruptible>) -> Result<(), CliError> {
+    let command = COMMAND.get_or_init(|| command);
     ctrlc::set_handler(|| {
         if REQUESTED.load(Ordering::SeqCst) {
-            end_at_once(progress, None);
+            end_at_once(&**command, None);
         }
-        match progress.ending() {
+        match command.ending() {
             Some(ending) => {
                 REQUESTED.store(true, Ordering::SeqCst);
-                progress.message(&format!("interrupted: {ending}; press Ctrl-C again to exit immediately"));
+                command.message(&format!("interrupted: {ending}; press Ctrl-C again to exit immediately"));
             }
             None => {
                 let _writing = writing();
-                end_at_once(progress, Some(&progress.interrupted()));
+                end_at_once(&**command, Some(&command.interrupted()));
             }
         }
     })?;
@@ -58,16 +67,16 @@ pub fn writing() -> MutexGuard<'static, ()> {
 
 /// Says how a command was interrupted that was stopped and has nothing to write.
 pub fn explain() {
-    if let Some(progress) = PROGRESS.get() {
-        progress.finish();
-        progress.message(&progress.interrupted());
+    if let Some(command) = COMMAND.get() {
+        command.finish();
+        command.message(&command.interrupted());
     }
 }
 
-fn end_at_once(progress: &Progress, message: Option<&str>) -> ! {
-    progress.finish();
+fn end_at_once(command: &dyn Interruptible, message: Option<&str>) -> ! {
+    command.finish();
     if let Some(message) = message {
-        progress.message(message);
+        command.message(message);
     }
     std::process::exit(Exit::Interrupted.code().into())
 }

@@ -11,7 +11,11 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{exit::CliError, interrupt, output};
+use super::{
+    exit::CliError,
+    interrupt::{self, Interruptible},
+    output,
+};
 use crate::{
     model::stop::Stop,
     planner::{Event, Part, Phase, Watch},
@@ -107,7 +111,7 @@ impl Progress {
         if !progress.bar.is_hidden() {
             progress.bar.enable_steady_tick(TICK);
         }
-        interrupt::listen(&progress)?;
+        interrupt::listen(progress.clone())?;
         Ok(progress)
     }
 
@@ -127,23 +131,9 @@ impl Progress {
         self.keeps.store(true, Ordering::SeqCst);
     }
 
-    /// What is done after Ctrl-C; `None` if there is nothing to keep.
-    pub fn ending(&self) -> Option<&'static str> {
-        self.keeps.load(Ordering::SeqCst).then_some(self.ending)
-    }
-
     /// Says what stays of the command if it is ended at once from now on.
     pub fn leaves(&self, what: &str) {
         what.clone_into(&mut self.left.lock().unwrap_or_else(PoisonError::into_inner));
-    }
-
-    /// How a command was interrupted that writes nothing more.
-    pub fn interrupted(&self) -> String {
-        let elapsed_s = self.begun.elapsed().as_secs_f64();
-        let doing = self.with_now(|now| now.words());
-        let left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
-        let left = if self.ending().is_some() { UNCHECKED_LEFT } else { &left };
-        format!("interrupted after {elapsed_s:.1} s, while {doing}: {left}")
     }
 
     /// Shows that a scenario or a job has started.
@@ -244,7 +234,7 @@ impl Progress {
 fn usually(phase: Phase) -> &'static str {
     match phase {
         Phase::GraspLibrary | Phase::Postures | Phase::NaturalGrasps | Phase::WarmStarts { .. } => {
-            "all maps usually take 4 to 10 s"
+            "all maps usually take 3 to 10 s"
         }
         _ => "",
     }
@@ -263,5 +253,27 @@ impl Watch for Progress {
             Event::Search(progress) => self.search(progress.evaluations),
             Event::Found => self.keep(),
         }
+    }
+}
+
+impl Interruptible for Progress {
+    fn ending(&self) -> Option<&'static str> {
+        self.keeps.load(Ordering::SeqCst).then_some(self.ending)
+    }
+
+    fn interrupted(&self) -> String {
+        let elapsed_s = self.begun.elapsed().as_secs_f64();
+        let doing = self.with_now(|now| now.words());
+        let left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
+        let left = if self.ending().is_some() { UNCHECKED_LEFT } else { &left };
+        format!("interrupted after {elapsed_s:.1} s, while {doing}: {left}")
+    }
+
+    fn message(&self, line: &str) {
+        Self::message(self, line);
+    }
+
+    fn finish(&self) {
+        Self::finish(self);
     }
 }

@@ -62,11 +62,13 @@ pub fn top(
 }
 
 /// The best `wanted` plans that [`differ`] from one another among candidates, each also with other configurations of the arms.
+/// After a stop they are those that were checked before, and at least the best.
 pub fn best_that_differ(evaluator: &mut Evaluator<'_>, found: Vec<Feasible>, wanted: usize) -> Vec<Plan> {
     let found = with_other_configurations(evaluator, found, wanted);
     let mut plans: Vec<Plan> = Vec::with_capacity(wanted);
     for found in found {
-        if plans.len() == wanted {
+        // After a stop the best is checked, and no more: there may be many.
+        if plans.len() == wanted || (!plans.is_empty() && evaluator.problem.stop.is_stopped()) {
             break;
         }
         let evaluations = evaluator.stats.candidates();

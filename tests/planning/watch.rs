@@ -175,6 +175,16 @@ fn a_stopped_search_has_the_best_plan_so_far() {
     assert_eq!(watch.candidates[1].load(Ordering::SeqCst), 0, "nothing is evaluated once the search is stopped");
 }
 
+/// A stopped search for several plans has the best at least; the others may cost too long to check.
+#[test]
+fn a_stopped_search_for_several_plans_has_the_best_of_them() {
+    let scenario = fast("quickstart");
+    let watch = Recorder::at(|event| matches!(event, Event::Found));
+    let plans = found(PLANNER.search(&scenario).watch(&watch).top(20).unwrap());
+    assert_eq!(plans.len(), 1);
+    verified(&plans[0], &scenario);
+}
+
 /// A flag that is set before the search begins: there is no plan, and no claim that there is none.
 #[test]
 fn a_search_that_is_stopped_at_once_is_not_infeasible() {
