@@ -126,8 +126,9 @@ pub mod screening {
 
 /// Numbers of the warm starts ([`super::warm_starts`]).
 pub mod warm_starts {
-    /// Tool directions within half a turn for which a family is solved, where the tool's roll is not free.
-    pub const DIRECTIONS: usize = 8;
+    /// Tool directions within half a turn for which a family is solved, where the tool's roll is not free: no direction is farther than
+    /// 7.5 degrees from one of them.
+    pub const DIRECTIONS: usize = 12;
     /// Places of a hole, as shares of the board's sides from its centre, for which a family is solved: half turns transfer them to
     /// its other half.
     pub const HOLES: [[f64; 2]; 3] = [[0.25, 0.25], [0.25, -0.25], [0.125, 0.0]];
@@ -135,8 +136,8 @@ pub mod warm_starts {
     pub const NATURAL_HOLES: [[f64; 2]; 2] = [[0.0, 0.25], [0.2, 0.0]];
     /// Further passes if the posture is natural.
     pub const NATURAL_PASSES: u64 = 4;
-    /// Solutions that are kept of each solved task.
-    pub const KEPT: usize = 6;
+    /// Solutions that are kept of a family: each solved task has an equal share. A plan transfers them all.
+    pub const KEPT: usize = 48;
     /// Of these, at most this many have the same pattern but for a turn of the board.
     pub const KEPT_PER_PATTERN: usize = 2;
     /// Two solutions of one pattern are the same local optimum if their objectives differ by less than this share.
@@ -213,6 +214,8 @@ pub mod replan {
         RefinementRound { candidates: 4, steps: 6 },
         RefinementRound { candidates: 1, steps: 12 },
     ];
+    /// Holds that are known from the calls before, the last one included.
+    pub const KNOWN_HOLDS: usize = 6;
     /// Warm starts that are tried at each call: all of a family in a few dozen calls.
     pub const FRESH_PER_CALL: usize = 2;
     /// Steps of refinement of the last plan's hold.
@@ -294,11 +297,6 @@ pub mod path {
     pub const JUMP_RAD: f64 = 3.0 * STEP_RAD;
 }
 
-/// KNOB
-pub fn knob(name: &str, default: usize) -> usize {
-    std::env::var(format!("BD_{name}")).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-}
-
 /// How much work a search may do.
 #[derive(Clone, Debug)]
 pub struct SearchBudget {
@@ -353,21 +351,9 @@ fn rounds(rounds: &[[usize; 2]]) -> Vec<RefinementRound> {
 }
 
 impl SearchBudget {
-    /// The numbers of a scenario's budget. Natural postures leave the objective flatter, so more grasps are nearly as good and
-    /// more warm starts are refined.
+    /// The numbers of a scenario's budget.
     pub fn of(scenario: &Scenario) -> Self {
-        let budget = scenario.planner.budget;
-        let usual = Self::unrestricted(budget);
-        if budget == Budget::Default && scenario.human.posture.is_natural() {
-            let n = knob("N", 5);
-            Self {
-                warm_starts: n,
-                warm_rounds: Some(rounds(&[[n, knob("A", 3)], [knob("N2", 2), knob("B", 8)], [1, knob("C", 12)]])),
-                ..usual
-            }
-        } else {
-            usual
-        }
+        Self::of_budget(scenario.planner.budget)
     }
 
     /// The numbers of the second search, after the first has found nothing: several times those of the default budget whatever
@@ -384,12 +370,11 @@ impl SearchBudget {
             rounds: rounds(&[[48, 6], [12, 8], [2, 25]]),
             warm_starts: 0,
             warm_rounds: None,
-            ..Self::unrestricted(Budget::Default)
+            ..Self::of_budget(Budget::Default)
         }
     }
 
-    /// The numbers of a budget for an unrestricted posture.
-    fn unrestricted(budget: Budget) -> Self {
+    fn of_budget(budget: Budget) -> Self {
         match budget {
             Budget::Fast => Self {
                 postures: 100_000,
@@ -413,8 +398,8 @@ impl SearchBudget {
                 starts: 24,
                 starts_per_pattern: 3,
                 rounds: rounds(&[[24, 6], [12, 8], [2, 25]]),
-                warm_starts: 10,
-                warm_rounds: Some(rounds(&[[10, 4], [4, 8], [1, 25]])),
+                warm_starts: 5,
+                warm_rounds: Some(rounds(&[[5, 3], [2, 8], [1, 12]])),
                 path: PathBudget { resampled_boards: 2_000, estimates: 1_500, local_searches: 3, steps: 30 },
             },
             Budget::Exhaustive => Self {
@@ -454,33 +439,26 @@ impl WarmStartBudget {
         let usual = Self::unrestricted(scenario.planner.budget)?;
         let natural = scenario.human.posture.is_natural();
         let further = if natural { warm_starts::NATURAL_PASSES } else { 0 };
-        Some(Self {
-            passes: if natural { knob("PASSES", (usual.passes + further) as usize) as u64 } else { usual.passes },
-            ..usual
-        })
+        Some(Self { passes: usual.passes + further, ..usual })
     }
 
     /// The numbers of a budget for an unrestricted posture.
     fn unrestricted(budget: Budget) -> Option<Self> {
-        let plan = SearchBudget::unrestricted(budget);
+        let plan = SearchBudget::of_budget(budget);
         match budget {
             Budget::Fast => None,
             Budget::Default => {
                 let later = SearchBudget {
-                    evaluated_pairs: knob("PAIRS", 4_000),
-                    starts: knob("S", 48),
+                    evaluated_pairs: 4_000,
+                    starts: 48,
                     starts_per_pattern: 2,
-                    rounds: rounds(&[
-                        [56, knob("OA", 8)],
-                        [knob("O2", 24), knob("OB", 30)],
-                        [knob("O3", 1), knob("OC", 0)],
-                    ]),
-                    warm_starts: knob("OW", 8),
+                    rounds: rounds(&[[56, 8], [24, 30]]),
+                    warm_starts: 12,
                     ..plan
                 };
                 let first =
                     SearchBudget { starts: 16, rounds: rounds(&[[16, 8], [6, 20]]), warm_starts: 0, ..later.clone() };
-                Some(Self { first, later, passes: 3, resampled_boards: knob("BOARDS", 1_500) })
+                Some(Self { first, later, passes: 3, resampled_boards: 1_500 })
             }
             Budget::Exhaustive => {
                 let later = SearchBudget {

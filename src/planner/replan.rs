@@ -16,7 +16,8 @@ use super::{
         RefinementRound,
         refine::GRASP,
         replan::{
-            BEST_STEPS, BETTER, FIRST_ROUNDS, FIRST_STARTS, FRESH_PER_CALL, LAST_STEPS, OTHERS_STEPS, SAME_GRASP,
+            BEST_STEPS, BETTER, FIRST_ROUNDS, FIRST_STARTS, FRESH_PER_CALL, KNOWN_HOLDS, LAST_STEPS, OTHERS_STEPS,
+            SAME_GRASP,
         },
     },
     problem::{Problem, Reachable},
@@ -232,7 +233,7 @@ fn known(evaluator: &Evaluator<'_>, ranked: Vec<Feasible>, warm: &Arc<WarmStarts
 
 /// The solutions that differ, in their order.
 fn solutions(problem: &Problem<'_>, ranked: Vec<Feasible>) -> Vec<Solution> {
-    let different = distinct(ranked, &problem.robot.board);
+    let different = distinct(ranked, &problem.robot.board, KNOWN_HOLDS);
     different.into_iter().map(|found| Solution::new(problem, found.candidate)).collect()
 }
 

@@ -91,11 +91,10 @@ pub fn solved_tasks(shared: &Scenario) -> Vec<Scenario> {
         let tasks = half.iter().copied().chain(other_half).map(|hole| at(place(hole), 0.0));
         return tasks.collect();
     }
-    let dirs = crate::planner::params::knob("DIRS", DIRECTIONS);
-    let whole = if shared.object.shape().turns(2) { dirs } else { 2 * dirs };
+    let whole = if shared.object.shape().turns(2) { DIRECTIONS } else { 2 * DIRECTIONS };
     // Between the board's axes and diagonals, so that the common directions all have neighbours at some distance.
     let direction = |number: usize| {
-        let turn_rad = PI * (number as f64 + 0.5) / dirs as f64;
+        let turn_rad = PI * (number as f64 + 0.5) / DIRECTIONS as f64;
         at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * translation.vector, turn_rad)
     };
     (0..whole).map(direction).collect()

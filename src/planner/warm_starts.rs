@@ -156,7 +156,15 @@ impl WarmStarts {
             let entries: Vec<_> = entries.iter().chain(natural).collect();
             // Each task uses the solutions of the pass before, so their order does not matter.
             let solve = |(task, of_place): (&Scenario, &Vec<LibraryEntry>)| {
-                let solved = self.solve_task(task, &library.robot, &entries, of_place, task_budget, watch);
+                let solved = self.solve_task(
+                    task,
+                    &library.robot,
+                    &entries,
+                    of_place,
+                    task_budget,
+                    KEPT / tasks.len().max(1),
+                    watch,
+                );
                 counter.advance();
                 solved
             };
@@ -181,7 +189,7 @@ impl WarmStarts {
         tasks.iter().map(of_task).collect()
     }
 
-    /// Solves one task from the solutions so far and the given entries.
+    /// Solves one task from the solutions so far and the given entries; at most `share` solutions.
     fn solve_task(
         &self,
         task: &Scenario,
@@ -189,13 +197,15 @@ impl WarmStarts {
         entries: &[&LibraryEntry],
         of_place: &[LibraryEntry],
         budget: &SearchBudget,
+        share: usize,
         watch: &dyn Watch,
     ) -> Result<Vec<Solution>, PlanError> {
         let mut evaluator = Evaluator::new(Problem::new(task, robot, watch)?, SearchStats::unlimited(watch));
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
         let entries = entries.iter().copied().chain(of_place);
         starts.extend(screen::screen(&mut evaluator, entries, self.postures(watch)?, budget));
-        let found = distinct(refine::refine(&mut evaluator, starts, &budget.rounds), &robot.board);
+        let refined = refine::refine(&mut evaluator, starts, &budget.rounds);
+        let found = distinct(refined, &robot.board, share);
         Ok(found.into_iter().map(|found| Solution::new(&evaluator.problem, found.candidate)).collect())
     }
 
@@ -260,12 +270,12 @@ fn solutions_of_kept(
     tasks.iter().zip(kept).map(solved).collect::<Result<_, _>>().map(Some)
 }
 
-/// The best solutions that differ: at most [`KEPT_PER_PATTERN`] of two arms have the same pattern but for a turn of the board, and those
+/// The best `count` solutions that differ: at most [`KEPT_PER_PATTERN`] of two arms have the same pattern but for a turn of the board, and those
 /// have different objectives.
-pub fn distinct(found: Vec<Feasible>, board: &BoardShape) -> Vec<Feasible> {
-    let mut kept: Vec<(Feasible, GraspPattern)> = Vec::with_capacity(KEPT);
+pub fn distinct(found: Vec<Feasible>, board: &BoardShape, count: usize) -> Vec<Feasible> {
+    let mut kept: Vec<(Feasible, GraspPattern)> = Vec::with_capacity(count);
     for solution in found {
-        if kept.len() == KEPT {
+        if kept.len() == count {
             break;
         }
         let pattern = solution.candidate.normalised_pattern(board);

@@ -17,6 +17,7 @@ mod maps;
 mod margin_and_export;
 mod messages;
 mod partial_plans;
+mod replan;
 mod reports;
 mod reproduce;
 mod robots;

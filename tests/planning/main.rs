@@ -18,5 +18,6 @@ mod muscles;
 mod natural;
 mod planner;
 mod plans;
+mod replan;
 mod suction;
 mod watch;
