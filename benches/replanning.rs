@@ -2,7 +2,7 @@
 //! n-th step, that of a fresh plan.
 //!
 //! ```sh
-//! cargo bench --bench replanning -- [--fresh 10] [--filter drill-5] [--turn 0]
+//! cargo bench --bench replanning -- [--fresh 10] [--filter drill-5] [--turn -60]
 //! ```
 
 use std::time::Instant;
@@ -31,7 +31,7 @@ fn number(name: &str, default: f64) -> f64 {
 
 fn main() {
     let filter = option("--filter").unwrap_or_else(|| "drill-5".into());
-    let (every, turn_deg) = (number("--fresh", 0.0) as usize, number("--turn", 0.0));
+    let (every, turn_deg) = (number("--fresh", 0.0) as usize, number("--turn", -60.0));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     for operation in paper::natural_operations().iter().filter(|operation| operation.name == filter) {
         let loaded = operation.load().expect("they are valid");
@@ -39,7 +39,8 @@ fn main() {
     }
 }
 
-/// The person walks along their own y axis through the place of the free plan, and turns meanwhile.
+/// The person walks along their own y axis through the place of the free plan, and turns meanwhile: by default so that they go on
+/// facing the board.
 fn walk(planner: &mut Planner, scenario: &Scenario, every: usize, turn_deg: f64) {
     let Outcome::Found(free) = planner.plan(scenario).expect("a valid person") else { return println!("no plan") };
     let x_wb = free.human.expect("it has a person").x_wb;
