@@ -4,7 +4,10 @@ use std::{num::NonZero, path::PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::{help, versions};
+use super::{
+    cache::{CacheArgs, CacheCommand},
+    help, versions,
+};
 use crate::model::{
     frames::{Pose, PoseRecord, RpyRecord},
     scenario::{Budget, PlannerKind, PlannerSettings},
@@ -69,24 +72,6 @@ pub enum Command {
 pub enum RobotCommand {
     /// Find arms and grippers of a URDF and write a description that can be used at once
     New(RobotNewArgs),
-}
-
-/// A command about the maps that are kept.
-#[derive(Clone, Copy, Debug, Subcommand)]
-pub enum CacheCommand {
-    /// List the maps: what each is made for, its size, and when it was last used
-    List,
-    /// Remove all maps
-    Clear,
-}
-
-/// Whether maps are kept between commands.
-#[derive(Clone, Copy, Debug, Default, Args)]
-#[command(next_help_heading = "Maps")]
-pub struct CacheArgs {
-    /// Make all maps again: read none that an earlier command kept or that come with the program, and keep none
-    #[arg(long)]
-    pub no_cache: bool,
 }
 
 /// `benchdog robot new`.

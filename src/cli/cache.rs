@@ -8,8 +8,9 @@ use std::{
     time::{Duration, SystemTime},
 };
 
+use clap::{Args, Subcommand};
+
 use super::{
-    args::{CacheArgs, CacheCommand},
     exit::{CliError, Exit},
     output,
 };
@@ -19,6 +20,24 @@ use crate::{
     report,
     robot::Robot,
 };
+
+/// A command about the maps that are kept.
+#[derive(Clone, Copy, Debug, Subcommand)]
+pub enum CacheCommand {
+    /// List the maps: what each is made for, its size, and when it was last used
+    List,
+    /// Remove all maps
+    Clear,
+}
+
+/// Whether maps are kept between commands.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = "Maps")]
+pub struct CacheArgs {
+    /// Make all maps again: read none that an earlier command kept or that come with the program, and keep none
+    #[arg(long)]
+    pub no_cache: bool,
+}
 
 /// The variable that names the folder. Empty: no maps are kept or read.
 pub const VARIABLE: &str = "BENCHDOG_CACHE";

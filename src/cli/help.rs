@@ -40,8 +40,9 @@ written. The exit code is 130.";
 
 /// `benchdog replan --help`.
 pub const REPLAN: &str = "\
-Example:
-  echo '{\"human\": {\"x_m\": 1.25, \"y_m\": -0.1, \"heading_deg\": 180}}' | benchdog replan scenarios/quickstart.toml
+Examples:
+  benchdog replan scenarios/quickstart.toml < requests.jsonl > answers.jsonl
+  echo '{\"human\": {\"x_m\": 0.9, \"y_m\": -0.2, \"heading_deg\": 166}}' | benchdog replan scenarios/quickstart.toml
 
 A request is a line of JSON; what it leaves out stays as it was:
   {\"id\": 7,                                    any value, which the answer repeats

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    args::{CacheArgs, PlanArgs},
-    cache,
+    args::PlanArgs,
+    cache::{self, CacheArgs},
     exit::{CliError, Exit},
     inputs, interrupt, output,
     planners::Planners,

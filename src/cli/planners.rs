@@ -7,7 +7,11 @@ use std::{
     time::Instant,
 };
 
-use super::{args::CacheArgs, cache, exit::CliError, progress::Progress};
+use super::{
+    cache::{self, CacheArgs},
+    exit::CliError,
+    progress::Progress,
+};
 use crate::{
     model::{plan::Plan, scenario::Scenario, stop::Stop as _},
     planner::{MapStore, Outcome, Planner, Watch},

@@ -106,7 +106,7 @@ impl Progress {
             ending,
             left: Mutex::new(NOTHING_LEFT.to_owned()),
         });
-        progress.style(if progress.counts { COUNTING } else { OPEN });
+        progress.style(OPEN);
         progress.bar.set_message(doing.to_owned());
         if !progress.bar.is_hidden() {
             progress.bar.enable_steady_tick(TICK);
@@ -123,6 +123,7 @@ impl Progress {
 
     /// The number of scenarios or jobs that the bar counts.
     pub fn expect(&self, items: usize) {
+        self.style(COUNTING);
         self.bar.set_length(items as u64);
     }
 

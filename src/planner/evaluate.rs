@@ -120,9 +120,6 @@ impl<'a> Evaluator<'a> {
         if !self.stats.may_evaluate() {
             return Err(Rejection::NotEvaluated);
         }
-        if !self.problem.is_reachable(&candidate.arms) {
-            return Err(Rejection::Motion);
-        }
         test_placement(&self.problem, candidate)?;
         test_collisions(&self.problem, configuration)
     }
@@ -192,8 +189,11 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// Tests what depends on the person and the board's pose alone.
+/// Tests the motion to a candidate, and what depends on the person and the board's pose alone.
 pub fn test_placement(problem: &Problem<'_>, candidate: &Candidate) -> Result<(), Rejection> {
+    if !problem.is_reachable(&candidate.arms) {
+        return Err(Rejection::Motion);
+    }
     let Placement { x_wo, x_wb } = candidate.placement(problem);
     if !problem.robot.domain.contains(&x_wo) {
         return Err(Rejection::BoardPlace);

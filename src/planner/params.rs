@@ -32,7 +32,7 @@ pub mod library {
     /// Draws per grasp that is wanted, at most.
     pub const DRAWS_PER_GRASP: usize = 200;
     /// Draws that are made before the grasps so far are counted.
-    pub const DRAWS_AT_ONCE: usize = 1_024;
+    pub const DRAWS_AT_ONCE: usize = 1_000;
     /// The share of those draws after which the search is given up if nothing at all was found.
     pub const HOPELESS_SHARE: usize = 20;
     /// Boards whose grasps are drawn for a robot with more than two arms, per grasp that is wanted, at most.
@@ -196,6 +196,8 @@ pub mod refine {
     pub const CLEARANCE_MARGIN_M: f64 = 1e-5;
     /// The same for every other constraint, in its own unit.
     pub const MARGIN: f64 = 1e-7;
+    /// A step is not corrected for a margin that it violates by less than this, in its own unit: an exact test follows.
+    pub const STEP_TOLERANCE: f64 = 1e-5;
     /// Utilisation of stability below which it is no constraint of a step.
     pub const RELAXED_UTILISATION: f64 = 0.8;
     /// Utilisation of stability that a step may predict.

@@ -16,7 +16,10 @@ use crate::{
 use super::{
     library::{ArmGrasp, GraspingRobot, PostureLoad, PostureMap},
     outcome::PlanError,
-    params::{COMPLIANT_SAFETY_FACTOR, SearchBudget, refine::GRASP},
+    params::{
+        COMPLIANT_SAFETY_FACTOR, SearchBudget,
+        refine::{GRASP, STEP_TOLERANCE},
+    },
     watch::Watch,
 };
 
@@ -86,6 +89,8 @@ impl<'a> Problem<'a> {
         let limits = [chain.lower()[joint], chain.upper()[joint]];
         let Some(Reachable { from_rad, most_rad }) = &self.reachable else { return limits };
         let here_rad = from_rad[arm][joint];
+        // A step may miss its margins by a little, and the limit of the motion is exact.
+        let most_rad = (most_rad - STEP_TOLERANCE).max(0.0);
         [limits[0].max(here_rad - most_rad), limits[1].min(here_rad + most_rad)]
     }
 

@@ -12,6 +12,7 @@ use super::{
     candidate::Candidate,
     evaluate::{Evaluator, Feasible},
     library::{ArmGrasp, largest_joint_difference_rad},
+    outcome::Rejection,
     params::{
         RefinementRound,
         refine::GRASP,
@@ -240,12 +241,16 @@ fn solutions(problem: &Problem<'_>, ranked: Vec<Feasible>) -> Vec<Solution> {
 /// A solution transferred to the evaluator's task so that it satisfies every constraint: of the ways to transfer it the first one
 /// that does, the more comfortable one first.
 fn start(evaluator: &mut Evaluator<'_>, solution: &Solution, quarters: usize) -> Option<Feasible> {
-    let mut ways: Vec<_> = solution
-        .transferred(&evaluator.problem, quarters)
-        .into_iter()
-        .flatten()
-        .map(|candidate| (evaluator.objective(&candidate), candidate))
-        .collect();
+    let mut ways = Vec::with_capacity(2);
+    for candidate in solution.transferred(&evaluator.problem, quarters) {
+        match candidate {
+            Some(candidate) => ways.push((evaluator.objective(&candidate), candidate)),
+            None => {
+                evaluator.stats.count();
+                evaluator.stats.reject(Rejection::RobotReach);
+            }
+        }
+    }
     ways.sort_by(|a, b| b.0.total_cmp(&a.0));
     ways.into_iter().find_map(|(_, candidate)| refine::repair(evaluator, candidate))
 }

@@ -108,15 +108,15 @@ fn scenario(name: &str) -> String {
     argument(&root().join(format!("scenarios/{name}.toml"))).to_owned()
 }
 
-/// At the beginning, and at places in the maps, which take seconds.
+/// At the beginning, and at places in the maps, which take seconds where none are kept.
 #[test]
 fn a_plan_that_has_not_begun_to_search_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     for wait_ms in [0, 150, 900] {
-        let arguments = ["plan", &scenario("quickstart"), "-o", "out/plan.json"];
+        let arguments = ["plan", &scenario("quickstart"), "--no-cache", "-o", "out/plan.json"];
         writes_nothing(folder.path(), &arguments, Duration::from_millis(wait_ms));
     }
-    let arguments = ["plan", &scenario("quickstart"), "-o", "out", "--top", "3"];
+    let arguments = ["plan", &scenario("quickstart"), "--no-cache", "-o", "out", "--top", "3"];
     writes_nothing(folder.path(), &arguments, Duration::from_millis(50));
 }
 
@@ -124,8 +124,8 @@ fn a_plan_that_has_not_begun_to_search_writes_nothing() {
 fn fronts_and_circles_that_have_not_begun_to_search_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let wait = Duration::from_millis(50);
-    writes_nothing(folder.path(), &["front", &scenario("quickstart"), "--out", "out"], wait);
-    writes_nothing(folder.path(), &["circle", &scenario("cut-rim"), "--out", "out"], wait);
+    writes_nothing(folder.path(), &["front", &scenario("quickstart"), "--no-cache", "--out", "out"], wait);
+    writes_nothing(folder.path(), &["circle", &scenario("cut-rim"), "--no-cache", "--out", "out"], wait);
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn an_import_that_looks_for_a_pose_of_the_board_writes_nothing() {
 #[test]
 fn a_run_reports_the_scenario_in_progress_as_interrupted() {
     let folder = tempfile::tempdir().unwrap();
-    let mut running = Running::start(folder.path(), &["run", &scenario("quickstart"), "--out", "out"]);
+    let mut running = Running::start(folder.path(), &["run", &scenario("quickstart"), "--no-cache", "--out", "out"]);
     // The scenarios are read, the maps are begun.
     running.wait_until(|_| folder.path().join("out").exists());
     sleep(Duration::from_millis(300));
@@ -172,7 +172,7 @@ fn a_run_reports_the_scenario_in_progress_as_interrupted() {
 #[test]
 fn a_reproduction_keeps_what_was_finished() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["reproduce", "--quick", "--filter", "cut-05", "--out", "out"];
+    let arguments = ["reproduce", "--no-cache", "--quick", "--filter", "cut-05", "--out", "out"];
     let mut running = Running::start(folder.path(), &arguments);
     running.wait_until(|_| folder.path().join("out").exists());
     sleep(Duration::from_millis(300));

@@ -79,6 +79,7 @@ fn the_help_of_every_command() {
     for command in [
         "run",
         "plan",
+        "replan",
         "front",
         "circle",
         "simulate",

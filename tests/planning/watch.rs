@@ -185,7 +185,7 @@ fn a_stopped_search_for_several_plans_has_the_best_of_them() {
     verified(&plans[0], &scenario);
 }
 
-/// A flag that is set before the search begins: there is no plan, and no claim that there is none.
+/// A flag that is set before the search begins: there is no plan, and no claim that the scenario is infeasible.
 #[test]
 fn a_search_that_is_stopped_at_once_is_not_infeasible() {
     let scenario = fast("quickstart");

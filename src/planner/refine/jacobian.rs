@@ -309,7 +309,7 @@ mod tests {
         let natural = natural_entries(scenario, &problem.human, &library.robot, &postures, 300, &Never);
         let mut evaluator = Evaluator::new(problem, SearchStats::unlimited(&Never));
         let starts = screened(&mut evaluator, library, &postures, &natural, &SearchBudget::of(scenario), &Never);
-        assert!(starts.len() > 2, "{}: {}", scenario.name, starts.len());
+        assert!(starts.len() > 1, "{}: {}", scenario.name, starts.len());
         starts.iter().for_each(|start| compare(&evaluator.problem, start));
     }
 

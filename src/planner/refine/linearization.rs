@@ -11,6 +11,7 @@ use super::{
         load_shift::LoadShift,
         params::refine::{
             CLEARANCE_MARGIN_M, FULL_UTILISATION, MARGIN, NEAR_M, RELAXED_UTILISATION, STABILITY_DIFFERENCE,
+            STEP_TOLERANCE,
         },
         problem::Problem,
         qp::LinearConstraint,
@@ -123,7 +124,7 @@ impl Linearization {
             if error < 0.0 {
                 corrected.margin = corrected.margin.min(linear.margin + error);
             }
-            violated |= margin < -MARGIN.max(CLEARANCE_MARGIN_M);
+            violated |= margin < -STEP_TOLERANCE;
         }
         violated
     }
