@@ -8,7 +8,7 @@ use crate::model::scenario::{Budget, Scenario};
 
 /// Safety factor on the compliant load factor: a planned grasp must resist this multiple of what the limits ask for
 /// (docs/method.md#610-safety-factor). The prediction assumes small displacements and evenly pressed pads; over the 100
-/// grasps of `results/` the simulated failing load is 0.93 to 1.20 of it, so the factor covers the error where a hold fails early.
+/// grasps of `results/` the simulated failing load is 0.91 to 1.11 of it, so the factor covers the error where a hold fails early.
 pub const COMPLIANT_SAFETY_FACTOR: f64 = 1.1;
 
 /// The limit on candidates of one grasp pattern for this many arms. The limits are those of two arms, which have 32 patterns (four
@@ -219,7 +219,7 @@ pub mod replan {
     /// Holds that are known from the calls before, the last one included.
     pub const KNOWN_HOLDS: usize = 6;
     /// Warm starts that are tried at each call: all of a family in a few dozen calls.
-    pub const FRESH_PER_CALL: usize = 2;
+    pub const FRESH_PER_CALL: usize = 4;
     /// Steps of refinement of the last plan's hold.
     pub const LAST_STEPS: usize = 8;
     /// Steps of refinement of each other hold: the next call goes on with them.

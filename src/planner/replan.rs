@@ -2,7 +2,7 @@
 //!
 //! The person has walked a step, the tool is to work at another point or with another force. Then the best hold is most often the
 //! last one, moved a little. So the last plan's hold is transferred to the new task and refined. Beside it a few other holds are
-//! kept up to date in the same way, and at every call two of the family's warm starts are tried: another hold takes over once it is
+//! kept up to date in the same way, and at every call four of the family's warm starts are tried: another hold takes over once it is
 //! better by a margin. No map is made for the new task.
 
 use std::sync::Arc;
@@ -156,30 +156,36 @@ impl KnownHolds {
         if how.keep_grasps {
             problem.grasp_scales = [0.0; 3];
         }
+        let mut ranked = self.ranked(evaluator, how);
+        if ranked.is_empty() && !how.keep_grasps {
+            ranked = from_warm_starts(evaluator, &self.warm);
+        }
+        let plan = first_verified(evaluator, &mut ranked)?;
+        let hold = Hold::of(ranked.first()?);
+        let motion = Motion::between(&self.last, &hold);
+        self.last = hold;
+        let others = if how.keep_grasps { self.solutions.split_off(1) } else { Vec::new() };
+        self.solutions = solutions(&evaluator.problem, ranked);
+        self.solutions.extend(others);
+        Some(Replanned { plan, motion: Some(motion), searched: false })
+    }
+
+    /// The holds for the evaluator's task: the last one, or another that takes over, then the others.
+    fn ranked(&mut self, evaluator: &mut Evaluator<'_>, how: &Replanning) -> Vec<Feasible> {
         let last = self.solutions.first().and_then(|last| start(evaluator, last, 0));
         let last = refined(evaluator, last.into_iter().collect(), LAST_STEPS);
         let mut others = if how.keep_grasps { Vec::new() } else { self.others(evaluator) };
         let better = |other: &&Feasible| {
             last.first().is_none_or(|last| other.objective - last.objective > BETTER * last.objective.abs())
         };
-        let takes_over = others.first().filter(better).is_some();
-        let mut ranked = if takes_over {
-            let best = others.remove(0);
-            let mut ranked = refined(evaluator, vec![best], BEST_STEPS);
-            ranked.extend(last);
-            ranked
+        let mut ranked = if others.first().filter(better).is_some() {
+            refined(evaluator, vec![others.remove(0)], BEST_STEPS)
         } else {
-            last
+            Vec::new()
         };
+        ranked.extend(last);
         ranked.extend(others);
-        let (number, plan) =
-            ranked.iter().enumerate().find_map(|(number, found)| Some((number, verified(evaluator, found)?)))?;
-        ranked.drain(..number);
-        let hold = Hold::of(ranked.first()?);
-        let motion = Motion::between(&self.last, &hold);
-        self.last = hold;
-        self.remember(&evaluator.problem, ranked);
-        Some(Replanned { plan, motion: Some(motion), searched: false })
+        ranked
     }
 
     /// The other solutions and the next warm starts, transferred and refined a little; the best first.
@@ -195,21 +201,28 @@ impl KnownHolds {
         self.next = (self.next + FRESH_PER_CALL) % fresh.len().max(1);
         refined(evaluator, starts, OTHERS_STEPS)
     }
-
-    fn remember(&mut self, problem: &Problem<'_>, ranked: Vec<Feasible>) {
-        self.solutions = solutions(problem, ranked);
-    }
 }
 
 /// The first plan of a task from the warm starts of a family, and the holds that are known then; `None` if no start serves.
 pub fn first(evaluator: &mut Evaluator<'_>, warm: &Arc<WarmStarts>) -> Option<(Plan, KnownHolds)> {
+    let mut ranked = from_warm_starts(evaluator, warm);
+    let plan = first_verified(evaluator, &mut ranked)?;
+    let holds = known(evaluator, ranked, warm)?;
+    Some((plan, holds))
+}
+
+/// The holds for a task from all warm starts, the best first.
+fn from_warm_starts(evaluator: &mut Evaluator<'_>, warm: &WarmStarts) -> Vec<Feasible> {
     let starts = warm.starts(evaluator, FIRST_STARTS);
-    let mut ranked = refine::refine(evaluator, starts, &FIRST_ROUNDS);
+    refine::refine(evaluator, starts, &FIRST_ROUNDS)
+}
+
+/// The first plan that passes its check; the holds before it are removed.
+fn first_verified(evaluator: &mut Evaluator<'_>, ranked: &mut Vec<Feasible>) -> Option<Plan> {
     let (number, plan) =
         ranked.iter().enumerate().find_map(|(number, found)| Some((number, verified(evaluator, found)?)))?;
     ranked.drain(..number);
-    let holds = known(evaluator, ranked, warm)?;
-    Some((plan, holds))
+    Some(plan)
 }
 
 /// The holds that are known after a plan of a task: that of the plan alone; `None` if the plan's grasps are not those of edges.
