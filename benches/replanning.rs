@@ -60,8 +60,7 @@ fn walk(planner: &mut Planner, scenario: &Scenario, every: usize, turn_deg: f64)
         let mut moved = scenario.clone();
         moved.human.place = place;
         let start = Instant::now();
-        let outcome =
-            planner.replan(&moved, &Replanning { search: false, ..Replanning::default() }, &Never).expect("valid");
+        let outcome = planner.replan(&moved, &Replanning::default(), &Never).expect("valid");
         let ms = start.elapsed().as_secs_f64() * 1e3;
         if step > 0 {
             wall_ms.push(ms);

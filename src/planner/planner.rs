@@ -280,7 +280,7 @@ impl Planner {
 
 /// The scenario for a person who may stand anywhere.
 fn anywhere(scenario: &Scenario) -> Scenario {
-    Scenario { human: Person { place: StandingPlace::Free, ..scenario.human.clone() }, ..scenario.clone() }
+    Scenario { human: Person { place: StandingPlace::Free, ..scenario.human }, ..scenario.clone() }
 }
 
 /// The best plan of a scenario whose objective needs no optima; `twice` allows a second search if the first finds nothing.

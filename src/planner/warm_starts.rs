@@ -154,17 +154,11 @@ impl WarmStarts {
                 (&resampled[..], &[][..], &budget.later)
             };
             let entries: Vec<_> = entries.iter().chain(natural).collect();
+            let share = KEPT / tasks.len().max(1);
             // Each task uses the solutions of the pass before, so their order does not matter.
             let solve = |(task, of_place): (&Scenario, &Vec<LibraryEntry>)| {
-                let solved = self.solve_task(
-                    task,
-                    &library.robot,
-                    &entries,
-                    of_place,
-                    task_budget,
-                    KEPT / tasks.len().max(1),
-                    watch,
-                );
+                let entries = entries.iter().copied().chain(of_place);
+                let solved = self.solve_task(task, &library.robot, entries, task_budget, share, watch);
                 counter.advance();
                 solved
             };
@@ -190,19 +184,17 @@ impl WarmStarts {
     }
 
     /// Solves one task from the solutions so far and the given entries; at most `share` solutions.
-    fn solve_task(
+    fn solve_task<'e>(
         &self,
         task: &Scenario,
         robot: &GraspingRobot,
-        entries: &[&LibraryEntry],
-        of_place: &[LibraryEntry],
+        entries: impl Iterator<Item = &'e LibraryEntry>,
         budget: &SearchBudget,
         share: usize,
         watch: &dyn Watch,
     ) -> Result<Vec<Solution>, PlanError> {
         let mut evaluator = Evaluator::new(Problem::new(task, robot, watch)?, SearchStats::unlimited(watch));
         let mut starts = self.starts(&mut evaluator, budget.warm_starts);
-        let entries = entries.iter().copied().chain(of_place);
         starts.extend(screen::screen(&mut evaluator, entries, self.postures(watch)?, budget));
         let refined = refine::refine(&mut evaluator, starts, &budget.rounds);
         let found = distinct(refined, &robot.board, share);
