@@ -3,7 +3,7 @@
 //!
 //! Starting at the unconstrained optimum, the most violated constraint becomes active and constraints whose multipliers would
 //! turn negative become inactive, until none is violated. The Hessian is positive definite, so every step is unique. The
-//! factorisation of the active constraints is updated at every change, as in the paper ([`factors`]).
+//! factorisation of the active constraints is updated at every change, as in the paper (`factors`).
 //!
 //! It is our own because it is called a hundred times per plan: `benches/qp.rs` measures it beside clarabel.
 
