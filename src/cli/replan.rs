@@ -113,15 +113,15 @@ pub fn replan(args: &ReplanArgs) -> Result<Exit, CliError> {
         }
         let start = Instant::now();
         let line = number + 1;
-        let mut answer = match read_replan_request(source, line, &text, &mut scenario) {
-            Ok(request) => match answered(&mut planner, &scenario, request, &progress) {
-                Ok(answer) => Answer { line, ..answer },
+        let answer = match read_replan_request(source, line, &text, &mut scenario) {
+            Ok(request) => match answered(&mut planner, &scenario, &request, &progress) {
+                Ok(answer) => answer,
                 Err(PlanError::Stopped) => return Ok(Exit::Interrupted),
-                Err(error) => Answer { line, ..Answer::without_plan(None, ResultKind::Error, error.to_string()) },
+                Err(error) => Answer::without_plan(ResultKind::Error, error.to_string()),
             },
-            Err(error) => Answer { line, ..Answer::without_plan(None, ResultKind::Error, error.to_string()) },
+            Err(error) => Answer::without_plan(ResultKind::Error, error.to_string()),
         };
-        answer.wall_ms = start.elapsed().as_secs_f64() * 1e3;
+        let answer = Answer { id: id_of(&text), line, wall_ms: start.elapsed().as_secs_f64() * 1e3, ..answer };
         exit = exit.max(answer.exit());
         if !written(&answer)? {
             break;
@@ -145,7 +145,7 @@ fn resume(planner: &mut Planner, loaded: &LoadedScenario, path: &Path, progress:
 fn answered(
     planner: &mut Planner,
     scenario: &Scenario,
-    request: ReplanRequest,
+    request: &ReplanRequest,
     progress: &Progress,
 ) -> Result<Answer, PlanError> {
     let how = Replanning {
@@ -160,19 +160,19 @@ fn answered(
             searched: Some(searched),
             motion: motion.map(MotionAnswer::from),
             plan: Some(plan),
-            ..Answer::new(request.id, ResultKind::Found)
+            ..Answer::new(ResultKind::Found)
         },
-        Outcome::Infeasible(why) => Answer::without_plan(request.id, ResultKind::Infeasible, why.to_string()),
+        Outcome::Infeasible(why) => Answer::without_plan(ResultKind::Infeasible, why.to_string()),
     })
 }
 
 impl Answer {
-    fn new(id: Option<serde_json::Value>, result: ResultKind) -> Self {
-        Self { id, line: 0, result, reason: None, searched: None, motion: None, wall_ms: 0.0, plan: None }
+    fn new(result: ResultKind) -> Self {
+        Self { id: None, line: 0, result, reason: None, searched: None, motion: None, wall_ms: 0.0, plan: None }
     }
 
-    fn without_plan(id: Option<serde_json::Value>, result: ResultKind, reason: String) -> Self {
-        Self { reason: Some(reason), ..Self::new(id, result) }
+    fn without_plan(result: ResultKind, reason: String) -> Self {
+        Self { reason: Some(reason), ..Self::new(result) }
     }
 
     fn exit(&self) -> Exit {
@@ -182,6 +182,11 @@ impl Answer {
             ResultKind::Error => Exit::Input,
         }
     }
+}
+
+/// The id of a request, valid or not; `None` without one.
+fn id_of(text: &str) -> Option<serde_json::Value> {
+    serde_json::from_str::<serde_json::Value>(text).ok()?.get("id").filter(|id| !id.is_null()).cloned()
 }
 
 /// Writes an answer at once; false if nobody reads any more.

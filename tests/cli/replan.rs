@@ -75,3 +75,15 @@ fn a_plan_that_does_not_keep_the_limits_is_no_start() {
     assert_eq!(code, 2);
     assert!(error.contains("scenarios/plans/cut-rim.json: found a plan that breaks a limit"), "{error}");
 }
+
+#[test]
+fn an_answer_has_the_id_of_its_request_valid_or_not() {
+    let (answers, code, _) =
+        answers(&[], &[json!({"id": "a", "person": 1}), json!("no JSON"), json!({"id": {"b": 2}, "force_n": 3})]);
+    assert_eq!(
+        answers.iter().map(|answer| answer["id"].clone()).collect::<Vec<_>>(),
+        [json!("a"), Value::Null, json!({"b": 2})]
+    );
+    assert!(answers.iter().all(|answer| answer["result"] == "error"));
+    assert_eq!(code, 2);
+}
