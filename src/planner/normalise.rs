@@ -34,7 +34,7 @@ pub fn alone(scenario: &Scenario) -> [Scenario; 2] {
 }
 
 /// A scenario with optima.
-pub fn with_optima(scenario: &Scenario, [muscular_regularised, peripersonal_m]: [f64; 2]) -> Scenario {
-    let optima = Some(Optima { muscular_regularised, peripersonal_m });
-    Scenario { comfort: ComfortSettings { optima, ..scenario.comfort }, ..scenario.clone() }
+pub fn with_optima(scenario: &Scenario, optima: Optima) -> Scenario {
+    let comfort = ComfortSettings { optima: Some(optima), ..scenario.comfort };
+    Scenario { comfort, ..scenario.clone() }
 }

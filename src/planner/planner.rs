@@ -27,7 +27,7 @@ use crate::{
     model::{
         board::BoardShape,
         plan::Plan,
-        scenario::{ComfortSettings, Person, PlannerKind, PlannerSettings, Scenario, StandingPlace},
+        scenario::{Optima, Person, PlannerKind, PlannerSettings, Scenario, StandingPlace},
         stop::Never,
     },
     robot::Robot,
@@ -107,12 +107,10 @@ impl Planner {
         watch: &dyn Watch,
     ) -> Result<Outcome<Replanned>, PlanError> {
         let maps = self.maps(scenario);
-        let mut known = self.known.take().filter(|known| known.serve(scenario));
-        let with_optima = match known.as_ref().and_then(KnownHolds::optima) {
-            Some(optima) if needs_optima(scenario) => {
-                let comfort = ComfortSettings { optima: Some(optima), ..scenario.comfort };
-                Outcome::Found(Scenario { comfort, ..scenario.clone() })
-            }
+        let known = self.known.as_ref().filter(|known| known.serve(scenario));
+        let is_first = known.is_none();
+        let with_optima = match known.and_then(KnownHolds::optima) {
+            Some(optima) if needs_optima(scenario) => Outcome::Found(with_optima(scenario, optima)),
             _ => self.normalised(&maps, scenario, watch)?,
         };
         let scenario = match with_optima {
@@ -120,21 +118,20 @@ impl Planner {
             Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
         };
         let mut evaluator = evaluator(&scenario, &maps, watch)?;
-        let found = match &mut known {
+        let found = match self.known.as_mut().filter(|known| known.serve(&scenario)) {
             Some(known) => known.replan(&mut evaluator, how),
             None => {
                 let warm = self.warm_starts(&maps, &anywhere(&scenario), watch)?;
-                replan::first(&mut evaluator, &warm).map(|(plan, holds)| {
-                    known = Some(holds);
+                replan::first(&mut evaluator, &warm).map(|(plan, known)| {
+                    self.known = Some(known);
                     Replanned { plan, motion: None, searched: false }
                 })
             }
         };
-        self.known = known;
         if let Some(found) = found {
             return Ok(Outcome::Found(found));
         }
-        let is_limited = self.known.is_some() && (how.most_motion_rad.is_some() || how.keep_grasps);
+        let is_limited = !is_first && (how.most_motion_rad.is_some() || how.keep_grasps);
         if !how.search || is_limited {
             return Ok(Outcome::Infeasible(evaluator.stats.into_infeasible()));
         }
@@ -159,8 +156,8 @@ impl Planner {
     ) -> Result<Outcome<Replanned>, PlanError> {
         Ok(match self.search(scenario).watch(watch).plan()? {
             Outcome::Found(plan) => {
-                let before = self.known.take();
                 let after = self.holds_of(maps, scenario, &plan, watch)?;
+                let before = self.known.take().filter(|known| known.serve(scenario));
                 let motion = before.zip(after.as_ref()).map(|(before, after)| before.motion_to(after));
                 self.known = after;
                 Outcome::Found(Replanned { plan, motion, searched: true })
@@ -252,7 +249,9 @@ impl Planner {
             peripersonal?.best(|comfort| comfort.peripersonal_m),
         );
         Ok(match optima {
-            (Some(muscular), Some(peripersonal_m)) => with_optima(shared, [muscular, peripersonal_m]),
+            (Some(muscular), Some(peripersonal_m)) => {
+                with_optima(shared, Optima { muscular_regularised: muscular, peripersonal_m })
+            }
             _ => shared.clone(),
         })
     }
@@ -274,7 +273,8 @@ impl Planner {
                 Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
             }
         }
-        Ok(Outcome::Found(with_optima(scenario, optima)))
+        let [muscular_regularised, peripersonal_m] = optima;
+        Ok(Outcome::Found(with_optima(scenario, Optima { muscular_regularised, peripersonal_m })))
     }
 }
 

@@ -11,8 +11,7 @@ use super::{
     assemble::verified,
     candidate::Candidate,
     evaluate::{Evaluator, Feasible},
-    library::{ArmGrasp, largest_joint_difference_rad},
-    outcome::Rejection,
+    library::largest_joint_difference_rad,
     params::{
         RefinementRound,
         refine::GRASP,
@@ -23,12 +22,11 @@ use super::{
     },
     problem::{Problem, Reachable},
     refine,
-    transfer::Solution,
+    transfer::{Solution, turns},
     warm_starts::{WarmStarts, distinct},
 };
 use crate::model::{
-    board::{BoardShape, QUARTERS},
-    frames::Pose,
+    board::BoardShape,
     grasp::EdgeGrasp,
     plan::Plan,
     scenario::{Optima, Scenario},
@@ -80,29 +78,16 @@ pub struct Motion {
 }
 
 impl Motion {
-    fn between(from: &Hold, to: &Hold) -> Self {
-        let pairs = from.arms.iter().zip(&to.arms);
-        let squares = pairs.flat_map(|(a, b)| a.q_rad.iter().zip(&b.q_rad).map(|(a, b)| (a - b) * (a - b)));
+    fn between(from: &Solution, to: &Solution) -> Self {
+        let pairs = || from.candidate.arms.iter().zip(&to.candidate.arms);
+        let squares = pairs().flat_map(|(a, b)| a.q_rad.iter().zip(&b.q_rad).map(|(a, b)| (a - b) * (a - b)));
         Self {
-            largest_joint_rad: largest_joint_difference_rad(&from.arms, &to.arms),
+            largest_joint_rad: largest_joint_difference_rad(&from.candidate.arms, &to.candidate.arms),
             length_rad: squares.sum::<f64>().sqrt(),
             board_m: (from.x_wo.translation.vector - to.x_wo.translation.vector).norm(),
             board_rad: from.x_wo.rotation.angle_to(&to.x_wo.rotation),
-            regrasps: from.arms.iter().zip(&to.arms).any(|(a, b)| !is_same_grasp(&a.grasp, &b.grasp)),
+            regrasps: pairs().any(|(a, b)| !is_same_grasp(&a.grasp, &b.grasp)),
         }
-    }
-}
-
-/// Arms and board of a plan.
-#[derive(Clone, Debug)]
-struct Hold {
-    arms: Vec<ArmGrasp>,
-    x_wo: Pose,
-}
-
-impl Hold {
-    fn of(found: &Feasible) -> Self {
-        Self { arms: found.candidate.arms.clone(), x_wo: found.configuration.placement.x_wo }
     }
 }
 
@@ -122,9 +107,10 @@ pub struct KnownHolds {
     clearance_mm: f64,
     /// The optima of a normalised objective.
     optima: Option<Optima>,
-    last: Hold,
-    /// Solutions, that of the last plan first.
-    solutions: Vec<Solution>,
+    /// The solution of the last plan.
+    last: Solution,
+    /// Other solutions.
+    others: Vec<Solution>,
     warm: Arc<WarmStarts>,
     /// The next of the warm starts that is tried.
     next: usize,
@@ -146,11 +132,11 @@ impl KnownHolds {
         Motion::between(&self.last, &other.last)
     }
 
-    /// The plan of a task from these holds, which are then those of this task; `None`, and unchanged, if no one serves.
+    /// The plan of a task from these holds, which are then those of this task; `None`, and the same holds, if no one serves.
     pub fn replan(&mut self, evaluator: &mut Evaluator<'_>, how: &Replanning) -> Option<Replanned> {
         let problem = &mut evaluator.problem;
         problem.reachable = how.most_motion_rad.map(|most_rad| Reachable {
-            from_rad: self.last.arms.iter().map(|arm| arm.q_rad.clone()).collect(),
+            from_rad: self.last.candidate.arms.iter().map(|arm| arm.q_rad.clone()).collect(),
             most_rad,
         });
         if how.keep_grasps {
@@ -161,20 +147,20 @@ impl KnownHolds {
             ranked = from_warm_starts(evaluator, &self.warm);
         }
         let plan = first_verified(evaluator, &mut ranked)?;
-        let hold = Hold::of(ranked.first()?);
-        let motion = Motion::between(&self.last, &hold);
-        self.last = hold;
-        let others = if how.keep_grasps { self.solutions.split_off(1) } else { Vec::new() };
-        self.solutions = solutions(&evaluator.problem, ranked);
-        self.solutions.extend(others);
+        let (last, others) = solutions(&evaluator.problem, ranked)?;
+        let motion = Motion::between(&self.last, &last);
+        self.last = last;
+        if !how.keep_grasps {
+            self.others = others;
+        }
         Some(Replanned { plan, motion: Some(motion), searched: false })
     }
 
     /// The holds for the evaluator's task: the last one, or another that takes over, then the others.
     fn ranked(&mut self, evaluator: &mut Evaluator<'_>, how: &Replanning) -> Vec<Feasible> {
-        let last = self.solutions.first().and_then(|last| start(evaluator, last, 0));
+        let last = start(evaluator, &self.last, 0);
         let last = refined(evaluator, last.into_iter().collect(), LAST_STEPS);
-        let mut others = if how.keep_grasps { Vec::new() } else { self.others(evaluator) };
+        let mut others = if how.keep_grasps { Vec::new() } else { self.refined_others(evaluator) };
         let better = |other: &&Feasible| {
             last.first().is_none_or(|last| other.objective - last.objective > BETTER * last.objective.abs())
         };
@@ -189,12 +175,11 @@ impl KnownHolds {
     }
 
     /// The other solutions and the next warm starts, transferred and refined a little; the best first.
-    fn others(&mut self, evaluator: &mut Evaluator<'_>) -> Vec<Feasible> {
-        let board = evaluator.problem.robot.board.clone();
-        let turns: Vec<_> = (0..QUARTERS).filter(|quarters| board.turns(*quarters)).collect();
+    fn refined_others(&mut self, evaluator: &mut Evaluator<'_>) -> Vec<Feasible> {
+        let turns = turns(&evaluator.problem.robot.board);
         let fresh: Vec<_> =
             self.warm.solutions().flat_map(|solution| turns.iter().map(move |turn| (solution, *turn))).collect();
-        let known = self.solutions.iter().skip(1).map(|solution| (solution, 0));
+        let known = self.others.iter().map(|solution| (solution, 0));
         let tried = fresh.iter().cycle().skip(self.next).take(FRESH_PER_CALL.min(fresh.len())).copied();
         let starts: Vec<_> =
             known.chain(tried).filter_map(|(solution, turn)| start(evaluator, solution, turn)).collect();
@@ -234,36 +219,29 @@ pub fn of_plan(evaluator: &mut Evaluator<'_>, plan: &Plan, warm: &Arc<WarmStarts
 
 fn known(evaluator: &Evaluator<'_>, ranked: Vec<Feasible>, warm: &Arc<WarmStarts>) -> Option<KnownHolds> {
     let problem = &evaluator.problem;
+    let (last, others) = solutions(problem, ranked)?;
     Some(KnownHolds {
         board: problem.robot.board.clone(),
         clearance_mm: problem.scenario.limits.clearance_mm,
         optima: problem.scenario.comfort.optima,
-        last: Hold::of(ranked.first()?),
-        solutions: solutions(problem, ranked),
+        last,
+        others,
         warm: warm.clone(),
         next: 0,
     })
 }
 
-/// The solutions that differ, in their order.
-fn solutions(problem: &Problem<'_>, ranked: Vec<Feasible>) -> Vec<Solution> {
+/// The first solution, and the others that differ, in their order; `None` without any.
+fn solutions(problem: &Problem<'_>, ranked: Vec<Feasible>) -> Option<(Solution, Vec<Solution>)> {
     let different = distinct(ranked, &problem.robot.board, KNOWN_HOLDS);
-    different.into_iter().map(|found| Solution::new(problem, found.candidate)).collect()
+    let mut solutions = different.into_iter().map(|found| Solution::new(problem, found.candidate));
+    Some((solutions.next()?, solutions.collect()))
 }
 
 /// A solution transferred to the evaluator's task so that it satisfies every constraint: of the ways to transfer it the first one
 /// that does, the more comfortable one first.
 fn start(evaluator: &mut Evaluator<'_>, solution: &Solution, quarters: usize) -> Option<Feasible> {
-    let mut ways = Vec::with_capacity(2);
-    for candidate in solution.transferred(&evaluator.problem, quarters) {
-        match candidate {
-            Some(candidate) => ways.push((evaluator.objective(&candidate), candidate)),
-            None => {
-                evaluator.stats.count();
-                evaluator.stats.reject(Rejection::RobotReach);
-            }
-        }
-    }
+    let mut ways = solution.transfers(evaluator, quarters);
     ways.sort_by(|a, b| b.0.total_cmp(&a.0));
     ways.into_iter().find_map(|(_, candidate)| refine::repair(evaluator, candidate))
 }

@@ -6,17 +6,19 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use arrayvec::ArrayVec;
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
 use super::{
     candidate::{Candidate, WorkPose},
-    evaluate::{self, Configuration},
+    evaluate::{self, Configuration, Evaluator},
     library::{ArmGrasp, BoardGrasp, GraspingRobot},
+    outcome::Rejection,
     problem::Problem,
     screen::{align, aligning_roll},
 };
 use crate::model::{
-    board::{Edge, QUARTERS},
+    board::{BoardShape, Edge, QUARTERS},
     frames::Pose,
     grasp::EdgeGrasp,
     plan::Comfort,
@@ -42,9 +44,25 @@ impl Solution {
         Self { candidate, x_wo: configuration.placement.x_wo, comfort, p_ot_m }
     }
 
+    /// The candidates to which the solution is transferred with the board turned by quarters, each with its objective. Those that an
+    /// arm cannot follow are counted as rejected.
+    pub fn transfers(&self, evaluator: &mut Evaluator<'_>, quarters: usize) -> ArrayVec<(f64, Candidate), 2> {
+        let mut transfers = ArrayVec::new();
+        for candidate in self.transferred(&evaluator.problem, quarters) {
+            match candidate {
+                Some(candidate) => transfers.push((evaluator.objective(&candidate), candidate)),
+                None => {
+                    evaluator.stats.count();
+                    evaluator.stats.reject(Rejection::RobotReach);
+                }
+            }
+        }
+        transfers
+    }
+
     /// The solution with the board turned by quarters about its normal and the tool where the problem's operation needs it:
     /// once with the board left in place and the person moved, once with the person left in place and the board moved.
-    pub fn transferred(&self, problem: &Problem<'_>, quarters: usize) -> [Option<Candidate>; 2] {
+    fn transferred(&self, problem: &Problem<'_>, quarters: usize) -> [Option<Candidate>; 2] {
         let grasp = BoardGrasp { x_wo: self.x_wo, arms: self.candidate.arms.clone() };
         let Some(grasp) = turned(problem.robot, &grasp, quarters) else { return [None, None] };
         [self.with_person_moved(problem, &grasp), self.with_board_moved(problem, &grasp)]
@@ -70,6 +88,11 @@ impl Solution {
         let x_wo = candidate.x_wo(problem);
         problem.robot.follow(&mut candidate.arms, &x_wo).then_some(candidate)
     }
+}
+
+/// The numbers of quarters by which a board can be turned so that its outline is the same.
+pub fn turns(board: &BoardShape) -> Vec<usize> {
+    (0..QUARTERS).filter(|quarters| board.turns(*quarters)).collect()
 }
 
 /// The grasp with the board turned by quarters about its normal: each gripper takes the edge that is now where its own was.

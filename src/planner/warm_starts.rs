@@ -16,7 +16,7 @@ use super::{
     made_once::MadeOnce,
     map_store::{self, MapKind},
     natural_boards::{entries_for_place, natural_entries},
-    outcome::{PlanError, Rejection},
+    outcome::PlanError,
     params::{
         SearchBudget, WarmStartBudget, per_pattern,
         screening::{STARTS_PER_PATTERN, TRANSFERS},
@@ -26,14 +26,14 @@ use super::{
     refine, screen,
     stats::SearchStats,
     task_family::{TaskFamily, solved_tasks},
-    transfer::Solution,
+    transfer::{Solution, turns},
     watch::{Counter, Phase, Watch, go_on},
 };
 use crate::{
     comfort,
     human::Human,
     model::{
-        board::{BoardShape, QUARTERS},
+        board::BoardShape,
         plan::Comfort,
         scenario::{PlannerKind, Scenario},
     },
@@ -206,20 +206,12 @@ impl WarmStarts {
     /// well a solution fits, the latter what refinement can make of it.
     pub fn starts(&self, evaluator: &mut Evaluator<'_>, count: usize) -> Vec<Feasible> {
         let mut transferred = Vec::with_capacity(8 * self.solutions.len());
+        let turns = turns(&evaluator.problem.robot.board);
         for solution in self.solutions() {
             let at_origin = comfort::weighted(solution.comfort, &evaluator.problem.objective).objective;
-            let board = &evaluator.problem.robot.board;
-            let turns: Vec<_> = (0..QUARTERS).filter(|quarters| board.turns(*quarters)).collect();
-            for quarters in turns {
-                for candidate in solution.transferred(&evaluator.problem, quarters) {
-                    let Some(candidate) = candidate else {
-                        evaluator.stats.count();
-                        evaluator.stats.reject(Rejection::RobotReach);
-                        continue;
-                    };
-                    let objective = evaluator.objective(&candidate);
-                    transferred.push((objective + at_origin, candidate));
-                }
+            for quarters in &turns {
+                let transfers = solution.transfers(evaluator, *quarters).into_iter();
+                transferred.extend(transfers.map(|(objective, candidate)| (objective + at_origin, candidate)));
             }
         }
         transferred.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -187,3 +187,21 @@ fn another_board_is_a_first_plan() {
     assert!(found.motion.is_none() && found.searched);
     assert_ne!(found.plan.arms, first.arms);
 }
+
+/// A person that cannot be is an error, after which the holds are known as before.
+#[test]
+fn an_error_leaves_the_known_holds() {
+    let scenario = scenario("quickstart");
+    let (mut planner, _) = begun(&scenario);
+    let mut wrong = scenario.clone();
+    wrong.human.height_m = -1.0;
+    assert!(planner.replan(&wrong, &KNOWN_HOLDS, &Never).is_err());
+    assert!(answered(&mut planner, &scenario, &KNOWN_HOLDS).unwrap().motion.is_some());
+    // A task of another board that has no answer leaves them too.
+    let mut other =
+        standing(&scenario, &answered(&mut planner, &scenario, &KNOWN_HOLDS).unwrap().plan, [-3.0, 0.0], 0.0);
+    other.limits.clearance_mm = 0.0;
+    other.planner.budget = benchdog::model::scenario::Budget::Fast;
+    assert!(answered(&mut planner, &other, &KNOWN_HOLDS).is_none());
+    assert!(answered(&mut planner, &scenario, &KNOWN_HOLDS).unwrap().motion.is_some());
+}
