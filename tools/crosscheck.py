@@ -16,8 +16,11 @@ Not compared are plans that Benchdog does not simulate (nothing found, bodies th
 so), and holds that it judges by what is not in the exported file: `touches`, by the person, and `collides`, by the
 robot's clearance.
 
-The exit code is 0 if both engines agree, 1 if a verdict differs, or a deflection where both hold by more than the
-tolerance, and 2 for invalid input.
+The engines agree if they give the same verdict and, where both hold, deflections that differ by less than the tolerance:
+a share of the deflection and a share of what the pads' sliding contributes to it. Coulomb's law does not determine how
+points that share a face divide friction between them once some of them slide, so there two correct engines differ more.
+
+The exit code is 0 if the engines agree, 1 if not, and 2 for invalid input.
 
 Needs Python 3.9 and the packages `mujoco` (measured with 3.3.7) and `numpy`.
 """
@@ -65,6 +68,9 @@ LOST_AFTER_S = 0.1
 LEAST_FACTOR, LARGEST_FACTOR, STRIDE, WIDTH = 1 / 64, 100.0, 1.1, 1e-3
 # Stands for the failing load of a hold that the largest factor does not end.
 NEVER_FAILS = LARGEST_FACTOR + 1
+# How far deflections may differ beyond that, as a share of what the pads' sliding contributes. Among the plans of three
+# planners for the paper's 25 operations it is at most 0.22.
+SLIDING_SHARE = 0.25
 # Deflections that differ by less agree, mm.
 LEAST_DIFFERENCE_MM = 0.02
 # Exit codes of a Benchdog that reached its end: expectations met, not met, no plan.
@@ -236,6 +242,8 @@ class Result:
     first_check: Optional[str]
     # The largest value of each check.
     values: Dict[str, float]
+    # How far the tool point moves in the frames of the hands after settling, mm, of the hand with the most of it.
+    sliding_mm: float = 0.0
     # The multiple of the load at which the hold fails, if it was searched: 101 if it holds the largest that is tried.
     fails_at: Optional[float] = None
 
@@ -250,7 +258,18 @@ def judge(scene: Scene, motion: Motion) -> Result:
     values = {check: float(np.max(of)) for check, of in series.items()}
     first = min(crossings)[2] if crossings else None
     unfailed = "no_verdict" if motion.broke_down else "holds"
-    return Result(VERDICTS[first] if first else unfailed, first, values)
+    return Result(VERDICTS[first] if first else unfailed, first, values, sliding_mm(scene, motion))
+
+
+def sliding_mm(scene: Scene, motion: Motion) -> float:
+    """The movement of the tool point in the frame of a hand: the largest of both hands after settling."""
+    hands_p, hands_r = np.array(motion.hands_p[scene.settled :]), np.array(motion.hands_r[scene.settled :])
+    if not len(hands_p):
+        return 0.0
+    points_o = scene.points_o[scene.settled : scene.settled + len(hands_p), None]
+    now = np.einsum("thji,thj->thi", hands_r, points_o - hands_p)
+    settled = np.einsum("hji,thj->thi", hands_r[0], points_o - hands_p[0])
+    return float(1e3 * np.linalg.norm(now - settled, axis=2).max())
 
 
 def measure(scene: Scene, motion: Motion) -> Dict[str, np.ndarray]:
@@ -416,7 +435,8 @@ def compare(file: Path, folder: Path, options: argparse.Namespace) -> Comparison
     agrees = ours.verdict == theirs.verdict
     if agrees and ours.verdict == "holds":
         off_mm = abs(theirs.values["deflection"] - values["deflection"])
-        agrees = off_mm <= max(options.tolerance * values["deflection"], LEAST_DIFFERENCE_MM)
+        tolerance_mm = options.tolerance * values["deflection"] + SLIDING_SHARE * theirs.sliding_mm
+        agrees = off_mm <= max(tolerance_mm, LEAST_DIFFERENCE_MM)
     return Comparison(verdict["name"], ours, theirs, agrees)
 
 
