@@ -46,7 +46,7 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
             let given = scenario::load(path)?.scenario;
             (given.limits, given.expect)
         }
-        None => (scenario.limits, Expectation { verdict: verdict.expected }),
+        None => (scenario.limits, Expectation::of(verdict.expected)),
     };
     let given = with(limits, args.limits);
     let mut judgement = judge(&trace, &given);

@@ -9,11 +9,12 @@ use crate::{
     model::{
         FORMAT,
         lateral::LateralPush,
-        load::{Load, Uncertainty},
+        load::Load,
         plan::{Plan, PostureFigures},
         scenario::Scenario,
         stop::Stop,
         trace::Trace,
+        uncertainty::Uncertainty,
         verdict::{Verdict, VerdictKind},
     },
     planner::Outcome,

@@ -1,4 +1,4 @@
-//! The tool's load over time in a simulation, and the deviations of the simulated parameters from the planned ones.
+//! The tool's load over time in a simulation.
 
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -93,26 +93,5 @@ impl ForceProfile {
         let radius = p_ot_m - Vector3::new(centre_m[0], centre_m[1], p_ot_m.z);
         let sense = if radius.cross(force_o_n).z < 0.0 { -1.0 } else { 1.0 };
         sense * speed_m_s * travelled_s / radius.norm()
-    }
-}
-
-/// Parameters of the simulation as multiples of the values that the plan assumes; 1 by default. They do not affect plans
-/// and predictions (`docs/method.md#611-uncertain-friction-and-loads`).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Uncertainty {
-    /// Friction between pads and board.
-    pub friction_scale: f64,
-    /// Grip force.
-    pub grip_force_scale: f64,
-    /// Stiffness of the contacts between pads and board, and of elastic pads.
-    pub contact_stiffness_scale: f64,
-    /// Stiffness of every joint's position control.
-    pub joint_stiffness_scale: f64,
-}
-
-impl Default for Uncertainty {
-    fn default() -> Self {
-        Self { friction_scale: 1.0, grip_force_scale: 1.0, contact_stiffness_scale: 1.0, joint_stiffness_scale: 1.0 }
     }
 }

@@ -11,10 +11,12 @@ use serde::{Deserialize, Serialize};
 use super::{
     board::{BoardShape, PlacedObject},
     frames::Pose,
-    load::{Load, Uncertainty},
+    load::Load,
     omitted::is_default,
     operation::{Operation, OperationKind},
     plate::Plate,
+    sweep::Sweep,
+    uncertainty::Uncertainty,
     verdict::VerdictKind,
     wrench_limits::WrenchLimits,
 };
@@ -53,6 +55,9 @@ pub struct Scenario {
     /// Deviations of the simulation from the values that the plan assumes; none by default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub uncertainty: Uncertainty,
+    /// What a sweep varies; absent if the scenario states none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<Sweep>,
     /// The limits that the hold must not exceed.
     pub limits: Limits,
     /// The expected verdict.
@@ -534,16 +539,48 @@ fn usual_clearance_mm() -> f64 {
 }
 
 /// The expected result of a scenario.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
     /// The verdict that counts as a success.
+    #[serde(default = "holds")]
     pub verdict: VerdictKind,
+    /// The probability of the verdict that a sweep must show.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probability: Option<f64>,
+    /// The confidence of a sweep's interval, and with which the probability must be shown.
+    #[serde(default = "usual_confidence", skip_serializing_if = "is_usual_confidence")]
+    pub confidence: f64,
+}
+
+/// The default of [`Expectation::verdict`].
+fn holds() -> VerdictKind {
+    VerdictKind::Holds
+}
+
+/// The default of [`Expectation::confidence`].
+fn usual_confidence() -> f64 {
+    Expectation::CONFIDENCE
+}
+
+fn is_usual_confidence(confidence: &f64) -> bool {
+    *confidence == Expectation::CONFIDENCE
+}
+
+impl Expectation {
+    /// The confidence of an expectation that does not state it.
+    pub const CONFIDENCE: f64 = 0.95;
+
+    /// A verdict, without a probability.
+    #[must_use]
+    pub fn of(verdict: VerdictKind) -> Self {
+        Self { verdict, probability: None, confidence: Self::CONFIDENCE }
+    }
 }
 
 impl Default for Expectation {
     fn default() -> Self {
-        Self { verdict: VerdictKind::Holds }
+        Self::of(VerdictKind::Holds)
     }
 }
 

@@ -14,12 +14,12 @@ use super::{
     object_section::ObjectSection,
 };
 use crate::model::{
-    load::Uncertainty,
     operation::OperationKind,
     scenario::{
         ComfortSettings, Expectation, Hand, Limits, Person, PlannerSettings, PostureKind, PostureLimits, Sex,
         ShoulderKind, SimulationSettings,
     },
+    uncertainty::Uncertainty,
 };
 
 /// A scenario file.

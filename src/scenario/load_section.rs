@@ -10,7 +10,7 @@ use super::{InputError, InputErrorKind, check::Checker, error::read_text};
 use crate::{
     check::bounds,
     model::{
-        load::{ForceFrame, ForceProfile, Load, Uncertainty},
+        load::{ForceFrame, ForceProfile, Load},
         operation::OperationKind,
         scenario::Scenario,
     },
@@ -246,14 +246,4 @@ fn check_path(check: &Checker<'_>, scenario: &Scenario) -> Result<(), InputError
         x_ot.translation.vector = centre + turn * (p_ot_m - centre);
         check.on_board("load.centre_m", &x_ot, &board)
     })
-}
-
-/// Checks the deviations of a simulation from its plan.
-pub fn check_uncertainty(check: &Checker<'_>, uncertainty: &Uncertainty) -> Result<(), InputError> {
-    let Uncertainty { friction_scale, grip_force_scale, contact_stiffness_scale, joint_stiffness_scale } = *uncertainty;
-    check.within("uncertainty.friction_scale", friction_scale, 0.0, 10.0, "a factor")?;
-    check.within("uncertainty.grip_force_scale", grip_force_scale, 0.01, 10.0, "a factor")?;
-    // Below this range pads penetrate by millimetres; above 16/9, two oscillations per substep, boards oscillate.
-    check.within("uncertainty.contact_stiffness_scale", contact_stiffness_scale, 0.001, 1.75, "a factor")?;
-    check.within("uncertainty.joint_stiffness_scale", joint_stiffness_scale, 0.01, 100.0, "a factor")
 }

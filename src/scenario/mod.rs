@@ -19,6 +19,7 @@ pub mod plan_input;
 pub mod replan_request;
 mod resolve;
 mod robot_file;
+mod uncertainty_section;
 
 use std::path::{Path, PathBuf};
 

@@ -8,9 +8,10 @@ use super::{
     InputError,
     check::Checker,
     file::{GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
-    load_section::{self, check_load, check_uncertainty},
+    load_section::{self, check_load},
     object_section,
     robot_file::{load_robot, robot_parameters},
+    uncertainty_section::check_uncertainty,
 };
 use crate::{
     check::bounds,
@@ -22,7 +23,7 @@ use crate::{
     model::{
         FORMAT,
         frames::{Pose, rotation_from_xyzw},
-        load::{Load, Uncertainty},
+        load::Load,
         operation::{Operation, OperationKind},
         plan::{PlacedObject, Plan},
         plate::Plate,
@@ -30,6 +31,7 @@ use crate::{
             Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, PostureLimits, Scenario, Sex,
             SimulationSettings, StandingPlace, Tool,
         },
+        uncertainty::Uncertainty,
         wrench::Wrench,
     },
     robot::{PadGrip, Robot, RobotOptions},
@@ -71,7 +73,8 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         grip: grip_with_defaults(&file.grip, &robot),
         simulation: file.simulation,
         load: load_section::load(&check, &file.load, folder)?,
-        uncertainty: file.uncertainty,
+        uncertainty: file.uncertainty.clone(),
+        sweep: None,
         expect: file.expect,
     };
     check_values(&check, &scenario, &robot)?;
@@ -87,7 +90,7 @@ pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> 
     comfort(check, &scenario.comfort)?;
     simulation(check, &scenario.simulation)?;
     check_load(check, scenario)?;
-    check_uncertainty(check, &scenario.uncertainty)?;
+    check_uncertainty(check, &scenario.uncertainty, robot, scenario.object.shape().thickness_m())?;
     check_limits(check, &scenario.limits)
 }
 
@@ -473,6 +476,7 @@ pub fn default_for_plan(plan: &Plan, robot: &Robot) -> Scenario {
         simulation: SimulationSettings::default(),
         load: Load::default(),
         uncertainty: Uncertainty::default(),
+        sweep: None,
         limits: limits_with_defaults(&LimitsSection::default(), kind),
         expect: Expectation::default(),
     }

@@ -5,8 +5,9 @@ use crate::{
     check::CheckedPlan,
     model::{
         lateral::LateralPush,
-        load::{Load, Uncertainty},
+        load::Load,
         scenario::{Limits, Scenario, SimulationSettings},
+        uncertainty::Uncertainty,
     },
     statics::{LoadCases, StabilityWorkspace},
 };
@@ -60,7 +61,7 @@ impl Conditions {
             load: scenario.load.clone(),
             load_scale: 1.0,
             lateral_direction: LateralDirection::Worst(scenario.limits),
-            uncertainty: scenario.uncertainty,
+            uncertainty: scenario.uncertainty.clone(),
         }
     }
 
@@ -99,14 +100,19 @@ impl Conditions {
     /// # Errors
     /// [`SimError::Settings`] if the friction is negative, or a factor of the load or of an uncertainty is invalid.
     pub(super) fn check(&self) -> Result<(), SimError> {
-        let Uncertainty { friction_scale, grip_force_scale, contact_stiffness_scale, joint_stiffness_scale } =
-            self.uncertainty;
-        let not_negative =
-            [("friction", self.friction), ("load_scale", self.load_scale), ("friction_scale", friction_scale)];
+        let of = &self.uncertainty;
+        let not_negative = [
+            ("friction", self.friction),
+            ("load_scale", self.load_scale),
+            ("friction_scale", of.friction_scale),
+            ("force_scale", of.force_scale),
+        ];
         let positive = [
-            ("grip_force_scale", grip_force_scale),
-            ("contact_stiffness_scale", contact_stiffness_scale),
-            ("joint_stiffness_scale", joint_stiffness_scale),
+            ("grip_force_scale", of.grip_force_scale),
+            ("contact_stiffness_scale", of.contact_stiffness_scale),
+            ("joint_stiffness_scale", of.joint_stiffness_scale),
+            ("board_mass_scale", of.board_mass_scale),
+            ("ramp_scale", of.ramp_scale),
         ];
         let odd = |&(_, found): &(&str, f64)| !(found.is_finite() && found >= 0.0);
         if let Some(&(key, found)) = not_negative.iter().find(|entry| odd(entry)) {

@@ -3,11 +3,12 @@
 use benchdog::{
     judge::{Judgement, judge},
     model::{
-        load::{ForceFrame, ForceProfile, Load, Uncertainty},
+        load::{ForceFrame, ForceProfile, Load},
         operation::{Operation, OperationKind},
         plan::Plan,
         scenario::{Limits, SimulationSettings},
         trace::Trace,
+        uncertainty::Uncertainty,
         verdict::{CheckKind, VerdictKind},
         wrench::Wrench,
     },

@@ -2,11 +2,12 @@
 
 use benchdog::{
     model::{
-        load::{ForceFrame, ForceProfile, Load, Uncertainty},
+        load::{ForceFrame, ForceProfile, Load},
         operation::Operation,
         plan::Plan,
         scenario::SimulationSettings,
         trace::{Phase, Sample, Trace},
+        uncertainty::Uncertainty,
         wrench::Wrench,
     },
     robot::Robot,

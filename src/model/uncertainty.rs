@@ -1,0 +1,88 @@
+//! Deviations of a simulation from its plan.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::omitted::{is_default, is_one};
+
+/// Deviations of the simulation from what the plan assumes; none by default. They do not affect plans and predictions
+/// (`docs/method.md#611-uncertain-friction-and-loads`). Factors are multiples of the planned values. A sweep draws one for each of
+/// its runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Uncertainty {
+    /// Factor of the friction between pads and board.
+    pub friction_scale: f64,
+    /// Factor of the grip force.
+    pub grip_force_scale: f64,
+    /// Factor of the stiffness of the contacts between pads and board, and of elastic pads.
+    pub contact_stiffness_scale: f64,
+    /// Factor of the stiffness of every joint's position control.
+    pub joint_stiffness_scale: f64,
+    /// Further factors of the friction, one for each of the plan's arms in its order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub friction_scales: Vec<f64>,
+    /// Further factors of the grip force, one for each of the plan's arms in its order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub grip_force_scales: Vec<f64>,
+    /// Factor of the board's mass, about an unchanged centre. The arms know the planned mass.
+    #[serde(skip_serializing_if = "is_one")]
+    pub board_mass_scale: f64,
+    /// What the board is thicker than planned, mm. Its faces move by half of it.
+    #[serde(skip_serializing_if = "is_default")]
+    pub board_thickness_mm: f64,
+    /// Factor of the tool's wrench.
+    #[serde(skip_serializing_if = "is_one")]
+    pub force_scale: f64,
+    /// Rotation of the tool's wrench about the tool tip: about x_T, then about y_T, degrees.
+    #[serde(skip_serializing_if = "is_default")]
+    pub tool_tilt_deg: [f64; 2],
+    /// Displacement of the tool point in the worked face, mm along x_O and y_O.
+    #[serde(skip_serializing_if = "is_default")]
+    pub tool_offset_mm: [f64; 2],
+    /// Displacement of the person in their planned posture, mm along x_W and y_W.
+    #[serde(skip_serializing_if = "is_default")]
+    pub person_offset_mm: [f64; 2],
+    /// How far the arms' true joint angles are from the measured ones: for each of the plan's arms in its order, one value a
+    /// joint, degrees.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub joint_offset_deg: Vec<Vec<f64>>,
+    /// Factor of the duration of the ramp.
+    #[serde(skip_serializing_if = "is_one")]
+    pub ramp_scale: f64,
+}
+
+impl Default for Uncertainty {
+    fn default() -> Self {
+        Self {
+            friction_scale: 1.0,
+            grip_force_scale: 1.0,
+            contact_stiffness_scale: 1.0,
+            joint_stiffness_scale: 1.0,
+            friction_scales: Vec::new(),
+            grip_force_scales: Vec::new(),
+            board_mass_scale: 1.0,
+            board_thickness_mm: 0.0,
+            force_scale: 1.0,
+            tool_tilt_deg: [0.0; 2],
+            tool_offset_mm: [0.0; 2],
+            person_offset_mm: [0.0; 2],
+            joint_offset_deg: Vec::new(),
+            ramp_scale: 1.0,
+        }
+    }
+}
+
+impl Uncertainty {
+    /// Factor of the friction of an arm's pads, by its place in the plan.
+    #[must_use]
+    pub fn friction_scale_of(&self, arm: usize) -> f64 {
+        self.friction_scale * self.friction_scales.get(arm).copied().unwrap_or(1.0)
+    }
+
+    /// Factor of an arm's grip force, by its place in the plan.
+    #[must_use]
+    pub fn grip_force_scale_of(&self, arm: usize) -> f64 {
+        self.grip_force_scale * self.grip_force_scales.get(arm).copied().unwrap_or(1.0)
+    }
+}
