@@ -14,7 +14,6 @@ use crate::{
         scenario::Scenario,
         stop::Stop,
         trace::Trace,
-        uncertainty::Uncertainty,
         verdict::{Verdict, VerdictKind},
     },
     planner::Outcome,
@@ -132,11 +131,7 @@ fn simulated_and_judged(
 
 /// True if the statics prove that the hands cannot carry the board's weight with the simulated friction and grip forces.
 fn cannot_carry_the_weight(checked: &CheckedPlan<'_>, scenario: &Scenario) -> bool {
-    let Uncertainty { friction_scale, grip_force_scale, .. } = scenario.uncertainty;
-    let Ok(mut model) = ContactModel::of_plan(checked, scenario.grip.friction * friction_scale) else { return false };
-    for hand in &mut model.hands {
-        hand.scale_grip(grip_force_scale);
-    }
+    let Ok(model) = ContactModel::under(checked, scenario.grip.friction, &scenario.uncertainty) else { return false };
     match StabilityWorkspace::new().friction_load_factor(&model) {
         Ok(LoadFactorOutcome::GravityInfeasible { certificate }) => {
             certificate.proves_infeasible(&model).unwrap_or(false)
