@@ -107,7 +107,10 @@ fn checked_and_judged(
 
 /// The simulation of a plan and its judgement, confirmed at shorter time steps if it is near to a limit. A grasp that holds
 /// the board only by the simulation, and provably not by the statics, has no verdict.
-fn simulated_and_judged(
+///
+/// # Errors
+/// If the simulation cannot be set up from the plan, and after a stop.
+pub fn simulated_and_judged(
     checked: &CheckedPlan<'_>,
     scenario: &Scenario,
     stop: &dyn Stop,
