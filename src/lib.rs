@@ -128,5 +128,6 @@ pub mod scenario;
 pub mod setup;
 pub mod sim;
 pub mod statics;
+pub mod sweep;
 
 pub use nalgebra;

@@ -3,8 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::omitted::is_one;
-
 /// A sweep with all defaults filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -22,6 +20,10 @@ pub struct Sweep {
 impl Sweep {
     /// The number of runs of a sweep that does not state it.
     pub const RUNS: u64 = 1000;
+    /// The seed of a sweep that does not state it.
+    pub const SEED: u64 = 1;
+    /// The most runs.
+    pub const MOST_RUNS: u64 = 1 << 31;
 }
 
 /// How points of the unit cube are drawn.
@@ -49,9 +51,10 @@ pub struct Variable {
     /// Values above this are not drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
-    /// The planned value that the values are divided by; 1 if they are factors or offsets.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
-    pub nominal: f64,
+    /// The planned value, of a distribution of absolute values: they are divided by it, a thickness is less by it. Absent if
+    /// the values are factors or offsets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nominal: Option<f64>,
     /// Correlation of the arms' values, from 0 to 1, of a quantity that each arm has (Gaussian copula).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub correlation: Option<f64>,
@@ -60,17 +63,78 @@ pub struct Variable {
     pub source: Option<String>,
 }
 
-fn one() -> f64 {
-    1.0
+impl Variable {
+    /// The key of the variable in a scenario file.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let is = |&&(_, quantity, absolute, _): &&(_, Quantity, bool, _)| {
+            quantity == self.quantity && absolute == self.nominal.is_some()
+        };
+        // A quantity without absolute values has none with a nominal one.
+        NAMES
+            .iter()
+            .find(is)
+            .or_else(|| NAMES.iter().find(|entry| entry.1 == self.quantity))
+            .map_or("", |entry| entry.0)
+    }
+
+    /// The unit of its values.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        NAMES.iter().find(|entry| entry.0 == self.name()).map_or("", |entry| entry.3)
+    }
+
+    /// What a value is for the simulation: a factor, or an offset in the unit of the quantity.
+    #[must_use]
+    pub fn deviation(&self, value: f64) -> f64 {
+        match self.nominal {
+            Some(nominal) if self.quantity == Quantity::BoardThickness => value - nominal,
+            Some(nominal) => value / nominal,
+            None => value,
+        }
+    }
 }
 
-/// What is uncertain: the deviations of [`Uncertainty`](super::load::Uncertainty).
+/// The keys of variables in a scenario file: key, quantity, whether the values are absolute, unit.
+pub const NAMES: [(&str, Quantity, bool, &str); 17] = [
+    ("friction", Quantity::Friction, true, "a Coulomb coefficient"),
+    ("friction_factor", Quantity::Friction, false, "a factor"),
+    ("grip_force_n", Quantity::GripForce, true, "N"),
+    ("grip_force_factor", Quantity::GripForce, false, "a factor"),
+    ("contact_stiffness_factor", Quantity::ContactStiffness, false, "a factor"),
+    ("joint_stiffness_factor", Quantity::JointStiffness, false, "a factor"),
+    ("board_mass_kg", Quantity::BoardMass, true, "kg"),
+    ("board_mass_factor", Quantity::BoardMass, false, "a factor"),
+    ("board_thickness_mm", Quantity::BoardThickness, true, "mm"),
+    ("board_thickness_offset_mm", Quantity::BoardThickness, false, "mm"),
+    ("force_n", Quantity::Force, true, "N"),
+    ("force_factor", Quantity::Force, false, "a factor"),
+    ("tool_tilt_deg", Quantity::ToolTilt, false, "degrees"),
+    ("tool_offset_mm", Quantity::ToolOffset, false, "mm"),
+    ("person_offset_mm", Quantity::PersonOffset, false, "mm"),
+    ("joint_offset_deg", Quantity::JointOffset, false, "degrees"),
+    ("ramp_factor", Quantity::RampTime, false, "a factor"),
+];
+
+impl Quantity {
+    /// The correlation of the arms' values where a scenario has none; `None` for a quantity that arms do not have one by one.
+    #[must_use]
+    pub fn usual_correlation(self) -> Option<f64> {
+        match self {
+            Self::Friction => Some(1.0),
+            Self::GripForce => Some(0.0),
+            _ => None,
+        }
+    }
+}
+
+/// What is uncertain: the deviations of [`Uncertainty`](super::uncertainty::Uncertainty).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Friction between pads and board, a factor or a coefficient; one value an arm.
+    /// Friction between pads and board, a factor or a coefficient; one value an arm unless they are fully correlated.
     Friction,
-    /// Grip force, a factor or N; one value an arm.
+    /// Grip force, a factor or N; one value an arm unless they are fully correlated.
     GripForce,
     /// Factor of the stiffness of contacts and elastic pads.
     ContactStiffness,
@@ -78,7 +142,7 @@ pub enum Quantity {
     JointStiffness,
     /// Mass of the board, a factor or kg.
     BoardMass,
-    /// What the board is thicker than planned, mm.
+    /// What the board is thicker than planned, or its thickness, mm.
     BoardThickness,
     /// The tool's wrench, a factor or N.
     Force,

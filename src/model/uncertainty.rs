@@ -119,6 +119,30 @@ impl Uncertainty {
         rotation_ot * tilt_t * rotation_ot.inverse()
     }
 
+    /// These deviations and further ones together: factors multiply, offsets add.
+    #[must_use]
+    pub fn and(&self, further: &Self) -> Self {
+        let pairs = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            friction_scale: self.friction_scale * further.friction_scale,
+            grip_force_scale: self.grip_force_scale * further.grip_force_scale,
+            contact_stiffness_scale: self.contact_stiffness_scale * further.contact_stiffness_scale,
+            joint_stiffness_scale: self.joint_stiffness_scale * further.joint_stiffness_scale,
+            friction_scales: each(&self.friction_scales, &further.friction_scales, |a, b| a * b),
+            grip_force_scales: each(&self.grip_force_scales, &further.grip_force_scales, |a, b| a * b),
+            board_mass_scale: self.board_mass_scale * further.board_mass_scale,
+            board_thickness_mm: self.board_thickness_mm + further.board_thickness_mm,
+            force_scale: self.force_scale * further.force_scale,
+            tool_tilt_deg: pairs(self.tool_tilt_deg, further.tool_tilt_deg),
+            tool_offset_mm: pairs(self.tool_offset_mm, further.tool_offset_mm),
+            person_offset_mm: pairs(self.person_offset_mm, further.person_offset_mm),
+            joint_offset_deg: each(&self.joint_offset_deg, &further.joint_offset_deg, |a, b| {
+                each(&a, &b, |a, b| a + b)
+            }),
+            ramp_scale: self.ramp_scale * further.ramp_scale,
+        }
+    }
+
     /// Factor of the friction of an arm's pads, by its place in the plan.
     #[must_use]
     pub fn friction_scale_of(&self, arm: usize) -> f64 {
@@ -129,5 +153,47 @@ impl Uncertainty {
     #[must_use]
     pub fn grip_force_scale_of(&self, arm: usize) -> f64 {
         self.grip_force_scale * self.grip_force_scales.get(arm).copied().unwrap_or(1.0)
+    }
+}
+
+/// Two lists, entry by entry; where one of them has no entry, that of the other.
+fn each<T: Clone>(first: &[T], second: &[T], join: impl Fn(T, T) -> T) -> Vec<T> {
+    let entry = |index: usize| match (first.get(index).cloned(), second.get(index).cloned()) {
+        (Some(a), Some(b)) => Some(join(a, b)),
+        (a, b) => a.or(b),
+    };
+    (0..first.len().max(second.len())).filter_map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_multiply_and_offsets_add() {
+        let first = Uncertainty {
+            friction_scale: 0.5,
+            grip_force_scales: vec![2.0, 3.0],
+            board_thickness_mm: 0.5,
+            tool_tilt_deg: [1.0, 2.0],
+            joint_offset_deg: vec![vec![0.25, 0.5], vec![]],
+            ..Uncertainty::default()
+        };
+        let second = Uncertainty {
+            friction_scale: 0.5,
+            friction_scales: vec![4.0, 1.0],
+            grip_force_scales: vec![0.5, 2.0],
+            board_thickness_mm: -1.0,
+            tool_tilt_deg: [0.5, -2.0],
+            joint_offset_deg: vec![vec![0.25, -0.5], vec![1.0]],
+            ..Uncertainty::default()
+        };
+        let both = first.and(&second);
+        assert_eq!([both.friction_scale_of(0), both.friction_scale_of(1)], [1.0, 0.25]);
+        assert_eq!(both.grip_force_scales, [1.0, 6.0]);
+        assert_eq!((both.board_thickness_mm, both.tool_tilt_deg), (-0.5, [1.5, 0.0]));
+        assert_eq!(both.joint_offset_deg, [vec![0.5, 0.0], vec![1.0]]);
+        assert_eq!(both, second.and(&first));
+        assert_eq!(first.and(&Uncertainty::default()), first);
     }
 }

@@ -12,6 +12,7 @@ use super::{
     load_section::LoadSection,
     locate,
     object_section::ObjectSection,
+    sweep_section::SweepSection,
 };
 use crate::model::{
     operation::OperationKind,
@@ -62,6 +63,9 @@ pub struct ScenarioFile {
     /// Deviations of the simulation from the values that the plan assumes.
     #[serde(default)]
     pub uncertainty: Uncertainty,
+    /// What a sweep draws at random for each of its runs; without it there is no sweep.
+    #[serde(default)]
+    pub sweep: Option<SweepSection>,
     /// The limits that the hold must not exceed.
     #[serde(default)]
     pub limits: LimitsSection,

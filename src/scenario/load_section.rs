@@ -168,12 +168,14 @@ fn loads(rows: &[[f64; 7]]) -> bool {
     rows.iter().any(|row| row[1..].iter().any(|&component| component != 0.0))
 }
 
-fn at(path: &Path, line: Option<usize>, column: Option<&str>, found: String, expected: &str) -> InputError {
+/// An error of a CSV file.
+pub(super) fn at(path: &Path, line: Option<usize>, column: Option<&str>, found: String, expected: &str) -> InputError {
     let kind = InputErrorKind::Value { found, expected: expected.to_owned() };
     InputError { file: path.to_owned(), line, key: column.map(str::to_owned), kind }
 }
 
-fn unreadable(path: &Path, error: &csv::Error) -> InputError {
+/// An error of the reader of CSV files.
+pub(super) fn unreadable(path: &Path, error: &csv::Error) -> InputError {
     let line = error.position().map(|position| position.line() as usize);
     InputError { file: path.to_owned(), line, key: None, kind: InputErrorKind::Syntax(error.to_string()) }
 }

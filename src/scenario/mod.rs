@@ -19,6 +19,7 @@ pub mod plan_input;
 pub mod replan_request;
 mod resolve;
 mod robot_file;
+mod sweep_section;
 mod uncertainty_section;
 
 use std::path::{Path, PathBuf};
@@ -99,6 +100,7 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
     let mut inputs = vec![path.to_owned()];
     inputs.extend(robot.files.iter().cloned());
     inputs.extend(file.load.file.as_ref().map(|forces| folder.join(forces)));
+    inputs.extend(file.sweep.iter().flat_map(|sweep| sweep.files()).map(|values| folder.join(values)));
     let (plan, filled_in) = match &scenario.planner.plan {
         Some(plan) => {
             let plan_path = folder.join(plan);

@@ -11,6 +11,7 @@ use super::{
     load_section::{self, check_load},
     object_section,
     robot_file::{load_robot, robot_parameters},
+    sweep_section::{self, check_expectation, check_sweep},
     uncertainty_section::check_uncertainty,
 };
 use crate::{
@@ -59,7 +60,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
     }
     let object = object_section::board(&check, &file.object, &robot)?;
     let operation = operation(&check, &file.operation, &object)?;
-    let scenario = Scenario {
+    let mut scenario = Scenario {
         format: FORMAT,
         name: file.name.clone(),
         robot: robot_parameters(&robot),
@@ -77,6 +78,9 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         sweep: None,
         expect: file.expect,
     };
+    if let Some(section) = &file.sweep {
+        scenario.sweep = Some(sweep_section::sweep(&check, section, &scenario, &robot, folder)?);
+    }
     check_values(&check, &scenario, &robot)?;
     Ok((scenario, robot))
 }
@@ -91,6 +95,8 @@ pub fn check_values(check: &Checker<'_>, scenario: &Scenario, robot: &Robot) -> 
     simulation(check, &scenario.simulation)?;
     check_load(check, scenario)?;
     check_uncertainty(check, &scenario.uncertainty, robot, scenario.object.shape().thickness_m())?;
+    check_sweep(check, scenario, robot)?;
+    check_expectation(check, scenario)?;
     check_limits(check, &scenario.limits)
 }
 

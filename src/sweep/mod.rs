@@ -1,0 +1,12 @@
+//! Sweeps: many runs of one plan under deviations that are drawn at random (`docs/method.md#10-sweeps`).
+//!
+//! This module draws and counts; it neither predicts nor simulates.
+
+pub mod distribution;
+pub mod draw;
+pub mod points;
+
+pub use draw::{ArmJoints, Dimension, Drawn, Draws};
+
+#[cfg(test)]
+mod tests;
