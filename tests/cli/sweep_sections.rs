@@ -8,7 +8,7 @@ use benchdog::{
         scenario::Scenario,
         sweep::{Distribution, NAMES, Quantity, Sampling, Sweep},
     },
-    scenario::{load, load_plan},
+    scenario::{default_for_plan, load, load_plan, read_plan},
     sweep::{ArmJoints, Draws},
 };
 
@@ -255,21 +255,22 @@ fn probabilities_that_cannot_be_shown() {
 #[test]
 fn a_plan_carries_its_sweep() {
     let of_plans = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/plans/cut-rim.json");
-    let mut plan: serde_json::Value = serde_json::from_str(&fs::read_to_string(of_plans).unwrap()).unwrap();
+    let (mut plan, robot) = read_plan(&of_plans, None).unwrap();
+    let scenario = default_for_plan(&plan, &robot);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plan.json");
     let csv = "[sweep]\npreset = \"workshop\"\n[sweep.tool_tilt_deg]\nkind = \"csv\"\nfile = \"values.csv\"\n";
     let sweep = read(csv, "x\n1\n2\n").sweep.unwrap();
-    let mut write = |sweep: serde_json::Value| {
-        plan["scenario"]["sweep"] = sweep;
+    let mut write = |sweep: &Sweep| {
+        plan.scenario = Some(Scenario { sweep: Some(sweep.clone()), ..scenario.clone() });
         fs::write(&path, serde_json::to_string_pretty(&plan).unwrap()).unwrap();
         load_plan(&path, None)
     };
-    assert_eq!(write(serde_json::to_value(&sweep).unwrap()).unwrap().scenario.sweep, Some(sweep.clone()));
+    assert_eq!(write(&sweep).unwrap().scenario.sweep, Some(sweep.clone()));
     let mut refused = |key: &str, change: &dyn Fn(&mut Sweep)| {
         let mut other = sweep.clone();
         change(&mut other);
-        let error = write(serde_json::to_value(&other).unwrap()).unwrap_err();
+        let error = write(&other).unwrap_err();
         assert_eq!(error.key.as_deref(), Some(key));
         assert!(error.line.is_some());
     };
