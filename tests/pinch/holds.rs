@@ -167,6 +167,7 @@ fn two_hundred_random_scenarios_end_with_a_judgement() {
                 grip_force_scale: draw(0.1, 2.0),
                 contact_stiffness_scale: 10.0_f64.powf(draw(-3.0, 0.24)),
                 joint_stiffness_scale: 10.0_f64.powf(draw(-2.0, 2.0)),
+                ..Uncertainty::default()
             },
             ..Conditions::new(FRICTION, settings)
         };
