@@ -1,4 +1,5 @@
-//! The fingerprint of what the planner's maps depend on in this program: a kept map is read only by a program with the same one.
+//! Two fingerprints of this program. `BENCHDOG_MAPS` is of what the planner's maps depend on: a kept map is read only by a program
+//! with the same one. `BENCHDOG_PROGRAM` is of everything: parts of a sweep belong together only if they have the same one.
 
 use std::{
     env, fs,
@@ -24,14 +25,24 @@ const SOURCES: [&str; 10] = [
 /// What the compiler is told, and the version.
 const SETTINGS: [&str; 4] = ["TARGET", "CARGO_CFG_TARGET_FEATURE", "OPT_LEVEL", "CARGO_PKG_VERSION"];
 
+/// What results depend on, relative to the package.
+const EVERYTHING: [&str; 2] = ["src", "assets"];
+
 fn main() {
+    println!("cargo::rustc-env=BENCHDOG_MAPS={}", fingerprint(&SOURCES));
+    println!("cargo::rustc-env=BENCHDOG_PROGRAM={}", fingerprint(&EVERYTHING));
+    println!("cargo::rustc-env=BENCHDOG_TARGET={}", env::var("TARGET").unwrap_or_default());
+}
+
+/// The SHA-256 of sources, versions of crates and settings, in hexadecimal digits.
+fn fingerprint(sources: &[&str]) -> String {
     let mut hash = Sha256::new();
     let mut add = |bytes: &[u8]| {
         hash.update((bytes.len() as u64).to_le_bytes());
         hash.update(bytes);
     };
     let read = |path: &Path| fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    for source in SOURCES {
+    for source in sources {
         println!("cargo::rerun-if-changed={source}");
         for file in files(Path::new(source)) {
             add(file.to_string_lossy().replace('\\', "/").as_bytes());
@@ -46,9 +57,7 @@ fn main() {
     for setting in SETTINGS {
         add(env::var(setting).unwrap_or_default().as_bytes());
     }
-    let text: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    println!("cargo::rustc-env=BENCHDOG_MAPS={text}");
-    println!("cargo::rustc-env=BENCHDOG_TARGET={}", env::var("TARGET").unwrap_or_default());
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The versions of all crates: the Cargo.lock of the workspace that is built, which is above the folder of the build, or else that of

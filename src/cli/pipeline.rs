@@ -14,7 +14,6 @@ use crate::{
         scenario::Scenario,
         stop::Stop,
         trace::Trace,
-        uncertainty::Uncertainty,
         verdict::{Verdict, VerdictKind},
     },
     planner::Outcome,
@@ -108,7 +107,10 @@ fn checked_and_judged(
 
 /// The simulation of a plan and its judgement, confirmed at shorter time steps if it is near to a limit. A grasp that holds
 /// the board only by the simulation, and provably not by the statics, has no verdict.
-fn simulated_and_judged(
+///
+/// # Errors
+/// If the simulation cannot be set up from the plan, and after a stop.
+pub fn simulated_and_judged(
     checked: &CheckedPlan<'_>,
     scenario: &Scenario,
     stop: &dyn Stop,
@@ -132,11 +134,7 @@ fn simulated_and_judged(
 
 /// True if the statics prove that the hands cannot carry the board's weight with the simulated friction and grip forces.
 fn cannot_carry_the_weight(checked: &CheckedPlan<'_>, scenario: &Scenario) -> bool {
-    let Uncertainty { friction_scale, grip_force_scale, .. } = scenario.uncertainty;
-    let Ok(mut model) = ContactModel::of_plan(checked, scenario.grip.friction * friction_scale) else { return false };
-    for hand in &mut model.hands {
-        hand.scale_grip(grip_force_scale);
-    }
+    let Ok(model) = ContactModel::under(checked, scenario.grip.friction, &scenario.uncertainty) else { return false };
     match StabilityWorkspace::new().friction_load_factor(&model) {
         Ok(LoadFactorOutcome::GravityInfeasible { certificate }) => {
             certificate.proves_infeasible(&model).unwrap_or(false)

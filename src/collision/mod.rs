@@ -16,7 +16,7 @@ mod self_pairs;
 mod shapes;
 mod sight;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use parry3d_f64::glamx::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -101,6 +101,14 @@ pub struct PersonPart {
     pub robot_clearance_m: f64,
     /// Required distance to the board, m; `None` if it may touch the board.
     pub board_clearance_m: Option<f64>,
+}
+
+impl PersonPart {
+    /// The part displaced in W.
+    #[must_use]
+    pub fn moved(self, by_m: &Vector3<f64>) -> Self {
+        Self { p0_w: self.p0_w + by_m, p1_w: self.p1_w + by_m, ..self }
+    }
 }
 
 /// A body of a scene.

@@ -1,9 +1,15 @@
 //! Deviations of a simulation from its plan.
 
+use nalgebra::{UnitQuaternion, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::omitted::{is_default, is_one};
+use super::{
+    frames::Pose,
+    omitted::{is_default, is_one},
+    operation::Operation,
+    plan::PlacedObject,
+};
 
 /// Deviations of the simulation from what the plan assumes; none by default. They do not affect plans and predictions
 /// (`docs/method.md#611-uncertain-friction-and-loads`). Factors are multiples of the planned values. A sweep draws one for each of
@@ -74,6 +80,45 @@ impl Default for Uncertainty {
 }
 
 impl Uncertainty {
+    /// The board as it is, for one as planned.
+    #[must_use]
+    pub fn board(&self, planned: &PlacedObject) -> PlacedObject {
+        let [width_m, height_m, thickness_m] = planned.size_m;
+        let size_m = [width_m, height_m, thickness_m + 1e-3 * self.board_thickness_mm];
+        PlacedObject { size_m, mass_kg: planned.mass_kg * self.board_mass_scale, ..planned.clone() }
+    }
+
+    /// The operation as it is, for one as planned: the tool tilted about its tip, the tip displaced, and on the face of the
+    /// board as it is. `force_scale` is not in it.
+    #[must_use]
+    pub fn operation(&self, planned: &Operation) -> Operation {
+        if *self == Self::default() {
+            return *planned;
+        }
+        let tilt_o = self.tilt_o(planned);
+        let p_ot_m = planned.x_ot.translation.vector;
+        let [x_mm, y_mm] = self.tool_offset_mm;
+        let moved_mm = Vector3::new(x_mm, y_mm, p_ot_m.z.signum() * self.board_thickness_mm / 2.0);
+        Operation {
+            wrench_o: planned.wrench_o.rotated(&tilt_o),
+            x_ot: Pose::from_parts((p_ot_m + moved_mm * 1e-3).into(), tilt_o * planned.x_ot.rotation),
+            ..*planned
+        }
+    }
+
+    /// The rotation of the tool by its tilt, O axes.
+    #[must_use]
+    pub fn tilt_o(&self, planned: &Operation) -> UnitQuaternion<f64> {
+        if self.tool_tilt_deg == [0.0; 2] {
+            return UnitQuaternion::identity();
+        }
+        let [about_x, about_y] = self.tool_tilt_deg.map(f64::to_radians);
+        let tilt_t = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), about_x)
+            * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), about_y);
+        let rotation_ot = planned.x_ot.rotation;
+        rotation_ot * tilt_t * rotation_ot.inverse()
+    }
+
     /// These deviations and further ones together: factors multiply, offsets add.
     #[must_use]
     pub fn and(&self, further: &Self) -> Self {

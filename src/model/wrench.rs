@@ -1,6 +1,6 @@
 //! Force and moment.
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use super::frames::Pose;
@@ -44,6 +44,12 @@ impl Wrench {
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self::new(self.force_n * factor, self.moment_nm * factor)
+    }
+
+    /// This wrench turned about the point that it is stated about.
+    #[must_use]
+    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Self {
+        Self::new(rotation * self.force_n, rotation * self.moment_nm)
     }
 
     /// `(force; moment)` as one column.

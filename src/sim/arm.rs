@@ -56,7 +56,7 @@ pub(super) struct SimArm {
 /// The board of a scene.
 #[derive(Clone, Copy)]
 pub(super) struct PlacedBoard<'a> {
-    /// The board of the plan.
+    /// The board.
     pub object: &'a PlacedObject,
     /// Its body in the engine.
     pub body: RigidBodyHandle,
@@ -91,7 +91,7 @@ impl SimArm {
         let multibody = links.last().ok_or(SimError::Engine)?.joint;
         let engine = set_joint_positions(world, multibody, &positions)?;
         if let SimHand::Fingers(fingers) = &mut hand {
-            let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
+            let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale_of(number);
             fingers.close(engine, grip_force_n, finger_m, drive_inertia_kg(object));
         }
         let joint_stiffness_scale = conditions.uncertainty.joint_stiffness_scale;
@@ -176,14 +176,15 @@ fn hand(
 ) -> SimHand {
     let &CheckedArm { index, hold, .. } = checked;
     let arm = &robot.arms[index];
-    let grip_scale = conditions.uncertainty.grip_force_scale;
+    let grip_scale = conditions.uncertainty.grip_force_scale_of(number);
     if let Holding::Measured(measured) = &arm.gripper.holding {
         let limits = measured.limits.scaled(grip_scale);
         return SimHand::Joined(Box::new(JoinedHand::new(arm, merged, chain, limits, object.size_m[2])));
     }
     let grasping = GraspingHand { arm, bodies: merged, x_og: hold.x_og };
     let loading = PadLoading::new(&grasping, object, hold.grip_force_n * grip_scale, contact_softness_s2(world));
-    let contact = PadContact { friction: conditions.real_friction(), loading, collider: collider_of(object, number) };
+    let contact =
+        PadContact { friction: conditions.friction_of(number), loading, collider: collider_of(object, number) };
     SimHand::Fingers(Box::new(SimGripper::new(world, robot, arm, merged, chain, contact)))
 }
 

@@ -48,13 +48,11 @@ pub(super) fn collider_of(object: &PlacedObject, arm: usize) -> usize {
     if object.plate.is_some() { arm } else { 0 }
 }
 
+/// The board's factor of the friction: that of a contact is the product of both sides, and the pads have the coefficient.
+const BOARD_FRICTION: f64 = 1.0;
+
 /// Inserts the board as a free body with the inertia of [`inertial_mass_kg`]; one entry per arm of the plan.
-pub(super) fn insert_board(
-    world: &mut PhysicsWorld,
-    object: &PlacedObject,
-    arms: &[ArmHold],
-    friction: f64,
-) -> Vec<BoardHandles> {
+pub(super) fn insert_board(world: &mut PhysicsWorld, object: &PlacedObject, arms: &[ArmHold]) -> Vec<BoardHandles> {
     // A sleeping board would not react to the load.
     let body = RigidBodyBuilder::dynamic().pose(convert::to_engine_pose(&object.x_wo)).can_sleep(false);
     let body = if object.is_uniform_box() { body } else { body.additional_mass_properties(mass_properties(object)) };
@@ -68,7 +66,8 @@ pub(super) fn insert_board(
             continue;
         }
         let TouchedBox { x_ob, half_m: [hx, hy, hz] } = TouchedBox::of(&shape, &hold.x_og);
-        let collider = ColliderBuilder::cuboid(hx, hy, hz).friction(friction).collision_groups(board_groups(number));
+        let collider =
+            ColliderBuilder::cuboid(hx, hy, hz).friction(BOARD_FRICTION).collision_groups(board_groups(number));
         let collider = if object.is_uniform_box() {
             collider.mass(inertial_mass_kg(object))
         } else {

@@ -92,9 +92,9 @@ impl Conditions {
         cases.push(case)
     }
 
-    /// Friction coefficient in the simulation.
-    pub(super) fn real_friction(&self) -> f64 {
-        self.friction * self.uncertainty.friction_scale
+    /// Friction coefficient of an arm's pads in the simulation, by the arm's place in the plan.
+    pub(super) fn friction_of(&self, arm: usize) -> f64 {
+        self.friction * self.uncertainty.friction_scale_of(arm)
     }
 
     /// # Errors

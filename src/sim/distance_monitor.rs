@@ -4,6 +4,8 @@
 //! Neither is part of the dynamics, in which only pads and board collide: the person stands still in the posture of the plan,
 //! and links pass through each other. The judge interprets the distances.
 
+use nalgebra::Vector3;
+
 use super::conditions::Conditions;
 use crate::{
     check::CheckedPlan,
@@ -75,7 +77,10 @@ impl<'a> DistanceMonitor<'a> {
     /// The monitor of a plan.
     pub fn of(checked: &'a CheckedPlan<'_>, conditions: &Conditions) -> Self {
         let board = checked.board();
-        let person = checked.person().map(|_| PersonClearance::new(&checked.person_parts(), board));
+        let [x_mm, y_mm] = conditions.uncertainty.person_offset_mm;
+        let moved_m = Vector3::new(x_mm, y_mm, 0.0) * 1e-3;
+        let parts = || checked.person_parts().into_iter().map(|part| part.moved(&moved_m)).collect::<Vec<_>>();
+        let person = checked.person().map(|_| PersonClearance::new(&parts(), board));
         Self {
             robot: checked.robot(),
             model: checked.collision(),

@@ -150,7 +150,7 @@ pub fn simulate_until(checked: &CheckedPlan<'_>, conditions: &Conditions, stop: 
     let timestep_s = conditions.settings.timestep_s;
     let mut scene = SimScene::new(checked, conditions)?;
     let mut distances = DistanceMonitor::of(checked, conditions);
-    let mut trace = empty_trace(checked, conditions, tool.steps() + 1);
+    let mut trace = Trace { p_ot_m: tool.at(0).1.p_ot_m, ..empty_trace(checked, conditions, tool.steps() + 1) };
     let mut untouched_s = 0.0;
     for step in 0..=tool.steps() {
         if stop.is_stopped() {
@@ -184,8 +184,8 @@ pub fn simulate_until(checked: &CheckedPlan<'_>, conditions: &Conditions, stop: 
 /// A trace with room for every sample, so that steps do not allocate.
 fn empty_trace(checked: &CheckedPlan<'_>, conditions: &Conditions, samples: usize) -> Trace {
     let plan = checked.plan();
-    let grip_scale = conditions.uncertainty.grip_force_scale;
-    let arms = checked.arms().iter().map(|CheckedArm { index, hold, .. }| {
+    let arms = checked.arms().iter().enumerate().map(|(number, CheckedArm { index, hold, .. })| {
+        let grip_scale = conditions.uncertainty.grip_force_scale_of(number);
         let arm = &checked.robot().arms[*index];
         ArmTrace {
             name: hold.name.clone(),

@@ -2,7 +2,8 @@
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use rapier3d_f64::prelude::{
-    ColliderBuilder, ColliderHandle, ContactManifold, NEW_CONTACT_BIT, PhysicsWorld, RigidBodyHandle,
+    CoefficientCombineRule, ColliderBuilder, ColliderHandle, ContactManifold, NEW_CONTACT_BIT, PhysicsWorld,
+    RigidBodyHandle,
 };
 
 use super::{
@@ -74,6 +75,7 @@ impl SimPad {
             let collider = collider
                 .density(0.0)
                 .friction(contact.friction)
+                .friction_combine_rule(CoefficientCombineRule::Multiply)
                 .position(convert::to_engine_pose(&(x_fp * x_pc)))
                 .collision_groups(pad_groups(contact.collider));
             world.colliders.insert_with_parent(collider, finger, &mut world.bodies)

@@ -69,14 +69,13 @@ impl SimScene {
         if checked.arms().iter().any(|arm| checked.robot().arms[arm.index].gripper.holding.measured().is_some()) {
             sweep_for_joints(&mut world);
         }
-        let boards = insert_board(&mut world, &plan.object, &plan.arms, conditions.real_friction());
+        let object = conditions.uncertainty.board(&plan.object);
+        let boards = insert_board(&mut world, &object, &plan.arms);
         // A checked plan has an arm.
         let board = boards.first().ok_or(SimError::Engine)?.body;
         let mut arms = Vec::with_capacity(checked.arms().len());
-        for (number, (arm, feed_forward)) in
-            checked.arms().iter().zip(feed_forward(checked, conditions.friction)).enumerate()
-        {
-            let on = PlacedBoard { object: &plan.object, body: board };
+        for (number, (arm, feed_forward)) in checked.arms().iter().zip(feed_forward(checked, conditions)).enumerate() {
+            let on = PlacedBoard { object: &object, body: board };
             arms.push(SimArm::new(&mut world, checked.robot(), (number, arm), feed_forward, on, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);

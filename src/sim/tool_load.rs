@@ -11,6 +11,7 @@ use crate::{
         frames::Pose,
         load::{BREAKTHROUGH_S, ForceFrame, ForceProfile},
         operation::Operation,
+        scenario::SimulationSettings,
         trace::Phase,
         wrench::Wrench,
     },
@@ -31,10 +32,12 @@ pub(super) struct ToolState {
 pub(super) struct ToolLoad<'a> {
     phases: PhaseSchedule,
     profile: &'a ForceProfile,
-    operation: &'a Operation,
+    operation: Operation,
     /// The sideways push at load factor 1, if there is one: about the tool tip, O axes.
     lateral_o: Option<Wrench>,
     scale: f64,
+    /// Tilt of the tool, O axes.
+    tilt_o: UnitQuaternion<f64>,
     timestep_s: f64,
     /// Magnitude of the largest row of a measured profile.
     largest: f64,
@@ -59,12 +62,15 @@ impl<'a> ToolLoad<'a> {
             ForceProfile::Measured { samples } => largest(samples),
             _ => 1.0,
         };
+        let of = &conditions.uncertainty;
+        let ramp_s = conditions.settings.ramp_s * of.ramp_scale;
         Ok(Self {
-            phases: PhaseSchedule::new(&conditions.settings)?,
+            phases: PhaseSchedule::new(&SimulationSettings { ramp_s, ..conditions.settings })?,
             profile,
-            operation: &plan.operation,
+            tilt_o: of.tilt_o(&plan.operation),
+            operation: of.operation(&plan.operation),
             lateral_o: conditions.lateral_push(checked).map(|push| push.wrench_o()),
-            scale: conditions.load_scale,
+            scale: conditions.load_scale * of.force_scale,
             timestep_s: conditions.settings.timestep_s,
             largest,
         })
@@ -120,6 +126,7 @@ impl<'a> ToolLoad<'a> {
             }
             ForceProfile::Measured { samples } => {
                 let (row, wrench_o) = interpolated(samples, loaded_s);
+                let wrench_o = wrench_o.rotated(&self.tilt_o);
                 let share = size(&row, samples.iter().any(|row| size(row, true) > 0.0)) / self.largest;
                 return ToolState { load_factor: self.scale * share, wrench_o: wrench_o.scaled(self.scale), p_ot_m };
             }

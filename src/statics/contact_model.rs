@@ -123,6 +123,7 @@ fn check_hand(hand: &HandModel) -> Result<(), ContactModelError> {
         ("jacobian", hand.jacobian_o.iter().all(|v| v.is_finite())),
         ("gravity torque", hand.gravity_torque_nm.iter().all(|v| v.is_finite())),
         ("gravity stiffness", hand.gravity_stiffness_nm_rad.iter().all(|v| v.is_finite())),
+        ("offset", hand.offset.to_vector().iter().all(|v| v.is_finite())),
         ("grasp point", hand.grasp_point_o.iter().all(|v| v.is_finite())),
     ];
     if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {

@@ -24,36 +24,28 @@ const OPPOSITE_TOLERANCE: f64 = 1e-9;
 
 /// The equilibrium at a load factor if it is that of the welded board and one way of sharing the wrenches proves it.
 pub(super) fn equilibrium(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
-    let wrenches = shared(model, welded, load_factor)?;
-    model.hands.iter().zip(&wrenches).all(|(hand, wrench)| is_within_limits(hand, wrench)).then(|| {
-        let board = board(model, welded, load_factor);
-        Equilibrium::of_hands(model, load_factor, wrenches, board)
-    })
+    let (wrenches, board) = shared(model, welded, load_factor)?;
+    let within = model.hands.iter().zip(&wrenches).all(|(hand, wrench)| is_within_limits(hand, wrench));
+    within.then(|| Equilibrium::of_hands(model, load_factor, wrenches, board))
 }
 
 /// The same for a contact model that differs slightly from one whose equilibrium is that of the welded board: its pads
 /// are within their limits too, up to first order.
 pub(super) fn first_order(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Equilibrium> {
-    let wrenches = shared(model, welded, load_factor)?;
-    Some(Equilibrium::of_hands(model, load_factor, wrenches, board(model, welded, load_factor)))
+    let (wrenches, board) = shared(model, welded, load_factor)?;
+    Some(Equilibrium::of_hands(model, load_factor, wrenches, board))
 }
 
-fn board(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Twist {
-    welded.twist_at_tip(&outer(model, load_factor)).at(&-model.p_ot)
-}
-
-fn outer(model: &ContactModel, load_factor: f64) -> Wrench {
-    model.weight + model.load.scaled(load_factor)
-}
-
-/// The welded hands' wrenches, shared between their pads. `None` if a hand's pads are not opposite.
-fn shared(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<Vec<HandWrench>> {
-    let wrenches = welded.hand_wrenches(&outer(model, load_factor));
+/// The welded hands' wrenches, shared between their pads, and the board's displacement at O. `None` if a hand's pads are not
+/// opposite.
+fn shared(model: &ContactModel, welded: &WeldedStiffness, load_factor: f64) -> Option<(Vec<HandWrench>, Twist)> {
+    let (at_tip, wrenches) = welded.equilibrium(&(model.weight + model.load.scaled(load_factor)));
     let of_hand = |(hand, wrench): (&HandModel, &Wrench)| match &hand.hold {
         Hold::Pads(pair) => shared_by_pads(hand, pair, wrench).map(HandWrench::Pads),
         Hold::Measured(_) => Some(HandWrench::Measured(*wrench)),
     };
-    model.hands.iter().zip(&wrenches).map(of_hand).collect()
+    let shared: Option<Vec<_>> = model.hands.iter().zip(&wrenches).map(of_hand).collect();
+    Some((shared?, at_tip.at(&-model.p_ot)))
 }
 
 /// A hand's wrench about its grasp point, shared between its pads: `fn_1 + fn_2 = 2 F`, tangential parts equal.

@@ -1,6 +1,6 @@
 //! Builds a [`ContactModel`] from a plan. The only file of this module that uses the robot model.
 
-use nalgebra::{Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{DVector, Isometry2, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector2, Vector3};
 
 use super::{
     contact_model::{ContactModel, ContactModelError},
@@ -8,6 +8,7 @@ use super::{
     hold::{Hold, MeasuredHold, PadPair},
     pad_model::PadModel,
     patch::{clip_to_outline, clip_to_rectangle},
+    twist::Twist,
 };
 use crate::{
     check::{CheckedArm, CheckedPlan},
@@ -16,6 +17,7 @@ use crate::{
         frames::Pose,
         operation::Operation,
         plan::{ArmHold, PlacedObject},
+        uncertainty::Uncertainty,
         wrench::Wrench,
     },
     robot::{Arm, Chain, Gripper, Holding, MeasuredGrip, PadGrip},
@@ -34,6 +36,34 @@ impl ContactModel {
         };
         let hands: Result<Vec<_>, _> = checked.arms().iter().map(hand).collect();
         Ok(Self::from_hands(hands?, object, &checked.plan().operation))
+    }
+
+    /// The contact model of a plan whose world deviates from it. Contacts between rigid pads and board stay rigid.
+    ///
+    /// # Errors
+    /// If a pad is off the board.
+    pub fn under(checked: &CheckedPlan<'_>, friction: f64, of: &Uncertainty) -> Result<Self, ContactModelError> {
+        let object = &of.board(&checked.plan().object);
+        let hand = |(number, arm): (usize, &CheckedArm<'_>)| {
+            let friction = friction * of.friction_scale_of(number);
+            let robot_arm = &checked.robot().arms[arm.index];
+            let mut hand = HandModel::new(robot_arm, &arm.chain, arm.hold, object, friction)?;
+            hand.scale_grip(of.grip_force_scale_of(number));
+            hand.stiffness_nm_rad *= of.joint_stiffness_scale;
+            if let Some(offset_deg) = of.joint_offset_deg.get(number) {
+                hand.set_offset(&DVector::from_iterator(
+                    offset_deg.len(),
+                    offset_deg.iter().map(|deg| deg.to_radians()),
+                ));
+            }
+            for pad in hand.pads_mut() {
+                pad.stiffness_n_m = pad.stiffness_n_m.map(|stiffness_n_m| stiffness_n_m * of.contact_stiffness_scale);
+            }
+            Ok(hand)
+        };
+        let hands: Result<Vec<_>, _> = checked.arms().iter().enumerate().map(hand).collect();
+        let model = Self::from_hands(hands?, object, &of.operation(&checked.plan().operation));
+        Ok(Self { load: model.load.scaled(of.force_scale), ..model })
     }
 
     /// The contact model of these hands, see [`HandModel::new`].
@@ -83,6 +113,7 @@ impl HandModel {
             effort_nm: chain.effort_nm().to_vec().into(),
             stiffness_nm_rad: arm.stiffness_nm_rad.clone().into(),
             gravity_stiffness_nm_rad: chain.gravity_stiffness_nm_rad(&hold.q_rad),
+            offset: Twist::default(),
         })
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Matrix6xX, Vector3};
 use super::{
     hold::{HandWrench, Hold, MeasuredHold, PadPair},
     pad_model::PadModel,
+    twist::Twist,
 };
 use crate::model::wrench::Wrench;
 
@@ -31,6 +32,9 @@ pub struct HandModel {
     /// `dg/dq`, n x n, N m/rad. The controller compensates gravity at the planned angles, so the change of the gravity
     /// torque with the angles adds to the joint stiffness.
     pub gravity_stiffness_nm_rad: DMatrix<f64>,
+    /// What offsets of the joints would move the hand by if it held nothing, at the grasp point: `t = J (K_q + dg/dq)^-1 K_q d`
+    /// with `d` the difference of true and measured angles (docs/method.md#68-compliant-equilibrium).
+    pub offset: Twist,
 }
 
 impl HandModel {
@@ -103,6 +107,13 @@ impl HandModel {
     pub(super) fn joint_torque_nm(&self, wrench: &HandWrench) -> DVector<f64> {
         let wrench = self.wrench_about_grasp_point(wrench).to_vector();
         self.jacobian_o.tr_mul(&wrench) + &self.gravity_torque_nm
+    }
+
+    /// Sets the offset of the hand from those of its joints, rad.
+    pub(super) fn set_offset(&mut self, joints_rad: &DVector<f64>) {
+        let torque_nm = self.stiffness_nm_rad.component_mul(joints_rad);
+        let moved = &self.jacobian_o * self.joint_deflection_rad(&torque_nm);
+        self.offset = Twist::from_vector(&moved.fixed_rows::<6>(0).into_owned());
     }
 
     /// Compliance of arm and pads at the grasp point, `C = J (K_q + dg/dq)^-1 J' + C_pads`, 6 x 6, O axes (m/N, rad/(N

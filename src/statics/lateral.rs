@@ -18,6 +18,7 @@ use crate::{
         load::Load,
         operation::Operation,
         scenario::Limits,
+        uncertainty::Uncertainty,
         wrench::Wrench,
     },
 };
@@ -55,6 +56,21 @@ impl LoadCases {
     /// If a pad is off the board.
     pub fn of_plan(checked: &CheckedPlan<'_>, friction: f64, load: &Load) -> Result<Self, ContactModelError> {
         Ok(Self::new(ContactModel::of_plan(checked, friction)?, &checked.plan().operation, load))
+    }
+
+    /// The cases of a plan whose world deviates from it, see [`ContactModel::under`].
+    ///
+    /// # Errors
+    /// If a pad is off the board.
+    pub fn under(
+        checked: &CheckedPlan<'_>,
+        friction: f64,
+        load: &Load,
+        of: &Uncertainty,
+    ) -> Result<Self, ContactModelError> {
+        let operation = of.operation(&checked.plan().operation);
+        let operation = Operation { wrench_o: operation.wrench_o.scaled(of.force_scale), ..operation };
+        Ok(Self::new(ContactModel::under(checked, friction, of)?, &operation, load))
     }
 
     /// The same with every load multiplied by a factor.

@@ -1,6 +1,6 @@
 //! The stiffness of a board whose hands are welded to it.
 
-use nalgebra::{Cholesky, Const, Matrix3, Matrix6, Vector3};
+use nalgebra::{Cholesky, Const, Matrix3, Matrix6, Vector3, Vector6};
 
 use super::{contact_model::ContactModel, hand::HandModel, twist::Twist};
 use crate::model::wrench::Wrench;
@@ -21,6 +21,8 @@ pub struct WeldedStiffness {
     factor: Cholesky<f64, Const<6>>,
     /// For each hand: its stiffness at the grasp point, and the map of twists from the tool tip to the grasp point.
     hands: Vec<(Matrix6<f64>, Matrix6<f64>)>,
+    /// The wrench of each hand about its grasp point if the board does not move, from offsets of its joints.
+    offsets: Vec<Vector6<f64>>,
 }
 
 impl WeldedStiffness {
@@ -36,13 +38,15 @@ impl WeldedStiffness {
     pub(super) fn of(model: &ContactModel, compliances: impl IntoIterator<Item = Matrix6<f64>>) -> Option<Self> {
         let mut stiffness_t = Matrix6::zeros();
         let mut hands = Vec::with_capacity(model.hands.len());
+        let mut offsets = Vec::with_capacity(model.hands.len());
         for (hand, compliance) in model.hands.iter().zip(compliances) {
             let stiffness = inverse(&compliance)?;
             let map = twist_map(&(hand.grasp_point_o - model.p_ot));
             stiffness_t += map.transpose() * stiffness * map;
+            offsets.push(stiffness * hand.offset.to_vector());
             hands.push((stiffness, map));
         }
-        Some(Self { p_ot: model.p_ot, factor: stiffness_t.cholesky()?, hands })
+        Some(Self { p_ot: model.p_ot, factor: stiffness_t.cholesky()?, hands, offsets })
     }
 
     /// Displacement of the board at the tool tip, `delta = K_O^-1 w`, under a wrench w about O's origin.
@@ -53,19 +57,29 @@ impl WeldedStiffness {
     }
 
     /// The wrench of each hand on the board, `-C_i^-1 Ad_i delta`, about its grasp point, under a wrench on the board
-    /// about O's origin.
+    /// about O's origin, without offsets of joints.
     #[must_use]
     pub fn hand_wrenches(&self, wrench: &Wrench) -> Vec<Wrench> {
         let delta = self.twist_at_tip(wrench).to_vector();
-        let reaction = |(stiffness, map): &(Matrix6<f64>, Matrix6<f64>)| -(stiffness * (map * delta));
-        self.hands
-            .iter()
-            .map(|hand| {
-                let [fx, fy, fz, mx, my, mz] = reaction(hand).into();
-                Wrench::from([fx, fy, fz, mx, my, mz])
-            })
-            .collect()
+        self.hands.iter().map(|(stiffness, map)| wrench_from(&-(stiffness * (map * delta)))).collect()
     }
+
+    /// Displacement of the board at the tool tip and the wrench of each hand about its grasp point, under a wrench on the board
+    /// about O's origin and the offsets `t_i` of the hands: `delta = K_O^-1 (w + sum_i Ad_i' C_i^-1 t_i)` and `C_i^-1 (t_i - Ad_i delta)`.
+    pub(super) fn equilibrium(&self, wrench: &Wrench) -> (Twist, Vec<Wrench>) {
+        let pulled = self.hands.iter().zip(&self.offsets).map(|((_, map), offset)| map.tr_mul(offset));
+        let about_tip = wrench.about(&-self.p_ot).to_vector() + pulled.sum::<Vector6<f64>>();
+        let delta = self.factor.solve(&about_tip);
+        let of_hand = |((stiffness, map), offset): (&(Matrix6<f64>, Matrix6<f64>), &Vector6<f64>)| {
+            wrench_from(&(offset - stiffness * (map * delta)))
+        };
+        (Twist::from_vector(&delta), self.hands.iter().zip(&self.offsets).map(of_hand).collect())
+    }
+}
+
+fn wrench_from(column: &Vector6<f64>) -> Wrench {
+    let [fx, fy, fz, mx, my, mz] = (*column).into();
+    Wrench::from([fx, fy, fz, mx, my, mz])
 }
 
 /// `[1, -[p]x; 0, 1]`: maps a twist at a point to the twist at the point p away from it.

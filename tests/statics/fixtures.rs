@@ -62,6 +62,7 @@ pub fn strong_hand(
         effort_nm: DVector::from_element(6, 1e4),
         stiffness_nm_rad: DVector::from_element(6, 1e3),
         gravity_stiffness_nm_rad: DMatrix::zeros(6, 6),
+        offset: Twist::default(),
     }
 }
 

@@ -60,11 +60,11 @@ pub(super) fn option(xml: &mut Xml, settings: &SimulationSettings) -> io::Result
 }
 
 /// The contact pairs of pads and board.
-pub(super) fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], board_kg: f64, friction: f64) -> io::Result<()> {
-    // MuJoCo requires positive friction.
-    let mu = friction.max(1e-5);
+pub(super) fn contact_pairs(xml: &mut Xml, arms: &[ExportedArm<'_>], board_kg: f64) -> io::Result<()> {
     xml.create_element("contact").write_inner_content(|xml| {
         for arm in arms {
+            // MuJoCo requires positive friction.
+            let mu = arm.friction.max(1e-5);
             let parts = (0..2).flat_map(|k| arm.parts(k).map(|part| (k, part)));
             for (k, part) in parts {
                 let [time_constant_s, impedance] = softness(part.compliance_m_n, arm.finger_per_kg + 1.0 / board_kg);

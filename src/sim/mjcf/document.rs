@@ -51,7 +51,7 @@ pub fn mjcf(checked: &CheckedPlan<'_>, conditions: &Conditions, limits: &Limits)
     let stiffness_scale = conditions.uncertainty.contact_stiffness_scale;
     let world = new_world(conditions.settings.timestep_s, stiffness_scale);
     let softness_s2 = contact_softness_s2(&world);
-    let arms = checked.arms().iter().zip(feed_forward(checked, conditions.friction));
+    let arms = checked.arms().iter().enumerate().zip(feed_forward(checked, conditions));
     let exported = Exported {
         arms: arms.map(|(arm, fed)| ExportedArm::new(checked, arm, fed, conditions, softness_s2)).collect(),
         tool: ToolLoad::new(checked, conditions)?,
@@ -68,7 +68,7 @@ pub fn mjcf(checked: &CheckedPlan<'_>, conditions: &Conditions, limits: &Limits)
 
 fn document(xml: &mut Xml, exported: &Exported<'_>) -> io::Result<()> {
     let Exported { robot, plan, conditions, limits, arms, tool } = exported;
-    let object = &plan.object;
+    let object = &conditions.uncertainty.board(&plan.object);
     let root = xml.create_element("mujoco").with_attribute(("model", plan.name.as_str()));
     root.write_inner_content(|xml| {
         empty(xml, "compiler", &[("angle", "radian".into()), ("autolimits", "false".into())])?;
@@ -87,9 +87,9 @@ fn document(xml: &mut Xml, exported: &Exported<'_>) -> io::Result<()> {
             for arm in arms {
                 children(xml, &drawn, arm, inertia, None, &mut positions)?;
             }
-            board(xml, object, arms, &plan.operation.x_ot.translation.vector)
+            board(xml, object, arms, &tool.at(0).1.p_ot_m)
         })?;
-        contact_pairs(xml, arms, object.mass_kg, conditions.real_friction())?;
+        contact_pairs(xml, arms, object.mass_kg)?;
         couplings(xml, robot, arms)?;
         actuators(xml, robot, arms, conditions)?;
         positions.extend(pose_numbers(&object.x_wo));

@@ -33,6 +33,8 @@ pub(super) struct ExportedArm<'a> {
     pub finger_m: [f64; 2],
     /// The force that closes each finger, N.
     pub grip_force_n: f64,
+    /// Coulomb coefficient of its pads.
+    pub friction: f64,
     /// The load on its pads.
     pub loading: PadLoading,
     /// What of the board its pads touch.
@@ -47,23 +49,25 @@ impl<'a> ExportedArm<'a> {
     /// An arm of a checked plan; `softness_s2` is that of its pads' contacts.
     pub fn new(
         checked: &CheckedPlan<'a>,
-        checked_arm: &CheckedArm<'a>,
+        (number, checked_arm): (usize, &CheckedArm<'a>),
         feed_forward: FeedForward,
         conditions: &Conditions,
         softness_s2: f64,
     ) -> Self {
-        let (robot, object) = (checked.robot(), &checked.plan().object);
+        let (robot, of) = (checked.robot(), &conditions.uncertainty);
+        let object = &of.board(&checked.plan().object);
         let &CheckedArm { index, hold, .. } = checked_arm;
         let arm = &robot.arms[index];
         let gap_m = object.size_m[2];
         let finger_m = arm.gripper.finger_positions_m(gap_m);
-        let grip_force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale;
+        let grip_force_n = hold.grip_force_n * of.grip_force_scale_of(number);
         let layer = PadLayer::of(robot, checked_arm, object, conditions);
         let bodies = ArmBodies::new(robot, arm, layer.as_ref().map(|layer| &layer.x_gd), gap_m);
         let loading =
             PadLoading::new(&GraspingHand { arm, bodies: &bodies, x_og: hold.x_og }, object, grip_force_n, softness_s2);
         Self {
             feed_forward,
+            friction: conditions.friction_of(number),
             finger_per_kg: inverse_mass_per_kg(robot, index, &bodies, drive_inertia_kg(object)),
             pad_springs: layer.and_then(|layer| layer.springs(robot, arm, &bodies, finger_m)),
             arm,

@@ -104,7 +104,7 @@ impl ConeProgram {
         Self { p: CscMatrix::zeros((q.len(), q.len())), q, a, b, layout, load_scale }
     }
 
-    /// Minimises the energy `1/2 x'Px` of the hands at a given lambda.
+    /// Minimises the energy `1/2 x'Px + q'x` of the hands at a given lambda.
     pub fn equilibrium(model: &ContactModel, energies: &[HandEnergy], lambda: f64) -> Self {
         let layout = Layout::new(model, ProgramKind::Equilibrium);
         let mut p = Columns::default();
@@ -120,7 +120,10 @@ impl ConeProgram {
             }
         }
         let a = hand_columns(model, &layout).into_matrix(layout.rows());
-        let q = vec![0.0; layout.variables()];
+        let mut q = vec![0.0; layout.variables()];
+        for (hand, energy) in layout.hands().iter().zip(energies) {
+            q[hand.wrench_variables..hand.wrench_variables + 6].copy_from_slice(energy.shift.as_slice());
+        }
         let b = limits(model, &layout, lambda);
         Self { p: p.into_matrix(layout.variables()), q, a, b, layout, load_scale: 1.0 }
     }

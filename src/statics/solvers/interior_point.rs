@@ -54,6 +54,8 @@ const BOUNDARY_SHARE: f64 = 0.99;
 struct HandProgram {
     /// Second derivatives of the energy.
     energy: SMatrix<f64, 12, 12>,
+    /// The energy's first derivative at zero.
+    shift: Variables,
     /// Its columns of the balance rows and of its grip's row, transposed.
     rows: HandRows,
     friction: [f64; 2],
@@ -115,6 +117,7 @@ fn hand_program(hand: &HandModel, pair: &PadPair, energy: &HandEnergy) -> HandPr
     rows[(8, 6)] = 1.0;
     HandProgram {
         energy: about_grasp.tr_mul(&(energy.arm * about_grasp)) + SMatrix::from_diagonal_element(energy.pads),
+        shift: about_grasp.tr_mul(&energy.shift),
         rows,
         friction: pair.pads.each_ref().map(|pad| pad.friction),
     }
@@ -284,7 +287,7 @@ fn residuals(program: &EquilibriumProgram, hands: &[HandPoint], y: &Rows) -> Res
     let mut primal = -program.rhs;
     let dual = program.hands.iter().zip(hands).enumerate().map(|(number, (hand, point))| {
         add_own(&mut primal, number, &hand.rows.tr_mul(&point.x));
-        hand.energy * point.x + hand.rows * own(y, number) - joined_gradient(&point.z, &hand.friction)
+        hand.energy * point.x + hand.shift + hand.rows * own(y, number) - joined_gradient(&point.z, &hand.friction)
     });
     let dual = dual.collect();
     Residuals { dual, primal }
