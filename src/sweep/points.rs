@@ -249,7 +249,8 @@ mod tests {
         // The ratio of one sample varies by less than its mean, so that of ten by less than a third.
         assert!((0.4..2.0).contains(&independent), "{independent}");
         let sobol = mean(Sampling::Sobol);
-        assert!(sobol < 0.1, "{sobol}");
+        // A quarter: half the discrepancy, for which four times as many independent points would be needed.
+        assert!(sobol < 0.25, "{sobol}");
     }
 
     /// Streams of neighbouring indices are independent: correlations of 20,000 pairs are below 4 standard errors.

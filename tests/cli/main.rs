@@ -23,3 +23,4 @@ mod reproduce;
 mod robots;
 mod scenarios;
 mod schemas;
+mod sweep_sections;
