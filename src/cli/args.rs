@@ -8,6 +8,7 @@ use super::{
     cache::{CacheArgs, CacheCommand},
     help, versions,
 };
+use crate::sweep::{info::Shard, screen::Screen};
 use crate::model::{
     frames::{Pose, PoseRecord, RpyRecord},
     scenario::{Budget, PlannerKind, PlannerSettings},
@@ -45,6 +46,10 @@ pub enum Command {
     Reproduce(ReproduceArgs),
     /// Print the JSON Schema of a file format
     Schema(SchemaArgs),
+    /// Simulate a plan many times with parameters drawn at random: how likely does it hold?
+    Sweep(SweepArgs),
+    /// Join the parts of a sweep into the sweep
+    Merge(MergeArgs),
     /// Find the load at which a plan fails in simulation, and compare it with the predictions
     Margin(MarginArgs),
     /// Write a plan's scene for another simulator
@@ -279,6 +284,66 @@ pub struct SimulateArgs {
     /// Reports and recordings.
     #[command(flatten)]
     pub report: ReportArgs,
+}
+
+/// `benchdog sweep`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::SWEEP)]
+pub struct SweepArgs {
+    /// Scenario file (.toml) or plan file (.json)
+    #[arg(value_name = "SCENARIO|PLAN")]
+    pub input: PathBuf,
+    /// Of a plan: scenario that applies instead of the one in the plan
+    #[arg(long, value_name = "FILE")]
+    pub scenario: Option<PathBuf>,
+    /// Number of runs; overrides the scenario's
+    #[arg(long, value_name = "N")]
+    pub runs: Option<NonZero<u64>>,
+    /// Seed of the draws; overrides the scenario's
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// End once the interval of the probability is at most this wide
+    #[arg(long, value_name = "WIDTH", conflicts_with = "shard")]
+    pub until: Option<f64>,
+    /// Simulate every run, also those that the statics would decide
+    #[arg(long)]
+    pub all: bool,
+    /// Share of the runs that is simulated as a check though the statics would decide them
+    #[arg(long, value_name = "SHARE", default_value_t = Screen::AUDIT_SHARE, conflicts_with = "all")]
+    pub audit: f64,
+    /// Do only part M of N of the runs, for `benchdog merge`
+    #[arg(long, value_name = "M/N")]
+    pub shard: Option<Shard>,
+    /// Number of the worst runs that are recorded
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub worst: usize,
+    /// Number of threads; by default one per core. The results do not depend on it
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<NonZero<usize>>,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+    /// Folder of the sweep
+    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
+    pub out: PathBuf,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
+}
+
+/// `benchdog merge`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::MERGE)]
+pub struct MergeArgs {
+    /// Folders of all parts of a sweep
+    #[arg(required = true, value_name = "DIR")]
+    pub parts: Vec<PathBuf>,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+    /// Folder for the sweep
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 /// `benchdog import`.

@@ -73,6 +73,27 @@ circle.csv lists the comfort at 16 points for the three strategies. The plans ar
 hold-16.json, sequence-1.json to sequence-16.json and separate-1.json to separate-16.json.
 motion.csv is the sequence's path of the arms' joints and the board from point to point.";
 
+/// `benchdog sweep --help`.
+pub const SWEEP: &str = "\
+Examples:
+  benchdog sweep scenarios/quickstart.toml --runs 1000      as [sweep] of the scenario says, or as
+                                                            preset = "workshop"
+  benchdog sweep plan.json --until 0.02         until the interval is 0.02 wide
+  benchdog sweep plan.json --shard 2/7 --out part-2      one part of seven, for another machine
+  benchdog merge part-* --out sweep             the same files as one sweep of all runs
+
+Writes runs.csv, runs.arrow, plan.json, report.html, junit.xml, recordings/ of the worst runs and, last, sweep.json
+into --out. The same command goes on where an interrupted one ended, and with more --runs adds the missing ones.
+The exit code is 1 if [expect] states a probability and the interval's lower end is below it.";
+
+/// `benchdog merge --help`.
+pub const MERGE: &str = "\
+Example:
+  benchdog merge part-1 part-2 part-3 --out sweep
+
+Parts that do not belong together (another program, plan, scenario, seed or number of parts), that are missing or not
+finished are refused with exit code 2, and nothing is written.";
+
 /// `benchdog simulate --help`.
 pub const SIMULATE: &str = "\
 Examples:

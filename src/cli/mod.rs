@@ -18,6 +18,7 @@ mod inputs;
 mod inspect;
 mod interrupt;
 mod margin;
+mod merge;
 mod output;
 mod pipeline;
 mod plan;
@@ -37,6 +38,7 @@ mod run;
 mod schema;
 mod select;
 mod simulate;
+mod sweep;
 mod threads;
 mod versions;
 #[cfg(feature = "recording")]
@@ -70,6 +72,8 @@ pub fn main() -> ExitCode {
         Command::Curve(args) => curve::curve(args),
         Command::Reproduce(args) => reproduce::reproduce(args),
         Command::Schema(args) => schema::schema(args),
+        Command::Sweep(args) => sweep::sweep(args),
+        Command::Merge(args) => merge::merge(args),
         Command::Margin(args) => margin::margin(args),
         Command::Export(args) => export::export(args),
         Command::Import(args) => import::import(args),

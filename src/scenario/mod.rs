@@ -29,6 +29,7 @@ use plan_file::ReadPlan;
 pub use plan_file::read_plan;
 pub use replan_request::{ReplanRequest, read_replan_request};
 pub use robot_file::robot_parameters;
+pub use sweep_section::usual_sweep;
 
 use crate::{
     model::{plan::Plan, scenario::Scenario},

@@ -205,6 +205,15 @@ pub fn sweep(
     })
 }
 
+/// The sweep of a scenario without one: all variables of the preset `workshop`.
+///
+/// # Errors
+/// If the preset does not fit the scenario.
+pub fn usual_sweep(scenario: &Scenario, robot: &Robot) -> Result<Sweep, InputError> {
+    let section = SweepSection { preset: Some(Preset::Workshop), ..SweepSection::default() };
+    sweep(&Checker::toml(Path::new("workshop"), ""), &section, scenario, robot, Path::new(""))
+}
+
 /// The variables of the preset `workshop`.
 fn workshop(scenario: &Scenario) -> Result<Vec<Variable>, InputError> {
     let section: SweepSection = toml::from_str(WORKSHOP).expect("the built-in preset is valid");

@@ -1,7 +1,8 @@
 //! The deviations of each run of a sweep (`docs/method.md#102-draws`).
 
 use nalgebra::DMatrix;
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{
     distribution::{Quantiles, VariableFlaw, standard_normal, standard_probability},
@@ -31,7 +32,8 @@ impl ArmJoints {
 }
 
 /// One drawn number of each run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Dimension {
     /// The key of the variable, with what the number belongs to: an arm, an axis, a joint from 1; such as
     /// `joint_offset_deg.left.3`.
@@ -39,7 +41,7 @@ pub struct Dimension {
     /// The quantity.
     pub quantity: Quantity,
     /// The unit of the values.
-    pub unit: &'static str,
+    pub unit: String,
 }
 
 /// What is drawn for one run.
@@ -113,7 +115,7 @@ impl Draws {
             dimensions.extend(parts.into_iter().map(|part| Dimension {
                 name: format!("{}{part}", variable.name()),
                 quantity: variable.quantity,
-                unit: variable.unit(),
+                unit: variable.unit().into(),
             }));
         }
         if sweep.sampling == Sampling::Sobol && dimensions.len() > Points::MOST_DIMENSIONS {

@@ -4,6 +4,7 @@
 
 pub mod distribution;
 pub mod draw;
+pub mod info;
 pub mod points;
 pub mod record;
 pub mod screen;
