@@ -118,7 +118,10 @@ fn task_in_words(scenario: &Scenario) -> String {
 }
 
 /// A robot without names of files and without what is only seen. A field that is new must be written or left out here.
-fn write_robot(text: &mut dyn fmt::Write, robot: &Robot) -> fmt::Result {
+///
+/// # Errors
+/// Those of `text`.
+pub fn write_robot(text: &mut dyn fmt::Write, robot: &Robot) -> fmt::Result {
     let Robot {
         description: _,
         links,

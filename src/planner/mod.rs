@@ -48,7 +48,7 @@ mod warm_starts;
 mod watch;
 
 pub use front::{Front, FrontPoint};
-pub use map_store::{MapKind, MapLabel, MapSource, MapStore};
+pub use map_store::{MapKind, MapLabel, MapSource, MapStore, write_robot};
 pub use outcome::{EmptyLibrary, Infeasible, MOST_FRICTION, NearMiss, Outcome, PlanError, Remedy, UnnaturalHolds};
 pub use place_board::{BOARD_DRAWS, PlacedBoard, place_board};
 pub use planner::{Planner, Search};

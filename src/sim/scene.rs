@@ -79,14 +79,15 @@ impl SimScene {
             arms.push(SimArm::new(&mut world, checked.robot(), (number, arm), feed_forward, on, conditions)?);
         }
         let energy_j = energy_j(&world, &arms, board);
-        let p_ot_m = plan.operation.x_ot.translation.vector;
+        let operation = conditions.uncertainty.operation(&plan.operation);
+        let p_ot_m = operation.x_ot.translation.vector;
         Ok(Self {
             balance: Balance::new(&world, board, energy_j),
             world,
             arms,
             boards,
             board,
-            wrench_o: plan.operation.wrench_o,
+            wrench_o: operation.wrench_o,
             p_ot_m,
             frame: conditions.load.frame,
             x_wo_planned: plan.object.x_wo,

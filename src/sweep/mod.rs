@@ -5,6 +5,9 @@
 pub mod distribution;
 pub mod draw;
 pub mod points;
+pub mod record;
+pub mod screen;
+pub mod table;
 
 pub use draw::{ArmJoints, Dimension, Drawn, Draws};
 

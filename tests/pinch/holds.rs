@@ -167,7 +167,16 @@ fn two_hundred_random_scenarios_end_with_a_judgement() {
                 grip_force_scale: draw(0.1, 2.0),
                 contact_stiffness_scale: 10.0_f64.powf(draw(-3.0, 0.24)),
                 joint_stiffness_scale: 10.0_f64.powf(draw(-2.0, 2.0)),
-                ..Uncertainty::default()
+                friction_scales: vec![draw(0.0, 2.0), draw(0.0, 2.0)],
+                grip_force_scales: vec![draw(0.1, 2.0), draw(0.1, 2.0)],
+                board_mass_scale: 10.0_f64.powf(draw(-0.5, 0.5)),
+                board_thickness_mm: draw(-5.0, 2.0),
+                force_scale: draw(0.0, 1.5),
+                tool_tilt_deg: [draw(-20.0, 20.0), draw(-20.0, 20.0)],
+                tool_offset_mm: [draw(-20.0, 20.0), draw(-20.0, 20.0)],
+                person_offset_mm: [draw(-500.0, 500.0), draw(-500.0, 500.0)],
+                joint_offset_deg: (0..2).map(|_| (0..7).map(|_| draw(-0.2, 0.2)).collect()).collect(),
+                ramp_scale: draw(0.1, 1.0),
             },
             ..Conditions::new(FRICTION, settings)
         };

@@ -8,6 +8,7 @@ mod common;
 
 mod baxter;
 mod bench;
+mod deviations;
 mod elastic_pads;
 mod holds;
 mod loads;

@@ -57,7 +57,7 @@ fn distance_m(robot: &Robot, plan: &Plan, x_m: f64) -> f64 {
 }
 
 /// The plan with a person at this distance from robot and board.
-fn with_person_at(robot: &Robot, plan: &Plan, wanted_m: f64) -> Plan {
+pub fn with_person_at(robot: &Robot, plan: &Plan, wanted_m: f64) -> Plan {
     // The distance decreases monotonically: bisection.
     let (mut near_m, mut far_m) = (0.6, 2.0);
     for _ in 0..50 {

@@ -46,6 +46,50 @@ fn no_limits() -> Limits {
 /// less along one. With moments that levers raise, below a thousandth.
 const PAD_SHARE: f64 = 1e-3;
 
+/// Without slip `C_i w_i + Ad_i d = t_i` for each hand and the wrenches balance the object: the closed form, the interior point
+/// and clarabel.
+#[test]
+fn offsets_of_the_joints_strain_the_closed_chain() {
+    for seed in 0..20 {
+        let mut hold = elastic_hold(seed);
+        for (number, hand) in hold.hands.iter_mut().enumerate() {
+            let side = if number == 0 { 1.0 } else { -0.5 };
+            hand.offset.linear = Vector3::new(1e-3, -2e-3, 1.5e-3) * side;
+            hand.offset.angular = Vector3::new(-2e-3, 1e-3, 3e-3) * side;
+        }
+        for solver in [EquilibriumSolver::InteriorPoint, EquilibriumSolver::Clarabel] {
+            let found = StabilityWorkspace::new().equilibrium(&hold, 1.0, solver).unwrap();
+            let EquilibriumOutcome::Found(found) = found else { panic!("seed {seed}: {found:?}") };
+            let mut total = hold.weight + hold.load;
+            for (hand, wrench) in hold.hands.iter().zip(&found.hand_wrenches) {
+                let wrench = hand.wrench_about_grasp_point(wrench);
+                total = total + wrench.about(&hand.grasp_point_o);
+                let moved = hand.compliance() * wrench.to_vector();
+                let board = found.board.at(&hand.grasp_point_o);
+                let off_m = (board.linear + moved.fixed_rows::<3>(0) - hand.offset.linear).norm();
+                let off_rad = (board.angular + moved.fixed_rows::<3>(3) - hand.offset.angular).norm();
+                // The pads' own compliance, see PAD_SHARE: of displacements of 2 mm and 4 mrad.
+                assert!(
+                    off_m < 2e-3 * PAD_SHARE && off_rad < 1e-2 * PAD_SHARE,
+                    "{seed} {solver:?}: {off_m:e} m, {off_rad:e}"
+                );
+            }
+            assert!(total.to_vector().norm() < 1e-5, "{seed} {solver:?}: {total:?}");
+        }
+        // The same motion of all hands is a motion of the board, and strains nothing.
+        let unstrained = response(&hold, 0.0).equilibrium;
+        for hand in &mut hold.hands {
+            let carried = benchdog::statics::Twist { linear: Vector3::x() * 2e-3, angular: Vector3::z() * 1e-3 };
+            let at_hand = carried.at(&hand.grasp_point_o);
+            hand.offset.linear += at_hand.linear;
+            hand.offset.angular += at_hand.angular;
+        }
+        for (one, other) in unstrained.joint_torque_nm.iter().zip(&response(&hold, 0.0).equilibrium.joint_torque_nm) {
+            assert!((one - other).amax() < 1e-6 * (1.0 + one.amax()), "{seed}");
+        }
+    }
+}
+
 #[test]
 fn without_slip_the_board_moves_as_if_welded() {
     for seed in 0..20 {

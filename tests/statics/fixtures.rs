@@ -15,7 +15,7 @@ use benchdog::{
     robot::{Chain, InverseKinematics, Robot},
     statics::{
         ContactModel, ContactModelError, HandModel, Hold, LoadFactor, LoadFactorOutcome, PadModel, PadPair,
-        StabilityWorkspace,
+        StabilityWorkspace, Twist,
     },
 };
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6xX, Rotation3, UnitQuaternion, Vector3};

@@ -1,0 +1,112 @@
+//! What the runs of a sweep share, and a single run.
+
+use crate::{
+    check::CheckedPlan,
+    cli::{exit::CliError, pipeline},
+    judge::{Judgement, failing_load, judge},
+    model::{
+        load::ForceProfile,
+        scenario::Scenario,
+        stop::Stop,
+        sweep::Sweep,
+        verdict::{CheckKind, VerdictKind},
+    },
+    sim::{self, Conditions},
+    statics::{LoadCases, ResponseOutcome, StabilityWorkspace},
+    sweep::{
+        Draws,
+        record::{Decided, MeasuredRun, PredictedRun, RunRecord},
+        screen::Screen,
+    },
+};
+
+/// A plan whose runs are drawn, and how they are decided.
+pub struct Study<'a> {
+    /// The scenario; its `uncertainty` is that of the run without drawn deviations.
+    pub scenario: &'a Scenario,
+    /// The plan.
+    pub checked: &'a CheckedPlan<'a>,
+    /// What is drawn for each run.
+    pub draws: &'a Draws,
+    /// What the statics decide; `None` if every run is simulated.
+    pub screen: Option<Screen>,
+}
+
+impl Study<'_> {
+    /// The scenario of a run: its deviations are those of the scenario and those drawn.
+    pub fn scenario_of(&self, index: u64) -> Scenario {
+        let drawn = self.draws.draw(index).uncertainty;
+        Scenario { uncertainty: self.scenario.uncertainty.and(&drawn), ..self.scenario.clone() }
+    }
+
+    /// One run: predicted, and simulated unless the prediction decides it.
+    ///
+    /// # Errors
+    /// If the simulation cannot be set up, and after a stop.
+    pub fn run(&self, index: u64, stop: &dyn Stop) -> Result<RunRecord, CliError> {
+        let values = self.draws.draw(index).values;
+        let scenario = self.scenario_of(index);
+        let predicted = predicted(self.checked, &scenario);
+        let screened = self.screen.zip(predicted).is_some_and(|(screen, run)| screen.holds(run.load_factor));
+        let audited = self.screen.is_some_and(|screen| screen.is_audited(index));
+        let record = |decided, verdict, measured| RunRecord { index, values, predicted, decided, verdict, measured };
+        if screened && !audited {
+            return Ok(record(Decided::Predicted, VerdictKind::Holds, None));
+        }
+        let (_, judgement) = pipeline::simulated_and_judged(self.checked, &scenario, stop)?;
+        let decided = if screened { Decided::Audited } else { Decided::Simulated };
+        Ok(record(decided, judgement.verdict, Some(measured(&judgement))))
+    }
+}
+
+/// What the statics predict for a plan under the deviations of a scenario; `None` without a prediction.
+fn predicted(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Option<PredictedRun> {
+    let cases = LoadCases::under(checked, scenario.grip.friction, &scenario.load, &scenario.uncertainty).ok()?;
+    let mut workspace = StabilityWorkspace::new();
+    let (case, found) = workspace.least_compliant_load_factor(&cases, &scenario.limits).ok()?;
+    let deflection_mm = match workspace.response(&cases.into_case(case), 1.0) {
+        Ok(ResponseOutcome::Found(response)) => response.deflection_mm(),
+        _ => f64::INFINITY,
+    };
+    Some(PredictedRun { load_factor: found.load_factor, deflection_mm })
+}
+
+fn measured(judgement: &Judgement) -> MeasuredRun {
+    let value = |kind| judgement.checks.iter().find(|check| check.name == kind).map_or(0.0, |check| check.value);
+    let failure = judgement.first_failure.as_ref();
+    MeasuredRun {
+        slip_mm: value(CheckKind::Slip),
+        slip_deg: value(CheckKind::SlipRotation),
+        deflection_mm: value(CheckKind::Deflection),
+        torque_ratio: value(CheckKind::TorqueRatio),
+        failed_at: failure.map(|failure| failure.load_factor),
+        first_check: failure.map(|failure| failure.check),
+    }
+}
+
+/// The screen of a plan that is expected to hold a load that grows and stays: its predictions are corrected by the simulated
+/// failing load without drawn deviations. `None` where a prediction does not tell how the simulation ends.
+///
+/// # Errors
+/// If the simulation cannot be set up, and after a stop.
+pub fn screen(
+    checked: &CheckedPlan<'_>,
+    scenario: &Scenario,
+    sweep: &Sweep,
+    audit_share: f64,
+    stop: &dyn Stop,
+) -> Result<Option<Screen>, CliError> {
+    let is_ramp = scenario.load.profile == ForceProfile::Ramp;
+    if !is_ramp || scenario.expect.verdict != VerdictKind::Holds {
+        return Ok(None);
+    }
+    let Some(PredictedRun { load_factor, .. }) = predicted(checked, scenario) else { return Ok(None) };
+    let judged = |factor: f64| {
+        let conditions = Conditions::of(scenario).scaled(factor);
+        let trace = sim::simulate_until(checked, &conditions, stop).map_err(CliError::Simulation)?;
+        Ok::<_, CliError>(judge(&trace, &scenario.limits))
+    };
+    let simulated = failing_load(load_factor, judged)?;
+    let ratio = simulated.holds_at / load_factor;
+    Ok((ratio.is_finite() && ratio > 0.0).then_some(Screen { ratio, audit_share, seed: sweep.seed }))
+}
