@@ -282,3 +282,26 @@ fn a_plan_carries_its_sweep() {
     refused("scenario.sweep.variables[1]", &|sweep| sweep.variables[1].quantity = Quantity::Friction);
     refused("scenario.sweep.runs", &|sweep| sweep.runs = 0);
 }
+
+/// The preset fits every robot: one whose grippers are measured has no friction, but a factor of their limits.
+#[test]
+fn measured_grippers_have_no_friction() {
+    let measured = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/robots/dual-ur5-measured.toml");
+    let of = |robot: &str, sections: &str| {
+        let text = SCENARIO.split("[grip]").next().unwrap();
+        let folder = folder(&[("one.toml", &format!("{text}[robot]\ndescription = \"{robot}\"\n{sections}"))]);
+        load(&folder.path().join("one.toml")).map(|loaded| loaded.scenario.sweep.unwrap().variables)
+    };
+    let preset = "[sweep]\npreset = \"workshop\"\n";
+    for robot in ["baxter", "dual-panda", "dual-ur5"] {
+        assert_eq!(of(robot, preset).unwrap().len(), 12);
+    }
+    let measured = measured.to_str().unwrap();
+    let quantities: Vec<_> = of(measured, preset).unwrap().iter().map(|variable| variable.quantity).collect();
+    assert_eq!((quantities.len(), quantities[0]), (11, Quantity::GripForce));
+    for name in ["friction", "friction_factor", "grip_force_n"] {
+        let error = of(measured, &format!("[sweep.{name}]\nkind = \"discrete\"\nvalues = [1.0, 2.0]\n")).unwrap_err();
+        let expected = format!("sweep.{name}: found a value, expected none: it belongs to pads, and every gripper");
+        assert!(error.to_string().contains(&expected), "{error}");
+    }
+}
