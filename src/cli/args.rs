@@ -8,11 +8,11 @@ use super::{
     cache::{CacheArgs, CacheCommand},
     help, versions,
 };
-use crate::sweep::{info::Shard, screen::Screen};
 use crate::model::{
     frames::{Pose, PoseRecord, RpyRecord},
     scenario::{Budget, PlannerKind, PlannerSettings},
 };
+use crate::sweep::{info::Shard, screen::Screen};
 
 /// Plans how a two-armed robot holds a board that a person drills or cuts, and verifies the plan in simulation.
 #[derive(Debug, Parser)]

@@ -77,7 +77,7 @@ motion.csv is the sequence's path of the arms' joints and the board from point t
 pub const SWEEP: &str = "\
 Examples:
   benchdog sweep scenarios/quickstart.toml --runs 1000      as [sweep] of the scenario says, or as
-                                                            preset = "workshop"
+                                                            the preset `workshop`
   benchdog sweep plan.json --until 0.02         until the interval is 0.02 wide
   benchdog sweep plan.json --shard 2/7 --out part-2      one part of seven, for another machine
   benchdog merge part-* --out sweep             the same files as one sweep of all runs

@@ -47,7 +47,7 @@ pub fn merge(args: &MergeArgs) -> Result<Exit, CliError> {
         let path = part.map(|part| SweepFolder::new(part.folder).recording(index));
         Ok(path.and_then(|path| fs::read(path).ok()))
     };
-    folder.write(&info, &records, &parts[0].plan, &recording, &progress, args.format)
+    folder.write(&info, &records, &parts[0].plan, &recording, args.format, &progress)
 }
 
 impl<'a> Part<'a> {
@@ -91,10 +91,15 @@ impl<'a> Part<'a> {
             ("worst", a.recorded.to_string(), b.recorded.to_string()),
         ];
         let known = pairs.into_iter().find(|(_, a, b)| a != b);
-        let rest = || (SweepInfo { shard: None, ..a.clone() } != SweepInfo { shard: None, ..b.clone() }).then_some(
-            ("settings", "other variables, sampling, screen or expectation".to_owned(), "those of the first part".to_owned()),
-        );
-        let plans = || (self.plan != other.plan).then_some((PLAN, "another plan".into(), "that of the first part".into()));
+        let rest = || {
+            (SweepInfo { shard: None, ..a.clone() } != SweepInfo { shard: None, ..b.clone() }).then_some((
+                "settings",
+                "other variables, sampling, screen or expectation".to_owned(),
+                "those of the first part".to_owned(),
+            ))
+        };
+        let plans =
+            || (self.plan != other.plan).then_some((PLAN, "another plan".into(), "that of the first part".into()));
         let (what, expected, found) = known.or_else(rest).or_else(plans)?;
         Some(format!("{what}: found {found}, expected {expected} as in {}", other.folder.display()))
     }
@@ -119,8 +124,10 @@ fn in_order(mut parts: Vec<Part<'_>>) -> Result<Vec<Part<'_>>, CliError> {
         }
     }
     let of = parts[0].shard.of;
-    let missing: Vec<String> =
-        (1..=of).filter(|number| parts.iter().all(|part| part.shard.number != *number)).map(|n| n.to_string()).collect();
+    let missing: Vec<String> = (1..=of)
+        .filter(|number| parts.iter().all(|part| part.shard.number != *number))
+        .map(|n| n.to_string())
+        .collect();
     if missing.is_empty() {
         return Ok(parts);
     }

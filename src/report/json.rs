@@ -32,7 +32,9 @@ pub fn line(value: &impl Serialize) -> String {
     text
 }
 
-pub(super) fn pretty(value: &impl Serialize) -> String {
+/// A value as indented JSON.
+#[must_use]
+pub fn pretty(value: &impl Serialize) -> String {
     // Serialisation fails only for maps whose keys are not strings; there are none.
     let mut text = serde_json::to_string_pretty(value).expect("reports have only string keys");
     text.push('\n');

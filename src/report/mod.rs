@@ -22,6 +22,7 @@ pub mod plans;
 mod plot;
 pub mod posture;
 pub mod summary;
+pub mod sweep;
 #[cfg(test)]
 mod tests;
 

@@ -48,6 +48,18 @@ pub struct SweepInfo {
     pub versions: BTreeMap<String, String>,
 }
 
+impl SweepInfo {
+    /// A text that sweeps have in common whose runs with equal indices are equal: everything but how many runs there are and what
+    /// is made of them.
+    #[must_use]
+    pub fn key(&self) -> String {
+        let Fingerprints { program, inputs } = &self.fingerprints;
+        let own = (&self.sampling, self.seed, &self.screen, &self.variables, &self.dimensions);
+        // A line: `Debug` escapes line ends.
+        format!("{program} {inputs} {own:?}")
+    }
+}
+
 /// What the results of a sweep's runs follow from, as SHA-256 in hexadecimal digits.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

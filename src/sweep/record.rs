@@ -33,6 +33,18 @@ pub enum Decided {
     Predicted,
 }
 
+impl Decided {
+    /// The name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Simulated => "simulated",
+            Self::Audited => "audited",
+            Self::Predicted => "predicted",
+        }
+    }
+}
+
 /// What the statics predict for a run under its deviations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PredictedRun {

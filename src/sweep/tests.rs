@@ -231,7 +231,8 @@ fn absolute_values_become_factors_and_offsets() {
         of(Quantity::Force, 30.0, 15.0),
     ];
     let draws = Draws::new(&sweep(Sampling::Sobol, variables), &arms(&[7, 7])).unwrap();
-    let names: Vec<_> = draws.dimensions().iter().map(|dimension| (dimension.name.as_str(), dimension.unit)).collect();
+    let names: Vec<_> =
+        draws.dimensions().iter().map(|dimension| (dimension.name.as_str(), dimension.unit.as_str())).collect();
     assert_eq!(names, [("friction", "a Coulomb coefficient"), ("board_thickness_mm", "mm"), ("force_n", "N")]);
     let drawn = draws.draw(0);
     assert_eq!(drawn.values, [0.3, 29.0, 30.0]);

@@ -21,12 +21,10 @@ pub fn bytes(header: &[String], records: &[RunRecord]) -> Result<Vec<u8>, CliErr
 
 fn written(header: &[String], records: &[RunRecord]) -> Result<Vec<u8>, ArrowError> {
     let rows: Vec<RunRow> = records.iter().map(RunRow::of).collect();
-    let texts = |of: &dyn Fn(&RunRow) -> Option<String>| -> ArrayRef {
-        Arc::new(rows.iter().map(of).collect::<StringArray>())
-    };
-    let numbers = |of: &dyn Fn(&RunRow) -> Option<f64>| -> ArrayRef {
-        Arc::new(rows.iter().map(of).collect::<Float64Array>())
-    };
+    let texts =
+        |of: &dyn Fn(&RunRow) -> Option<String>| -> ArrayRef { Arc::new(rows.iter().map(of).collect::<StringArray>()) };
+    let numbers =
+        |of: &dyn Fn(&RunRow) -> Option<f64>| -> ArrayRef { Arc::new(rows.iter().map(of).collect::<Float64Array>()) };
     let mut columns: Vec<ArrayRef> = vec![
         Arc::new(UInt64Array::from_iter_values(rows.iter().map(|row| row.run))),
         texts(&|row| Some(row.verdict.name().into())),

@@ -57,8 +57,8 @@ impl SweepFolder {
     }
 
     /// All files that are written to it but recordings.
-    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
-        [RUNS, ARROW, PLAN, REPORT, JUNIT, JOURNAL, SUMMARY].map(|name| self.file(name)).into_iter()
+    pub fn files(&self) -> [PathBuf; 7] {
+        [RUNS, ARROW, PLAN, REPORT, JUNIT, JOURNAL, SUMMARY].map(|name| self.file(name))
     }
 
     /// The recording of a run.

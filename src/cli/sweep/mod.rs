@@ -32,9 +32,9 @@ use crate::{
     scenario::{self, LoadedPlan},
     sweep::{
         ArmJoints, Draws,
+        estimate::Estimate,
         info::{Fingerprints, Shard, SweepInfo},
         record::RunRecord,
-        summary,
         table,
     },
 };
@@ -73,7 +73,8 @@ pub fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
         output::message(&format!("{}: not simulated: {reason}", plan.name));
         return Ok(Exit::NotMet);
     }
-    let draws = Draws::new(&sweep, &ArmJoints::of(&plan)).map_err(|error| CliError::Usage(format!("sweep: {error}")))?;
+    let draws =
+        Draws::new(&sweep, &ArmJoints::of(&plan)).map_err(|error| CliError::Usage(format!("sweep: {error}")))?;
     threads::with_threads(args.jobs, || {
         let screen = match args.all {
             true => None,
@@ -103,7 +104,7 @@ fn swept(
     let indices: Vec<u64> = info.shard.unwrap_or(all).indices(info.runs).collect();
     progress.expect(indices.len());
     progress.does("simulating");
-    let enough = |runs: &[RunRecord]| args.until.is_some_and(|width| summary::width(&info, runs) <= width);
+    let enough = |runs: &[RunRecord]| args.until.is_some_and(|width| Estimate::of(&info.expect, runs).width() <= width);
     let records = runner::run(study, &Extent { indices, enough: &enough }, known, &mut journal, progress)?;
     if progress.is_stopped() {
         progress.finish();
@@ -112,7 +113,7 @@ fn swept(
     progress.does("recording the worst runs");
     let recording = |index: u64| recording_of(study, index, progress);
     let plan = report::json::plan(study.checked.plan());
-    let exit = folder.write(&info, &records, plan.as_bytes(), &recording, progress, args.format)?;
+    let exit = folder.write(&info, &records, plan.as_bytes(), &recording, args.format, progress)?;
     Ok(exit)
 }
 

@@ -42,12 +42,7 @@ impl Journal {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn begin(
-        folder: &Path,
-        fingerprint: &str,
-        header: &[String],
-        known: &[RunRecord],
-    ) -> Result<Self, CliError> {
+    pub fn begin(folder: &Path, fingerprint: &str, header: &[String], known: &[RunRecord]) -> Result<Self, CliError> {
         let path = folder.join(JOURNAL);
         let rows = table::rows(Some(header), known)?;
         crate::report::file::write_whole(&path, &[format!("{fingerprint}\n").as_bytes(), &rows].concat())?;
@@ -103,8 +98,7 @@ pub fn run(
         });
         // After Ctrl-C the runs of this block that were finished are kept.
         let stopped = progress.is_stopped();
-        let new: Vec<_> =
-            new.into_iter().filter(|run| !(stopped && run.is_err())).collect::<Result<_, CliError>>()?;
+        let new: Vec<_> = new.into_iter().filter(|run| !(stopped && run.is_err())).collect::<Result<_, CliError>>()?;
         journal.add(&new)?;
         (0..from_journal.len()).for_each(|_| progress.advances(None));
         let before = records.len();
