@@ -167,7 +167,7 @@ pub struct PlanArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Write the best K plans that differ in an edge, by 50 mm or 15 degrees of the board, or by 30 degrees of a joint
-    #[arg(long, value_name = "K", requires = "output")]
+    #[arg(long, value_name = "K", requires = "output", conflicts_with = "robust")]
     pub top: Option<NonZero<usize>>,
     /// The planner.
     #[command(flatten)]
@@ -201,6 +201,10 @@ pub struct PlannerArgs {
     /// Planner; overrides the scenario's
     #[arg(long, value_enum, value_name = "KIND")]
     pub planner: Option<PlannerChoice>,
+    /// The most comfortable plan that holds with this probability under the deviations of [sweep]; by default that of [expect], or
+    /// 0.99
+    #[arg(long, value_name = "PROBABILITY", num_args = 0..=1, require_equals = true, value_parser = probability)]
+    pub robust: Option<Option<f64>>,
     /// Budget and seed.
     #[command(flatten)]
     pub search: SearchArgs,
@@ -219,6 +223,12 @@ pub struct SearchArgs {
     /// Seed of the planner; overrides the scenario's
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+}
+
+/// A probability from a half to almost one.
+fn probability(text: &str) -> Result<f64, String> {
+    let found = text.parse().ok().filter(|found| (0.5..=0.999).contains(found));
+    found.ok_or_else(|| "expected a number from 0.5 to 0.999".into())
 }
 
 impl PlannerArgs {

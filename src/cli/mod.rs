@@ -34,6 +34,7 @@ mod replan;
 mod reproduce;
 mod robot;
 mod robot_check;
+mod robust;
 mod run;
 mod schema;
 mod select;

@@ -29,7 +29,7 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     inputs::protect(&loaded.inputs, outputs)?;
     match (args.top, &args.output) {
         (Some(wanted), Some(folder)) => top(&loaded, wanted.get(), folder, args.cache, &progress),
-        _ => one(&loaded, args.output.as_deref(), args.cache, &progress),
+        _ => one(&loaded, args.output.as_deref(), Planners::new(args.cache).robust(args.planner.robust), &progress),
     }
 }
 
@@ -49,10 +49,9 @@ pub fn load_for_planning(path: &Path) -> Result<LoadedScenario, CliError> {
 fn one(
     loaded: &LoadedScenario,
     output: Option<&Path>,
-    cache: CacheArgs,
+    planners: Planners,
     progress: &Progress,
 ) -> Result<Exit, CliError> {
-    let planners = Planners::new(cache);
     let outcome = planners.timed_plan(&loaded.scenario, &loaded.robot, progress)?;
     progress.finish();
     match outcome {
@@ -102,6 +101,9 @@ fn result_line(plan: &Plan) -> String {
     }
     if let Some(stability) = &plan.stability {
         line.push_str(&format!(", load factor {:.2}", stability.compliant_load_factor));
+    }
+    if let Some(robust) = plan.planner.and_then(|record| record.robust) {
+        line.push_str(&format!(", holds with probability {:.3} in {} runs", robust.probability, robust.runs));
     }
     line
 }

@@ -11,6 +11,7 @@ use super::{
     cache::{self, CacheArgs},
     exit::CliError,
     progress::Progress,
+    robust,
 };
 use crate::{
     model::{plan::Plan, scenario::Scenario, stop::Stop as _},
@@ -21,6 +22,8 @@ use crate::{
 /// One planner per robot: scenarios with the same robot share its maps.
 #[derive(Default)]
 pub struct Planners {
+    /// Whether plans must hold with a probability, and the probability if it is not that of the scenario.
+    robust: Option<Option<f64>>,
     store: Option<Arc<dyn MapStore>>,
     known: Mutex<Vec<(RobotKey, Arc<Planner>)>>,
     /// Time that the maps of each scenario took to read or make, ms.
@@ -31,6 +34,12 @@ impl Planners {
     /// Planners with a command's store of maps.
     pub fn new(args: CacheArgs) -> Self {
         Self { store: cache::store(args), ..Self::default() }
+    }
+
+    /// The same, as `--robust` says: for plans that hold with a probability.
+    #[must_use]
+    pub fn robust(self, wanted: Option<Option<f64>>) -> Self {
+        Self { robust: wanted, ..self }
     }
 
     /// The planner of a robot.
@@ -76,7 +85,13 @@ impl Planners {
         let map_ms = lock(&self.map_ms).remove(&scenario.name);
         let planner = self.of(robot);
         let start = Instant::now();
-        let outcome = planner.search(scenario).watch(watch).plan()?;
+        let outcome = match self.robust {
+            Some(given) => {
+                let wanted = given.or(scenario.expect.probability).unwrap_or(robust::PROBABILITY);
+                robust::plan(&planner, scenario, wanted, watch)?
+            }
+            None => planner.search(scenario).watch(watch).plan()?,
+        };
         Ok(outcome.map(|mut plan| {
             if let Some(record) = &mut plan.planner {
                 record.wall_ms = Some(start.elapsed().as_secs_f64() * 1e3);

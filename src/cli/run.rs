@@ -38,7 +38,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     progress.keep();
     let runner = Runner {
         args,
-        planners: Planners::new(args.cache),
+        planners: Planners::new(args.cache).robust(args.planner.robust),
         progress,
         failed: AtomicBool::new(false),
         fatal: Mutex::new(None),

@@ -537,4 +537,23 @@ pub struct PlannerRecord {
     pub map_ms: Option<f64>,
     /// Number of candidates that the search evaluated.
     pub evaluations: u64,
+    /// How likely the plan holds, if the planner was asked for a probability.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robust: Option<Robustness>,
+}
+
+/// How likely a plan holds, by a small sweep (docs/method.md#107-robust-plans).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Robustness {
+    /// The estimated probability of holding.
+    pub probability: f64,
+    /// The lower end of its interval.
+    pub low: f64,
+    /// The upper end of its interval.
+    pub high: f64,
+    /// The number of runs.
+    pub runs: u64,
+    /// The load factor that the search required, before the safety factor.
+    pub load_factor: f64,
 }

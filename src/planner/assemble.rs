@@ -59,7 +59,7 @@ pub fn assemble_placed(
         muscles,
         stability: Some(stability),
         clearance,
-        planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations }),
+        planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations, robust: None }),
         scenario: Some(scenario.clone()),
         benchdog: Some(env!("CARGO_PKG_VERSION").into()),
     })

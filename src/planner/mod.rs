@@ -49,7 +49,9 @@ mod watch;
 
 pub use front::{Front, FrontPoint};
 pub use map_store::{MapKind, MapLabel, MapSource, MapStore, write_robot};
-pub use outcome::{EmptyLibrary, Infeasible, MOST_FRICTION, NearMiss, Outcome, PlanError, Remedy, UnnaturalHolds};
+pub use outcome::{
+    EmptyLibrary, Infeasible, MOST_FRICTION, NearMiss, Outcome, PlanError, Remedy, UnnaturalHolds, Unreliable,
+};
 pub use place_board::{BOARD_DRAWS, PlacedBoard, place_board};
 pub use planner::{Planner, Search};
 pub use replan::{Motion, Replanned, Replanning};

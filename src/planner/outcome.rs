@@ -49,6 +49,17 @@ pub struct Infeasible {
     pub nearest: Option<Box<NearMiss>>,
     /// What a person without limits of posture and place could work on; `None` if the scenario has no such limits.
     pub unnatural: Option<UnnaturalHolds>,
+    /// Plans were found, but none that holds with the wanted probability.
+    pub unreliable: Option<Unreliable>,
+}
+
+/// How likely the plans hold that were found, where a probability is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unreliable {
+    /// The largest probability of a plan that was found.
+    pub best: f64,
+    /// The wanted probability.
+    pub wanted: f64,
 }
 
 /// Why no grasp of the board was found, whatever the task.
@@ -216,6 +227,9 @@ impl std::fmt::Display for UnnaturalHolds {
 
 impl std::fmt::Display for Infeasible {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Some(Unreliable { best, wanted }) = self.unreliable {
+            return write!(f, "the best plan holds with probability {best:.3}, expected at least {wanted}");
+        }
         match (&self.library, self.candidates) {
             (Some(library), _) => write!(f, "{library}")?,
             (None, 0) => write!(f, "no candidate was tested")?,

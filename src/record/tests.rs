@@ -429,7 +429,14 @@ fn the_time_that_a_search_took_is_not_recorded() {
     let mut example = example();
     let record = |wall_ms| {
         let kind = crate::model::scenario::PlannerKind::Comfort;
-        Some(crate::model::plan::PlannerRecord { kind, seed: 1, wall_ms, map_ms: wall_ms, evaluations: 7 })
+        Some(crate::model::plan::PlannerRecord {
+            kind,
+            seed: 1,
+            wall_ms,
+            map_ms: wall_ms,
+            evaluations: 7,
+            robust: None,
+        })
     };
     example.plan.planner = record(Some(1234.5));
     let one = encode(&example.input()).unwrap();

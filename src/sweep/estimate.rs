@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     interval::{upper_bound, wilson},
     record::{Decided, RunRecord},
+    screen::Screen,
 };
 use crate::model::scenario::Expectation;
 
@@ -27,8 +28,8 @@ pub struct Estimate {
     pub audited: u64,
     /// Audited runs without the verdict that the statics would have given.
     pub mistakes: u64,
-    /// The largest share of mistakes among screened runs that the audit leaves possible at this confidence; 0 without screened
-    /// runs.
+    /// The largest share of mistakes among screened runs that the interval allows for: [`Screen::MOST_MISTAKES`], or less if the
+    /// audit proves less at this confidence; if the audit found a mistake, what the audit leaves possible. 0 without screened runs.
     pub most_mistakes: f64,
 }
 
@@ -37,7 +38,7 @@ impl Estimate {
     ///
     /// The runs that were not screened count as simulated. Of those screened the share of mistakes is that of the audited ones,
     /// which were chosen at random: an unbiased estimate, however good the prediction is. The interval is Wilson's; its lower end
-    /// is lower by the mistakes that the audit leaves possible.
+    /// is lower by the mistakes that [`Self::most_mistakes`] allows for.
     #[must_use]
     pub fn of(expect: &Expectation, records: &[RunRecord]) -> Self {
         let count = |kind: Decided, met: Option<bool>| {
@@ -53,7 +54,12 @@ impl Estimate {
         let held = seen as f64 + screened as f64 * (1.0 - mistaken);
         let probability = if runs > 0.0 { held / runs } else { 0.0 };
         let confidence = expect.confidence;
-        let most_mistakes = if screened > 0 { upper_bound(mistakes, audited, (1.0 + confidence) / 2.0) } else { 0.0 };
+        let proven = upper_bound(mistakes, audited, (1.0 + confidence) / 2.0);
+        let most_mistakes = match (screened, mistakes) {
+            (0, _) => 0.0,
+            (_, 0) => proven.min(Screen::MOST_MISTAKES),
+            _ => proven,
+        };
         let [low, high] = wilson(probability, runs, confidence);
         let undetected = screened as f64 / runs.max(1.0) * (most_mistakes - mistaken);
         let low = (low - undetected).max(0.0);

@@ -27,6 +27,10 @@ pub struct Screen {
 }
 
 impl Screen {
+    /// The largest share of mistakes among screened runs that was measured, with a margin: see the table of
+    /// docs/method.md#104-screening-and-intervals.
+    pub const MOST_MISTAKES: f64 = 0.002;
+
     /// The share of audited runs of a sweep that does not state it.
     pub const AUDIT_SHARE: f64 = 0.1;
 

@@ -3,7 +3,7 @@
 mod arrow;
 pub mod folder;
 mod runner;
-mod study;
+pub mod study;
 
 use std::{fmt, path::PathBuf};
 

@@ -39,6 +39,11 @@ impl Study<'_> {
         Scenario { uncertainty: self.scenario.uncertainty.and(&drawn), ..self.scenario.clone() }
     }
 
+    /// The predicted load factor of a run; 0 without a prediction.
+    pub fn predicted(&self, index: u64) -> f64 {
+        predicted(self.checked, &self.scenario_of(index)).map_or(0.0, |run| run.load_factor)
+    }
+
     /// One run: predicted, and simulated unless the prediction decides it.
     ///
     /// # Errors

@@ -1,0 +1,172 @@
+//! `--robust`: the most comfortable plan that holds with a probability (docs/method.md#107-robust-plans).
+//!
+//! Comfort falls as more load is required, so the required load factor is raised step by step until a plan is found that holds
+//! often enough. Candidates pass three tests, from the cheapest on: the robust load factor at unfavourable friction, grip force and
+//! load; the predicted load factors of many draws; a small sweep.
+
+use rayon::prelude::*;
+
+use super::{
+    exit::CliError,
+    sweep::study::{self, Study},
+};
+use crate::{
+    check::CheckedPlan,
+    model::{
+        plan::{Plan, Robustness},
+        scenario::{Expectation, Limits, Scenario},
+        sweep::Sweep,
+        verdict::VerdictKind,
+    },
+    planner::{Infeasible, Outcome, Planner, Unreliable, Watch},
+    scenario,
+    statics::{ContactModel, InternalForces, RobustOutcome, StabilityWorkspace, Variation},
+    sweep::{ArmJoints, Draws, estimate::Estimate, record::RunRecord, screen::Screen},
+};
+
+/// The multiples of `limits.load_factor` that are required, one after the other. The steps are the same for all scenarios, so that
+/// scenarios share the planner's maps.
+const STEPS: [f64; 10] = [1.0, 1.1, 1.2, 1.3, 1.45, 1.6, 1.8, 2.0, 2.5, 3.0];
+
+/// The plans that differ which are tried at each step.
+const CANDIDATES: usize = 3;
+
+/// Draws of which the load factor is predicted.
+const PREDICTED: u64 = 400;
+
+/// The fewest runs of the small sweep. So many that a probability of 0.99 leaves two failures.
+const LEAST_RUNS: u64 = 200;
+
+/// Failures that the small sweep has at the wanted probability: its number of runs is this over `1 - probability`.
+const FAILURES: f64 = 2.0;
+
+/// The most runs of the small sweep.
+const MOST_RUNS: u64 = 2000;
+
+/// The probability of holding if neither the command nor the scenario states one.
+pub const PROBABILITY: f64 = 0.99;
+
+/// The most comfortable plan of a scenario that holds with the wanted probability.
+///
+/// # Errors
+/// If the scenario is invalid, and after a stop.
+pub fn plan(planner: &Planner, scenario: &Scenario, wanted: f64, watch: &dyn Watch) -> Result<Outcome<Plan>, CliError> {
+    let sweep = match &scenario.sweep {
+        Some(sweep) => sweep.clone(),
+        None => scenario::usual_sweep(scenario, planner.robot())?,
+    };
+    let mut best = 0.0_f64;
+    let mut step = 0;
+    while let Some(&factor) = STEPS.get(step) {
+        let limits = Limits { load_factor: scenario.limits.load_factor * factor, ..scenario.limits };
+        let plans = match planner.search(&Scenario { limits, ..scenario.clone() }).watch(watch).top(CANDIDATES)? {
+            Outcome::Found(plans) => plans,
+            Outcome::Infeasible(why) if step == 0 => return Ok(Outcome::Infeasible(why)),
+            Outcome::Infeasible(_) => break,
+        };
+        let mut needed = f64::INFINITY;
+        for plan in plans {
+            // The plan answers the scenario that was asked.
+            let plan = Plan { scenario: plan.scenario.map(|_| scenario.clone()), ..plan };
+            match test(&plan, scenario, planner, &sweep, wanted, watch)? {
+                Tested::Robust(found) => {
+                    let robustness = Robustness { load_factor: limits.load_factor, ..found };
+                    return Ok(Outcome::Found(with(plan, robustness)));
+                }
+                Tested::Fails { probability, short_by } => {
+                    needed = needed.min(factor * short_by);
+                    best = best.max(probability);
+                }
+            }
+        }
+        step = next_step(step, needed);
+    }
+    Ok(Outcome::Infeasible(Infeasible { unreliable: Some(Unreliable { best, wanted }), ..Infeasible::default() }))
+}
+
+/// What came of testing a plan.
+enum Tested {
+    /// It holds often enough.
+    Robust(Robustness),
+    /// It does not.
+    Fails {
+        /// The probability of holding, as far as it was found out.
+        probability: f64,
+        /// By how much the required load factor falls short, as a factor.
+        short_by: f64,
+    },
+}
+
+/// Tests a plan: unfavourable corner, predictions, small sweep.
+fn test(
+    plan: &Plan,
+    scenario: &Scenario,
+    planner: &Planner,
+    sweep: &Sweep,
+    wanted: f64,
+    watch: &dyn Watch,
+) -> Result<Tested, CliError> {
+    let checked = CheckedPlan::new(planner.robot(), plan, &scenario.human, &scenario.tool)?;
+    let draws = Draws::new(sweep, &ArmJoints::of(plan)).map_err(|error| CliError::Usage(format!("sweep: {error}")))?;
+    let screen = study::screen(&checked, scenario, sweep, Screen::AUDIT_SHARE, watch)?;
+    let study = Study { scenario, checked: &checked, draws: &draws, screen };
+    let ratio = screen.map_or(1.0, |screen| screen.ratio);
+    let mut load_factors: Vec<f64> =
+        (0..PREDICTED).into_par_iter().map(|index| study.predicted(index) * ratio).collect();
+    load_factors.sort_by(f64::total_cmp);
+    let hold = load_factors.iter().filter(|&&load_factor| load_factor >= 1.0).count() as f64 / PREDICTED as f64;
+    // The load factor that all but the allowed share of the draws exceed.
+    let allowed = load_factors[((1.0 - wanted) * PREDICTED as f64) as usize];
+    let short_by = if allowed > 0.0 { 1.0 / allowed } else { f64::INFINITY };
+    if hold < wanted || !resists_corner(&checked, scenario, &draws, wanted) {
+        return Ok(Tested::Fails { probability: hold, short_by });
+    }
+    let runs = ((FAILURES / (1.0 - wanted)).ceil() as u64).clamp(LEAST_RUNS, MOST_RUNS);
+    let records: Result<Vec<RunRecord>, _> = (0..runs).into_par_iter().map(|index| study.run(index, watch)).collect();
+    let expect = Expectation { confidence: scenario.expect.confidence, ..Expectation::of(VerdictKind::Holds) };
+    let Estimate { probability, low, high, .. } = Estimate::of(&expect, &records?);
+    if probability < wanted {
+        return Ok(Tested::Fails { probability, short_by });
+    }
+    Ok(Tested::Robust(Robustness { probability, low, high, runs, load_factor: scenario.limits.load_factor }))
+}
+
+/// True if some forces resist the load at unfavourable friction, grip force and load at once: each at the quantile that all but the
+/// cube root of the allowed share of the draws exceed. A grasp that does not resist them fails too often for certain, if the three are
+/// independent.
+fn resists_corner(checked: &CheckedPlan<'_>, scenario: &Scenario, draws: &Draws, wanted: f64) -> bool {
+    let Ok(model) = ContactModel::under(checked, scenario.grip.friction, &scenario.uncertainty) else { return false };
+    let drawn: Vec<_> = (0..PREDICTED).map(|index| draws.draw(index).uncertainty).collect();
+    let share = libm::cbrt(1.0 - wanted);
+    let quantile = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[(share * (values.len() - 1) as f64) as usize]
+    };
+    let arms = 0..model.hands.len();
+    let best = |of: &dyn Fn(usize) -> f64| arms.clone().map(of).fold(0.0, f64::max);
+    let friction_ratio = quantile(drawn.iter().map(|of| best(&|arm| of.friction_scale_of(arm))).collect());
+    let grip_force_ratio = quantile(drawn.iter().map(|of| best(&|arm| of.grip_force_scale_of(arm))).collect());
+    let force = -quantile(drawn.iter().map(|of| -of.force_scale).collect());
+    let corner = Variation { load: model.load.scaled(force), friction_ratio, grip_force_ratio };
+    let nominal = Variation { load: model.load, friction_ratio: 1.0, grip_force_ratio: 1.0 };
+    match StabilityWorkspace::new().robust_load_factor(&model, &[nominal, corner], InternalForces::Adapt) {
+        Ok(RobustOutcome::Solved(found)) => found.load_factor >= 1.0,
+        Ok(RobustOutcome::GravityInfeasible { .. }) => false,
+        // Not proven.
+        _ => true,
+    }
+}
+
+/// The plan with the record of its robustness.
+fn with(mut plan: Plan, robustness: Robustness) -> Plan {
+    if let Some(record) = &mut plan.planner {
+        record.robust = Some(robustness);
+    }
+    plan
+}
+
+/// The next step that is tried: the last one that does not require more than `needed`, or else the one after this.
+fn next_step(step: usize, needed: f64) -> usize {
+    let reached = STEPS.iter().rposition(|&factor| factor <= needed).unwrap_or(0);
+    reached.max(step + 1)
+}
