@@ -268,12 +268,12 @@ fn standard_share(z: f64) -> Share {
 }
 
 /// The share of the standard normal distribution below `z`.
-pub(super) fn standard_probability(z: f64) -> f64 {
+pub fn standard_probability(z: f64) -> f64 {
     standard_share(z).below
 }
 
 /// The quantile of the standard normal distribution at a probability above 0 and below 1.
-pub(super) fn standard_normal(probability: f64) -> f64 {
+pub fn standard_normal(probability: f64) -> f64 {
     standard_quantile(Share { below: probability, above: 1.0 - probability })
 }
 

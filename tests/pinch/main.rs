@@ -18,6 +18,7 @@ mod person;
 mod plates;
 mod prediction;
 mod steps;
+mod sweep;
 
 use std::{ops::AddAssign, thread};
 
