@@ -14,7 +14,8 @@ use super::{
 use crate::model::{
     frames::Pose,
     operation::Operation,
-    scenario::{Limits, PlannerSettings, Scenario},
+    scenario::{Expectation, Limits, PlannerSettings, Scenario, SimulationSettings},
+    uncertainty::Uncertainty,
     wrench::Wrench,
 };
 
@@ -46,6 +47,11 @@ impl TaskFamily {
             planner: PlannerSettings { evaluations: None, ..scenario.planner.clone() },
             // Warm starts are no finished plans, whose scores are limited.
             limits: Limits { rula: None, rula_arm: None, reba: None, ..scenario.limits },
+            // What a plan does not depend on.
+            simulation: SimulationSettings::default(),
+            uncertainty: Uncertainty::default(),
+            sweep: None,
+            expect: Expectation::default(),
             ..scenario.clone()
         })
     }

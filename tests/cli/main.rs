@@ -21,6 +21,7 @@ mod replan;
 mod reports;
 mod reproduce;
 mod robots;
+mod robust;
 mod scenarios;
 mod schemas;
 mod sweep_sections;

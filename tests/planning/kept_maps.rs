@@ -91,6 +91,23 @@ fn plans_on_kept_maps_are_those_on_fresh_ones() {
 }
 
 /// A normalised objective has the warm starts of three families.
+/// What is simulated, and what is expected of it, is no part of a plan: the maps are found again.
+#[test]
+fn another_simulation_needs_no_maps_of_its_own() {
+    let store = Arc::new(Memory::default());
+    let planned = |scenario: &Scenario| plan(&Planner::with_store(baxter(), store.clone()), scenario);
+    let scenario = warm();
+    planned(&scenario);
+    let mut other = scenario.clone();
+    other.uncertainty.friction_scale = 0.9;
+    other.simulation.hold_s *= 2.0;
+    other.expect.probability = Some(0.9);
+    other.sweep = Some(benchdog::scenario::usual_sweep(&scenario, baxter()).unwrap());
+    let before = store.maps.lock().unwrap().len();
+    planned(&other);
+    assert_eq!((store.maps.lock().unwrap().len(), store.found.load(Ordering::SeqCst)), (before, 1));
+}
+
 #[test]
 fn a_normalised_objective_has_the_same_optima_on_kept_maps() {
     let mut scenario = warm();
