@@ -1,8 +1,8 @@
-//! The main path for one scenario: plan, simulate, judge.
+//! The main path for one plan: check, simulate, judge.
 
 use std::collections::BTreeMap;
 
-use super::{exit::CliError, planners::Planners, progress::Progress, versions::versions};
+use super::{exit::CliError, progress::Progress, versions::versions};
 use crate::{
     check::CheckedPlan,
     judge::{Judgement, confirmed, judge},
@@ -16,9 +16,8 @@ use crate::{
         trace::Trace,
         verdict::{Verdict, VerdictKind},
     },
-    planner::Outcome,
     robot::Robot,
-    scenario::{LoadedScenario, material::bending_properties},
+    scenario::material::bending_properties,
     sim::{self, Conditions, SimError},
     statics::{ContactModel, LoadFactorOutcome, StabilityWorkspace, bending_note},
 };
@@ -34,25 +33,6 @@ pub struct Run {
     pub posture: Option<PostureFigures>,
     /// Trace and judgement; `None` if nothing was simulated.
     pub simulated: Option<(Trace, Judgement)>,
-}
-
-/// Plans a scenario unless it names a plan, simulates the plan and judges it.
-///
-/// # Errors
-/// If the person or the tool is invalid, or the simulation cannot be set up from the plan; and after a stop.
-pub fn run_scenario(loaded: &LoadedScenario, planners: &Planners, progress: &Progress) -> Result<Run, CliError> {
-    let scenario = &loaded.scenario;
-    let plan = match &loaded.plan {
-        Some(plan) => plan.clone(),
-        None => match planners.timed_plan(scenario, &loaded.robot, progress)? {
-            Outcome::Found(plan) => plan,
-            Outcome::Infeasible(why) => {
-                let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
-                return Ok(Run { verdict, posture: None, plan: None, simulated: None });
-            }
-        },
-    };
-    run_plan(scenario, &loaded.robot, plan, &loaded.filled_in, progress)
 }
 
 /// Simulates and judges a plan with a scenario's friction, phases, limits and expectation. The notes of the verdict begin with
@@ -160,7 +140,7 @@ fn push_note(push: &LateralPush, load: &Load) -> String {
 }
 
 /// The verdict on a scenario for which nothing was simulated.
-fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
+pub fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
     Verdict {
         format: FORMAT,
         name: scenario.name.clone(),

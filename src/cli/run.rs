@@ -12,13 +12,16 @@ use super::{
     args::RunArgs,
     exit::{CliError, Exit},
     finish::{self, FinishedRun, RunSummary},
-    interrupt, pipeline,
+    interrupt,
+    pipeline::{self, Run, verdict_without_simulation},
     planners::Planners,
     progress::Progress,
     select::{self, Selected},
     threads,
 };
 use crate::{
+    model::verdict::VerdictKind,
+    planner,
     report::{Outcome, SkipReason},
     scenario::LoadedScenario,
 };
@@ -98,8 +101,24 @@ impl Runner<'_> {
     }
 
     fn run(&self, loaded: &LoadedScenario) -> Result<FinishedRun, CliError> {
-        let run = pipeline::run_scenario(loaded, &self.planners, &self.progress)?;
+        let run = self.planned_and_judged(loaded)?;
         finish::write_run(run, &loaded.scenario, &loaded.robot, loaded.plan_path().as_deref(), &self.args.report)
+    }
+
+    /// Plans a scenario unless it names a plan, simulates the plan and judges it.
+    fn planned_and_judged(&self, loaded: &LoadedScenario) -> Result<Run, CliError> {
+        let scenario = &loaded.scenario;
+        let plan = match &loaded.plan {
+            Some(plan) => plan.clone(),
+            None => match self.planners.timed_plan(scenario, &loaded.robot, &*self.progress)? {
+                planner::Outcome::Found(plan) => plan,
+                planner::Outcome::Infeasible(why) => {
+                    let verdict = verdict_without_simulation(scenario, VerdictKind::Infeasible, why.to_string());
+                    return Ok(Run { verdict, posture: None, plan: None, simulated: None });
+                }
+            },
+        };
+        pipeline::run_plan(scenario, &loaded.robot, plan, &loaded.filled_in, &self.progress)
     }
 
     fn reason_to_skip(&self, selected: &Selected) -> Option<SkipReason> {
