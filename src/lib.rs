@@ -114,6 +114,7 @@ pub mod check;
 pub mod cli;
 pub mod collision;
 pub mod comfort;
+pub mod compare;
 pub mod complete;
 pub mod human;
 pub mod judge;

@@ -50,6 +50,8 @@ pub enum Command {
     Sweep(SweepArgs),
     /// Join the parts of a sweep into the sweep
     Merge(MergeArgs),
+    /// Compare two results, or a result with a baseline: what got worse?
+    Compare(CompareArgs),
     /// Find the load at which a plan fails in simulation, and compare it with the predictions
     Margin(MarginArgs),
     /// Write a plan's scene for another simulator
@@ -354,6 +356,30 @@ pub struct MergeArgs {
     /// Folder for the sweep
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// `benchdog compare`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::COMPARE)]
+pub struct CompareArgs {
+    /// What was: a folder of `run` or `sweep`, or of several of them; a verdict.json, a sweep.json or a baseline
+    #[arg(value_name = "BEFORE")]
+    pub before: PathBuf,
+    /// What is, likewise
+    #[arg(value_name = "AFTER", required_unless_present = "write_baseline")]
+    pub after: Option<PathBuf>,
+    /// Changes up to this are none: of a margin as a share of its limit, of a probability, of a quantile as a share of it
+    #[arg(long, value_name = "SHARE", default_value_t = 0.02)]
+    pub tolerance: f64,
+    /// Also write the comparison as a page to this file
+    #[arg(long, value_name = "FILE", requires = "after")]
+    pub html: Option<PathBuf>,
+    /// Write the last of the results as a baseline to this file
+    #[arg(long, value_name = "FILE")]
+    pub write_baseline: Option<PathBuf>,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
 }
 
 /// `benchdog import`.

@@ -94,6 +94,17 @@ Example:
 Parts that do not belong together (another program, plan, scenario, seed or number of parts), that are missing or not
 finished are refused with exit code 2, and nothing is written.";
 
+/// `benchdog compare --help`.
+pub const COMPARE: &str = "\
+Examples:
+  benchdog compare out-of-main out-of-branch --html compare.html
+  benchdog compare out --write-baseline baseline.json        a small file for the repository
+  benchdog compare baseline.json out --tolerance 0.05
+
+A regression is a verdict that was the expected one and is not, a result that is gone, a margin that is
+less by more than the tolerance, a probability or a quantile of a sweep that is worse by more than chance
+and the tolerance. The exit code is 1 if there is one.";
+
 /// `benchdog simulate --help`.
 pub const SIMULATE: &str = "\
 Examples:

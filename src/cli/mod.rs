@@ -4,6 +4,7 @@
 mod args;
 mod cache;
 mod circle;
+mod compare;
 mod completions;
 mod curve;
 mod doctor;
@@ -75,6 +76,7 @@ pub fn main() -> ExitCode {
         Command::Schema(args) => schema::schema(args),
         Command::Sweep(args) => sweep::sweep(args),
         Command::Merge(args) => merge::merge(args),
+        Command::Compare(args) => compare::compare(args),
         Command::Margin(args) => margin::margin(args),
         Command::Export(args) => export::export(args),
         Command::Import(args) => import::import(args),

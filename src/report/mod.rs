@@ -5,6 +5,7 @@
 
 pub mod circle;
 pub(crate) mod columns;
+pub mod compare;
 pub mod console;
 pub(crate) mod csv_text;
 pub mod curve;

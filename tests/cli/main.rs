@@ -9,6 +9,7 @@ mod bad_input;
 mod bad_plates;
 mod bounds;
 mod commands;
+mod compare;
 mod determinism;
 mod import;
 mod inputs;

@@ -1,0 +1,100 @@
+//! A comparison of two results on the console and as a page.
+
+use maud::{DOCTYPE, PreEscaped, html as markup};
+
+use super::html::META;
+use crate::compare::{ChangeKind, Comparison};
+
+/// A kind of change in words, with its class in the style sheet.
+fn words(kind: ChangeKind) -> (&'static str, &'static str) {
+    match kind {
+        ChangeKind::Regression => ("REGRESSION", "failed"),
+        ChangeKind::Improvement => ("improvement", "ok"),
+        ChangeKind::Moved => ("moved", "skipped"),
+        ChangeKind::New => ("new", "skipped"),
+    }
+}
+
+/// The number of changes by kind: `12 compared: 1 regression, 2 improvements, 0 moved, 1 new`.
+#[must_use]
+pub fn sentence(comparison: &Comparison) -> String {
+    let number = |kind| comparison.count(kind);
+    let plural = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+    format!(
+        "{} compared: {}, {}, {} moved, {} new",
+        comparison.compared,
+        plural(number(ChangeKind::Regression), "regression"),
+        plural(number(ChangeKind::Improvement), "improvement"),
+        number(ChangeKind::Moved),
+        number(ChangeKind::New)
+    )
+}
+
+/// A table of the changes, the versions that differ, and the number of changes.
+#[must_use]
+pub fn text(comparison: &Comparison) -> String {
+    let mut rows = vec![["", "name", "what", "before", "after", "by"].map(str::to_owned)];
+    rows.extend(comparison.changes.iter().map(|change| {
+        [
+            words(change.kind).0.to_owned(),
+            change.name.clone(),
+            change.what.clone(),
+            change.before.clone(),
+            change.after.clone(),
+            change.by.clone(),
+        ]
+    }));
+    let mut text = String::new();
+    if rows.len() > 1 {
+        let widths: [usize; 6] =
+            std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+        for row in &rows {
+            let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}"));
+            text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+            text.push('\n');
+        }
+    }
+    for (name, before, after) in &comparison.versions {
+        text.push_str(&format!("version of {name}: {before}, now {after}\n"));
+    }
+    text.push_str(&sentence(comparison));
+    text.push('\n');
+    text
+}
+
+/// The page.
+#[must_use]
+pub fn html(comparison: &Comparison, tolerance: f64) -> String {
+    let title = format!("Benchdog: {}", sentence(comparison));
+    let page = markup! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                (PreEscaped(META))
+                title { (title) }
+                style { (PreEscaped(include_str!("../report.css"))) }
+            }
+            body {
+                h1 { (title) }
+                p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Tolerance " (tolerance) "." }
+                @for (name, before, after) in &comparison.versions { p { "Version of " (name) ": " (before) ", now " (after) "." } }
+                @if comparison.changes.is_empty() { p { "Nothing changed by more than the tolerance." } }
+                @else {
+                    div.wide {
+                        table {
+                            tr { @for head in ["", "name", "what", "before", "after", "by"] { th { (head) } } }
+                            @for change in &comparison.changes {
+                                @let (word, class) = words(change.kind);
+                                tr {
+                                    td class=(class) { (word) }
+                                    td.name { (change.name) } td { (change.what) } td { (change.before) } td { (change.after) } td { (change.by) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
