@@ -59,6 +59,7 @@ def main() -> None:
     print("| operation | plan | objective | load factor | holds with probability | interval at 95 % |")
     print("|---|---|---|---|---|---|")
     kept: dict[str, list[tuple[float, float]]] = {}
+    audited = mistakes = 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = arguments.keep or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
@@ -72,11 +73,13 @@ def main() -> None:
                     print(f"| {name} | {kind} | none | | | |", flush=True)
                     continue
                 estimate = swept(arguments.benchdog, file, folder / f"{name}-{kind}", arguments.runs, arguments.jobs)["estimate"]
+                audited, mistakes = audited + estimate["audited"], mistakes + estimate["mistakes"]
                 objective = plan["comfort"]["objective"]
                 kept.setdefault(f"{name.split('-')[0]} {kind}", []).append((objective, estimate["probability"]))
                 factor = plan["stability"]["compliant_load_factor"]
                 interval = f"{estimate['low']:.3f} to {estimate['high']:.3f}"
                 print(f"| {name} | {kind} | {objective:.1f} | {factor:.2f} | {estimate['probability']:.3f} | {interval} |", flush=True)
+    print(f"of {audited} runs that were simulated as a check, {mistakes} were mistakes of the screen", file=sys.stderr)
     for kind, values in kept.items():
         objectives, probabilities = zip(*values)
         print(f"{kind}: {len(values)} plans, mean objective {statistics.mean(objectives):.1f}, mean probability "

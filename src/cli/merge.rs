@@ -94,12 +94,11 @@ impl<'a> Part<'a> {
         let rest = || {
             (SweepInfo { shard: None, ..a.clone() } != SweepInfo { shard: None, ..b.clone() }).then_some((
                 "settings",
-                "other variables, sampling, screen or expectation".to_owned(),
                 "those of the first part".to_owned(),
+                "other variables, sampling, screen or expectation".to_owned(),
             ))
         };
-        let plans =
-            || (self.plan != other.plan).then_some((PLAN, "another plan".into(), "that of the first part".into()));
+        let plans = || (self.plan != other.plan).then_some((PLAN, "the same plan".into(), "another one".into()));
         let (what, expected, found) = known.or_else(rest).or_else(plans)?;
         Some(format!("{what}: found {found}, expected {expected} as in {}", other.folder.display()))
     }

@@ -15,7 +15,8 @@ use crate::model::{
 };
 
 /// Elements that HTML leaves open and maud therefore does not close; closed here, the page is also well-formed XML.
-const META: &str = "<meta charset=\"utf-8\"/><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
+pub(super) const META: &str =
+    "<meta charset=\"utf-8\"/><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
 
 /// The cell of a figure that does not exist.
 const NO_FIGURE: &str = "–";

@@ -24,4 +24,5 @@ mod robots;
 mod robust;
 mod scenarios;
 mod schemas;
+mod sweep;
 mod sweep_sections;

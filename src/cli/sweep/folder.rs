@@ -115,10 +115,12 @@ impl SweepFolder {
             }
         }
         let _writing = interrupt::writing();
+        let recorded =
+            |index: u64| self.recording(index).exists().then(|| format!("{RECORDINGS}/{}", recording_name(index)));
         write_whole(&self.file(PLAN), plan)?;
         write_whole(&self.file(RUNS), &table::rows(Some(&header), records)?)?;
         write_whole(&self.file(ARROW), &arrow::bytes(&header, records)?)?;
-        write_whole(&self.file(REPORT), report::sweep::html(&summary, records).as_bytes())?;
+        write_whole(&self.file(REPORT), report::sweep::html(&summary, records, &recorded).as_bytes())?;
         write_whole(&self.file(JUNIT), report::sweep::junit(&summary)?.as_bytes())?;
         let json = report::json::pretty(&summary);
         write_whole(&self.file(SUMMARY), json.as_bytes())?;

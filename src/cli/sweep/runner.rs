@@ -15,8 +15,11 @@ use crate::{
     sweep::{record::RunRecord, table},
 };
 
-/// The runs after which the journal is written and the width of the interval is looked at.
-const BLOCK: usize = 100;
+/// The runs after which the journal is written: some seconds.
+const BLOCK: usize = 20;
+
+/// The runs, in blocks, after which the width of the interval is looked at.
+const BLOCKS_LOOKED_AT: usize = 5;
 
 /// The name of the journal in the folder of a sweep.
 pub const JOURNAL: &str = "runs.part";
@@ -62,7 +65,7 @@ impl Journal {
 pub struct Extent<'a> {
     /// The indices, in increasing order.
     pub indices: Vec<u64>,
-    /// True if the first runs are enough; asked after each block.
+    /// True if the first runs are enough; asked after every fifth block.
     pub enough: &'a dyn Fn(&[RunRecord]) -> bool,
 }
 
@@ -84,7 +87,7 @@ pub fn run(
     known.dedup_by_key(|record| record.index);
     let mut records: Vec<RunRecord> = Vec::with_capacity(extent.indices.len());
     let mut known = known.into_iter().peekable();
-    for block in extent.indices.chunks(BLOCK) {
+    for (number, block) in extent.indices.chunks(BLOCK).enumerate() {
         let mut from_journal = Vec::new();
         while let Some(record) = known.next_if(|record| block.last().is_some_and(|&last| record.index <= last)) {
             from_journal.push(record);
@@ -105,7 +108,7 @@ pub fn run(
         records.extend(from_journal);
         records.extend(new);
         records[before..].sort_unstable_by_key(|record| record.index);
-        if stopped || (extent.enough)(&records) {
+        if stopped || (number + 1).is_multiple_of(BLOCKS_LOOKED_AT) && (extent.enough)(&records) {
             break;
         }
     }

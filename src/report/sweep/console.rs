@@ -19,7 +19,7 @@ pub fn text(summary: &SweepSummary) -> String {
     };
     // Writing to a text does not fail.
     let _ = writeln!(text, "{mark}{}: {}", summary.info.name, sentence(summary));
-    let _ = writeln!(text, "{}", runs(summary));
+    let _ = writeln!(text, "{}", decided(summary));
     let _ = writeln!(text, "\nverdict          runs   share");
     let mut verdicts: Vec<_> = summary.verdicts.iter().collect();
     verdicts.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
@@ -64,7 +64,7 @@ pub fn text(summary: &SweepSummary) -> String {
 }
 
 /// How the runs were decided.
-fn runs(summary: &SweepSummary) -> String {
+pub fn decided(summary: &SweepSummary) -> String {
     let estimate = &summary.estimate;
     let part = summary.info.shard.map(|shard| format!(", part {shard}")).unwrap_or_default();
     let simulated = summary.done - estimate.screened;
