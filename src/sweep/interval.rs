@@ -31,10 +31,24 @@ pub fn upper_bound(seen: u64, count: u64, confidence: f64) -> f64 {
     if seen >= count {
         return 1.0;
     }
+    where_at_most(seen, count, 1.0 - confidence)
+}
+
+/// The lower bound of Clopper and Pearson (1934): with it so many, or more, have the probability `1 - confidence`. 0 without cases.
+#[must_use]
+pub fn lower_bound(seen: u64, count: u64, confidence: f64) -> f64 {
+    if seen == 0 {
+        return 0.0;
+    }
+    where_at_most(seen - 1, count, confidence)
+}
+
+/// The probability of a case with which at most `seen` of `count`, fewer than all, occur with the probability `share`.
+fn where_at_most(seen: u64, count: u64, share: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..BISECTIONS {
         let middle = (low + high) / 2.0;
-        if at_most(seen, count, middle) > 1.0 - confidence { low = middle } else { high = middle }
+        if at_most(seen, count, middle) > share { low = middle } else { high = middle }
     }
     high
 }
@@ -86,6 +100,31 @@ mod tests {
         // The rule of three: 1 - 0.05^(1/n).
         assert!((upper_bound(0, 300, 0.95) - (1.0 - 0.05_f64.powf(1.0 / 300.0))).abs() < 1e-9);
         assert_eq!((upper_bound(5, 5, 0.95), upper_bound(0, 0, 0.95)), (1.0, 1.0));
+    }
+
+    #[test]
+    fn both_bounds_mirror_each_other_and_cover_at_least_as_often_as_they_say() {
+        assert_eq!((lower_bound(0, 5, 0.95), lower_bound(0, 0, 0.95)), (0.0, 0.0));
+        // All of n: 0.05^(1/n).
+        assert!((lower_bound(30, 30, 0.95) - 0.05_f64.powf(1.0 / 30.0)).abs() < 1e-12);
+        for (seen, count) in [(1, 2), (3, 20), (40, 80), (299, 300)] {
+            let mirrored = 1.0 - upper_bound(count - seen, count, 0.975);
+            assert!((lower_bound(seen, count, 0.975) - mirrored).abs() < 1e-12, "{seen} of {count}");
+        }
+        for count in [1_u64, 10, 120] {
+            let bounds: Vec<_> =
+                (0..=count).map(|seen| (lower_bound(seen, count, 0.9), upper_bound(seen, count, 0.9))).collect();
+            for part in 1..40 {
+                let p = f64::from(part) / 40.0;
+                let covered = |holds: &dyn Fn(&(f64, f64)) -> bool| -> f64 {
+                    let of = bounds.iter().enumerate().filter(|(_, bound)| holds(bound));
+                    of.map(|(seen, _)| exactly(seen as u64, count, p)).sum()
+                };
+                // Rounding of the sum, and of bounds that are equal to the probability.
+                assert!(covered(&|bound| bound.0 <= p + 1e-12) >= 0.9 - 1e-9, "{count} {p}");
+                assert!(covered(&|bound| bound.1 >= p - 1e-12) >= 0.9 - 1e-9, "{count} {p}");
+            }
+        }
     }
 
     #[test]

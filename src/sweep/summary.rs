@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     agreement::Agreement,
     estimate::Estimate,
-    indices::{Index, first_order},
+    indices::{Index, decorrelated, first_order},
     info::SweepInfo,
     record::{MeasuredRun, RunRecord},
 };
@@ -125,13 +125,10 @@ pub fn summarise(info: &SweepInfo, records: &[RunRecord]) -> SweepSummary {
         }
     }
     let simulated = records.iter().filter(|run| run.measured.is_some());
-    let cases = simulated.filter_map(|run| {
-        let load_factor = run.predicted?.load_factor;
-        load_factor.is_finite().then_some((load_factor, run.verdict == VerdictKind::Holds))
-    });
+    let cases = simulated.filter_map(|run| Some((finite_load_factor(run)?, run.verdict == VerdictKind::Holds)));
     SweepSummary {
         done: records.len() as u64,
-        // An end of the interval that rounding puts below the expectation still shows it.
+        // Shown, not only likely: the whole interval lies at or above the expected probability.
         met: info.expect.probability.map(|expected| estimate.low >= expected),
         estimate,
         verdicts,
@@ -144,12 +141,17 @@ pub fn summarise(info: &SweepInfo, records: &[RunRecord]) -> SweepSummary {
     }
 }
 
+/// The predicted load factor, but for an infinite one, of a load without a limit, which JSON cannot say.
+fn finite_load_factor(run: &RunRecord) -> Option<f64> {
+    run.predicted.map(|predicted| predicted.load_factor).filter(|load_factor| load_factor.is_finite())
+}
+
 /// The quantiles of each figure.
 fn quantiles(records: &[RunRecord]) -> Vec<Quantiles> {
     let measured =
         |of: fn(&MeasuredRun) -> f64| records.iter().filter_map(|run| run.measured.as_ref().map(of)).collect();
     let figures: [(&str, Vec<f64>); 6] = [
-        ("predicted_load_factor", records.iter().filter_map(|run| Some(run.predicted?.load_factor)).collect()),
+        ("predicted_load_factor", records.iter().filter_map(finite_load_factor).collect()),
         ("slip_mm", measured(|run| run.slip_mm)),
         ("slip_deg", measured(|run| run.slip_deg)),
         ("deflection_mm", measured(|run| run.deflection_mm)),
@@ -167,30 +169,41 @@ fn quantiles(records: &[RunRecord]) -> Vec<Quantiles> {
 
 /// The indices of each quantity.
 fn importance(info: &SweepInfo, records: &[RunRecord]) -> Vec<Importance> {
-    let with_prediction: Vec<&RunRecord> =
-        records.iter().filter(|run| run.predicted.is_some_and(|run| run.load_factor.is_finite())).collect();
-    let load_factors: Vec<f64> =
-        with_prediction.iter().map(|run| run.predicted.map_or(0.0, |run| run.load_factor)).collect();
+    let (with_prediction, load_factors): (Vec<&RunRecord>, Vec<f64>) =
+        records.iter().filter_map(|run| Some((run, finite_load_factor(run)?))).unzip();
+    let all_runs: Vec<&RunRecord> = records.iter().collect();
     let held: Vec<f64> = records.iter().map(|run| f64::from(run.verdict == info.expect.verdict)).collect();
-    let mut all: Vec<Importance> = Vec::new();
+    let mut places: BTreeMap<Quantity, Vec<usize>> = BTreeMap::new();
     for (place, dimension) in info.dimensions.iter().enumerate() {
-        let of_predicted: Vec<f64> = with_prediction.iter().map(|run| run.values[place]).collect();
-        let of_all: Vec<f64> = records.iter().map(|run| run.values[place]).collect();
-        let load_factor = first_order(&of_predicted, &load_factors).unwrap_or_default();
-        let holds = first_order(&of_all, &held).unwrap_or_default();
-        match all.iter_mut().find(|known| known.quantity == dimension.quantity) {
-            Some(known) => {
-                known.load_factor = known.load_factor.and(load_factor);
-                known.holds = known.holds.and(holds);
-            }
-            None => {
-                let variable = dimension.name.split('.').next().unwrap_or_default().to_owned();
-                all.push(Importance { quantity: dimension.quantity, variable, load_factor, holds });
-            }
-        }
+        places.entry(dimension.quantity).or_default().push(place);
     }
+    let of_quantity = |(quantity, places): (Quantity, Vec<usize>)| Importance {
+        quantity,
+        variable: info.dimensions[places[0]].name.split('.').next().unwrap_or_default().to_owned(),
+        load_factor: index(&inputs(info, quantity, &places, &with_prediction), &load_factors),
+        holds: index(&inputs(info, quantity, &places, &all_runs), &held),
+    };
+    let mut all: Vec<Importance> = places.into_iter().map(of_quantity).collect();
     all.sort_by(|a, b| b.load_factor.value.total_cmp(&a.load_factor.value).then(a.quantity.cmp(&b.quantity)));
     all
+}
+
+/// The sum of the indices of independent inputs.
+fn index(inputs: &[Vec<f64>], output: &[f64]) -> Index {
+    let indices = inputs.iter().map(|input| first_order(input, output).unwrap_or_default());
+    indices.reduce(Index::and).unwrap_or_default()
+}
+
+/// Independent inputs with the drawn values of a quantity.
+fn inputs(info: &SweepInfo, quantity: Quantity, places: &[usize], runs: &[&RunRecord]) -> Vec<Vec<f64>> {
+    let columns: Vec<Vec<f64>> =
+        places.iter().map(|&place| runs.iter().map(|run| run.values[place]).collect()).collect();
+    let variable = info.variables.iter().find(|variable| variable.quantity == quantity);
+    let correlation = variable.and_then(|variable| variable.correlation).or(quantity.usual_correlation());
+    match correlation {
+        Some(correlation) if columns.len() > 1 && correlation > 0.0 => decorrelated(&columns),
+        _ => columns,
+    }
 }
 
 /// The worst runs: without the expected verdict before others, then by the load at which they failed, then by the predicted load
@@ -212,7 +225,7 @@ fn worst(info: &SweepInfo, records: &[RunRecord]) -> Vec<WorstRun> {
         verdict: run.verdict,
         failed_at: run.measured.and_then(|measured| measured.failed_at),
         first_check: run.measured.and_then(|measured| measured.first_check),
-        load_factor: run.predicted.map(|predicted| predicted.load_factor),
+        load_factor: finite_load_factor(run),
         unusual: unusual(info, run, &spreads),
     });
     worst.collect()
@@ -239,3 +252,6 @@ fn unusual(info: &SweepInfo, run: &RunRecord, spreads: &[[f64; 2]]) -> Vec<(Stri
     all.truncate(UNUSUAL);
     all
 }
+
+#[cfg(test)]
+mod tests;
