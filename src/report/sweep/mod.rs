@@ -58,3 +58,6 @@ pub fn sentence(summary: &SweepSummary) -> String {
         expected.unwrap_or_default()
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -180,7 +180,9 @@ fn distribution(of: &Distribution) -> String {
     match of {
         Distribution::Normal { mean, sd } => format!("normal, mean {mean}, deviation {sd}"),
         Distribution::Uniform { low, high } => format!("uniform from {low} to {high}"),
-        Distribution::LogNormal { median, sd_log } => format!("log-normal, median {median}, deviation {sd_log}"),
+        Distribution::LogNormal { median, sd_log } => {
+            format!("log-normal, median {median}, deviation {sd_log} of the logarithm")
+        }
         Distribution::Triangular { low, mode, high } => format!("triangular from {low} over {mode} to {high}"),
         Distribution::Discrete { values, .. } => format!("{} values", values.len()),
         Distribution::Measured { values } => format!("{} measured values", values.len()),
