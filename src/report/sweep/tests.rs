@@ -90,9 +90,9 @@ fn chart<'a>(page: &'a str, name: &str) -> &'a str {
 
 #[test]
 fn the_sentence_has_probability_interval_confidence_and_expectation() {
-    // Wilson's interval of 150 of 200: (0.75 + 0.0096 -+ 1.96 sqrt(0.1875 / 200 + 0.000024)) / 1.0192.
+    // Wilson's interval of 150 of 200: (0.75 + z^2 / 400 -+ z sqrt(0.1875 / 200 + z^2 / 160000)) / (1 + z^2 / 200), z = 1.95996.
     let of = |probability| sentence(&summarise(&info(probability), &records()));
-    assert_eq!(of(None), "holds with probability 0.7500, 0.6857 to 0.8050 at 95 % confidence");
+    assert_eq!(of(None), "holds with probability 0.7500, 0.6857 to 0.8049 at 95 % confidence");
     assert!(of(Some(0.99)).ends_with(" at 95 % confidence, expected at least 0.99"));
 }
 
