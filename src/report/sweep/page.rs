@@ -21,7 +21,11 @@ h2 { display: block; margin: 1.6rem 0 .4rem; } table { margin: .4rem 0; }
 
 /// `report.html`.
 #[must_use]
-pub fn html(summary: &SweepSummary, records: &[RunRecord], recordings: &dyn Fn(u64) -> Option<String>) -> String {
+pub fn report_page(
+    summary: &SweepSummary,
+    records: &[RunRecord],
+    recordings: &dyn Fn(u64) -> Option<String>,
+) -> String {
     let info = &summary.info;
     let title = format!("Benchdog: {} sweep", info.name);
     let result = match summary.met {

@@ -73,7 +73,7 @@ fn records() -> Vec<RunRecord> {
 
 fn page(probability: Option<f64>) -> String {
     let link = |run: u64| (run == 199).then(|| format!("recordings/run-{run:06}.rrd"));
-    html(&summarise(&info(probability), &records()), &records(), &link)
+    report_page(&summarise(&info(probability), &records()), &records(), &link)
 }
 
 /// The numbers of an attribute of the elements that start so.
@@ -155,7 +155,7 @@ fn the_console_lists_what_matters_and_no_negative_share() {
 #[test]
 fn no_run_gives_a_page_without_charts_of_runs() {
     let summary = summarise(&info(None), &[]);
-    let page = html(&summary, &[], &|_| None);
+    let page = report_page(&summary, &[], &|_| None);
     assert!(page.contains("holds with probability 0.0000, 0.0000 to 1.0000") && !page.contains("NaN"), "{page}");
     assert!(text(&summary).starts_with("a <b> & \"c\": holds with probability 0.0000"));
 }
