@@ -670,6 +670,8 @@ pub enum SchemaOf {
     Plan,
     /// Verdict files (JSON)
     Verdict,
+    /// What a sweep leaves: `sweep.json`
+    Sweep,
     /// Requests to `benchdog replan` (a line of JSON each)
     ReplanRequest,
     /// Answers of `benchdog replan` (a line of JSON each)

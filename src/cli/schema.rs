@@ -11,6 +11,7 @@ use super::{
 use crate::{
     model::verdict::Verdict,
     scenario::{ReplanRequest, file::ScenarioFile, plan_input::PlanFile},
+    sweep::summary::SweepSummary,
 };
 
 /// Prints a schema.
@@ -25,6 +26,7 @@ fn schema_text(of: SchemaOf) -> String {
         SchemaOf::Scenario => schema_for!(ScenarioFile),
         SchemaOf::Plan => schema_for!(PlanFile),
         SchemaOf::Verdict => schema_for!(Verdict),
+        SchemaOf::Sweep => schema_for!(SweepSummary),
         SchemaOf::ReplanRequest => schema_for!(ReplanRequest),
         SchemaOf::ReplanAnswer => schema_for!(Answer),
     };

@@ -120,7 +120,7 @@ impl SweepFolder {
         write_whole(&self.file(PLAN), plan)?;
         write_whole(&self.file(RUNS), &table::rows(Some(&header), records)?)?;
         write_whole(&self.file(ARROW), &arrow::bytes(&header, records)?)?;
-        write_whole(&self.file(REPORT), report::sweep::html(&summary, records, &recorded).as_bytes())?;
+        write_whole(&self.file(REPORT), report::sweep::report_page(&summary, records, &recorded).as_bytes())?;
         write_whole(&self.file(JUNIT), report::sweep::junit(&summary)?.as_bytes())?;
         let json = report::json::pretty(&summary);
         write_whole(&self.file(SUMMARY), json.as_bytes())?;

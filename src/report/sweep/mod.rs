@@ -7,7 +7,7 @@ mod page;
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
 pub use console::text;
-pub use page::html;
+pub use page::report_page;
 
 use crate::sweep::summary::SweepSummary;
 
@@ -58,3 +58,6 @@ pub fn sentence(summary: &SweepSummary) -> String {
         expected.unwrap_or_default()
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,7 +21,11 @@ h2 { display: block; margin: 1.6rem 0 .4rem; } table { margin: .4rem 0; }
 
 /// `report.html`.
 #[must_use]
-pub fn html(summary: &SweepSummary, records: &[RunRecord], recordings: &dyn Fn(u64) -> Option<String>) -> String {
+pub fn report_page(
+    summary: &SweepSummary,
+    records: &[RunRecord],
+    recordings: &dyn Fn(u64) -> Option<String>,
+) -> String {
     let info = &summary.info;
     let title = format!("Benchdog: {} sweep", info.name);
     let result = match summary.met {
@@ -180,7 +184,9 @@ fn distribution(of: &Distribution) -> String {
     match of {
         Distribution::Normal { mean, sd } => format!("normal, mean {mean}, deviation {sd}"),
         Distribution::Uniform { low, high } => format!("uniform from {low} to {high}"),
-        Distribution::LogNormal { median, sd_log } => format!("log-normal, median {median}, deviation {sd_log}"),
+        Distribution::LogNormal { median, sd_log } => {
+            format!("log-normal, median {median}, deviation {sd_log} of the logarithm")
+        }
         Distribution::Triangular { low, mode, high } => format!("triangular from {low} over {mode} to {high}"),
         Distribution::Discrete { values, .. } => format!("{} values", values.len()),
         Distribution::Measured { values } => format!("{} measured values", values.len()),
