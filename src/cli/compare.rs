@@ -36,6 +36,12 @@ pub fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         report::file::write_whole(path, report::json::pretty(second.as_ref().unwrap_or(&first)).as_bytes())?;
     }
     let Some(second) = second else { return Ok(Exit::Met) };
+    let kinds = [&first, &second].map(|of| (of.scenarios.is_empty(), of.sweeps.is_empty()));
+    if matches!(kinds, [(true, _), (_, true)] | [(_, true), (true, _)]) {
+        return Err(CliError::Usage(
+            "found scenarios on one side and sweeps on the other, expected results of one kind".into(),
+        ));
+    }
     let comparison = compared(&first, &second, args.tolerance);
     if let Some(path) = &args.html {
         report::file::write_whole(path, report::compare::html(&comparison, args.tolerance).as_bytes())?;
@@ -79,6 +85,14 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
     Ok(files.filter(|file| file.is_file()).collect())
 }
 
+/// Refuses a second result of one name: they would be mistaken for each other.
+fn once(is_new: bool, path: &Path, name: &str) -> Result<(), CliError> {
+    if is_new {
+        return Ok(());
+    }
+    Err(CliError::Usage(format!("{}: name: found \"{name}\", which another result has too", path.display())))
+}
+
 /// Adds the results of a file.
 fn add(results: &mut Baseline, path: &Path, read: &mut Vec<PathBuf>) -> Result<(), CliError> {
     let shown = path.display();
@@ -89,8 +103,14 @@ fn add(results: &mut Baseline, path: &Path, read: &mut Vec<PathBuf>) -> Result<(
     let value: Value = serde_json::from_str(&text).map_err(wrong)?;
     let kind = ["estimate", "scenarios", "verdict"].into_iter().find(|key| value.get(key).is_some());
     match kind {
-        Some("estimate") => results.add_sweep(&serde_json::from_str::<SweepSummary>(&text).map_err(wrong)?),
-        Some("verdict") => results.add_verdict(&serde_json::from_str::<Verdict>(&text).map_err(wrong)?),
+        Some("estimate") => {
+            let summary: SweepSummary = serde_json::from_str(&text).map_err(wrong)?;
+            once(results.add_sweep(&summary), path, &summary.info.name)?;
+        }
+        Some("verdict") => {
+            let verdict: Verdict = serde_json::from_str(&text).map_err(wrong)?;
+            once(results.add_verdict(&verdict), path, &verdict.name)?;
+        }
         Some(_) => {
             let baseline: Baseline = serde_json::from_str(&text).map_err(wrong)?;
             if baseline.format != FORMAT {

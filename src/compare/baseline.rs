@@ -60,8 +60,12 @@ pub struct CheckEntry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepEntry {
+    /// The verdict whose probability it is.
+    pub expected: VerdictKind,
     /// The probability of the expected verdict.
     pub probability: f64,
+    /// The confidence of its interval.
+    pub confidence: f64,
     /// The lower end of its interval.
     pub low: f64,
     /// The upper end.
@@ -71,6 +75,8 @@ pub struct SweepEntry {
     /// Whether the expected probability is shown; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub met: Option<bool>,
+    /// True if the statics decided some runs: figures are then those of the runs near to failing.
+    pub screened: bool,
     /// Figures of the sweep by name, such as `deflection_mm 95 %`, with their standard errors.
     pub figures: BTreeMap<String, [f64; 2]>,
     /// Program and inputs.
@@ -87,18 +93,20 @@ impl Baseline {
         Self { format: FORMAT, ..Self::default() }
     }
 
-    /// Adds a verdict.
-    pub fn add_verdict(&mut self, verdict: &Verdict) {
+    /// Adds a verdict. Returns false if there is one of this name already.
+    #[must_use]
+    pub fn add_verdict(&mut self, verdict: &Verdict) -> bool {
         self.versions.extend(verdict.versions.clone());
         let checks = verdict.checks.iter().map(|check| {
             (check.name.name().to_owned(), CheckEntry { value: check.value, limit: check.limit, margin: check.margin })
         });
         let entry = ScenarioEntry { verdict: verdict.verdict, met: verdict.met, checks: checks.collect() };
-        self.scenarios.insert(verdict.name.clone(), entry);
+        self.scenarios.insert(verdict.name.clone(), entry).is_none()
     }
 
-    /// Adds a sweep.
-    pub fn add_sweep(&mut self, summary: &SweepSummary) {
+    /// Adds a sweep. Returns false if there is one of this name already.
+    #[must_use]
+    pub fn add_sweep(&mut self, summary: &SweepSummary) -> bool {
         self.versions.extend(summary.info.versions.clone());
         let mut figures = BTreeMap::new();
         for of in &summary.quantiles {
@@ -111,7 +119,10 @@ impl Baseline {
         }
         let estimate = &summary.estimate;
         let entry = SweepEntry {
+            expected: summary.info.expect.verdict,
             probability: estimate.probability,
+            confidence: estimate.confidence,
+            screened: summary.info.screen.is_some(),
             low: estimate.low,
             high: estimate.high,
             runs: summary.done,
@@ -119,7 +130,7 @@ impl Baseline {
             figures,
             fingerprints: summary.info.fingerprints.clone(),
         };
-        self.sweeps.insert(summary.info.name.clone(), entry);
+        self.sweeps.insert(summary.info.name.clone(), entry).is_none()
     }
 
     /// True without results.

@@ -12,6 +12,9 @@ use super::{
 /// A figure of a sweep moved if it did by more than this many standard errors of the difference, and by more than the tolerance.
 const ERRORS: f64 = 3.0;
 
+/// The tolerance of smaller figures is that of this one: a slip of micrometres that doubles is no change.
+const LEAST_FIGURE: f64 = 0.5;
+
 /// What a change is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -108,9 +111,9 @@ fn one_sided(name: &str, what: &str, before: Option<String>, after: Option<Strin
     Change { kind, name: name.into(), what: what.into(), before: text(before), after: text(after), by: by.into() }
 }
 
-/// Worse or better by a signed amount.
+/// Better by a positive amount, else worse: what is not a number is no improvement.
 fn sided(by: f64) -> ChangeKind {
-    if by < 0.0 { ChangeKind::Regression } else { ChangeKind::Improvement }
+    if by > 0.0 { ChangeKind::Improvement } else { ChangeKind::Regression }
 }
 
 fn of_scenario(name: &str, before: &ScenarioEntry, after: &ScenarioEntry, tolerance: f64) -> Vec<Change> {
@@ -130,7 +133,13 @@ fn of_scenario(name: &str, before: &ScenarioEntry, after: &ScenarioEntry, tolera
         changes.push(Change { kind, name: name.into(), what: "verdict".into(), before, after, by: by.into() });
     }
     for (check, first) in &before.checks {
-        let Some(second) = after.checks.get(check) else { continue };
+        let Some(second) = after.checks.get(check) else {
+            // Without a simulation there are no checks at all, which the verdict tells.
+            if !after.checks.is_empty() {
+                changes.push(one_sided(name, check, Some(format!("{:.3}", first.value)), None));
+            }
+            continue;
+        };
         // Limits of zero have no share: the margin is compared with itself.
         let scale = if first.limit == 0.0 { first.margin.abs().max(1.0) } else { first.limit.abs() };
         let by = (second.margin - first.margin) / scale;
@@ -156,6 +165,12 @@ fn of_scenario(name: &str, before: &ScenarioEntry, after: &ScenarioEntry, tolera
 
 fn of_sweep(name: &str, before: &SweepEntry, after: &SweepEntry, tolerance: f64) -> Vec<Change> {
     let mut changes = Vec::new();
+    if before.expected != after.expected || before.confidence != after.confidence {
+        let of = |entry: &SweepEntry| format!("{} at {} confidence", entry.expected, entry.confidence);
+        let by = "another expectation: not compared".to_owned();
+        let (kind, what) = (ChangeKind::Moved, "expectation".to_owned());
+        return vec![Change { kind, name: name.into(), what, before: of(before), after: of(after), by }];
+    }
     let [first, second] = [before, after].map(|of| [of.probability, of.low, of.high]);
     let [low, high] = difference(first, second);
     let by = after.probability - before.probability;
@@ -189,19 +204,23 @@ fn of_sweep(name: &str, before: &SweepEntry, after: &SweepEntry, tolerance: f64)
     }
     for (figure, [first, first_error]) in &before.figures {
         let Some([second, second_error]) = after.figures.get(figure) else { continue };
+        let of_all = figure.starts_with("predicted_load_factor");
+        if before.screened != after.screened && !of_all {
+            continue;
+        }
         let (by, error) = (second - first, first_error.hypot(*second_error));
-        if by.abs() <= ERRORS * error || by.abs() <= tolerance * first.abs() {
+        if by.abs() <= ERRORS * error || by.abs() <= tolerance * first.abs().max(LEAST_FIGURE) {
             continue;
         }
         // A larger load factor is better, and so is a later failure; of other figures less is better.
-        let is_better_larger = figure.starts_with("predicted_load_factor") || figure.starts_with("failed_at");
+        let is_better_larger = of_all || figure.starts_with("failed_at");
         changes.push(Change {
             kind: sided(if is_better_larger { by } else { -by }),
             name: name.into(),
             what: figure.clone(),
             before: format!("{first:.3}"),
             after: format!("{second:.3}"),
-            by: format!("{:+.1} %, {:.1} standard errors", 100.0 * by / first, by.abs() / error),
+            by: format!("{by:+.3}, standard error {error:.3}"),
         });
     }
     changes
@@ -231,7 +250,10 @@ mod tests {
     fn sweep(seen: f64, runs: f64, deflection_mm: f64) -> SweepEntry {
         let [low, high] = wilson(seen / runs, runs, 0.95);
         SweepEntry {
+            expected: VerdictKind::Holds,
             probability: seen / runs,
+            confidence: 0.95,
+            screened: false,
             low,
             high,
             runs: runs as u64,
@@ -280,7 +302,7 @@ mod tests {
         assert!(kinds(&at(4.0), &at(4.09)).is_empty());
         assert_eq!(kinds(&at(4.0), &at(4.11)), [(ChangeKind::Regression, "deflection".to_owned())]);
         assert_eq!(kinds(&at(4.0), &at(3.8)), [(ChangeKind::Improvement, "deflection".to_owned())]);
-        assert_eq!(kinds(&at(4.0), &at(f64::NAN)).len(), 1);
+        assert_eq!(kinds(&at(4.0), &at(f64::NAN)), [(ChangeKind::Regression, "deflection".to_owned())]);
     }
 
     #[test]
@@ -316,5 +338,22 @@ mod tests {
         assert!(kinds(&at(4.0), &at(4.083)).is_empty());
         assert_eq!(kinds(&at(4.0), &at(4.1)), [(ChangeKind::Regression, "deflection_mm 50 %".to_owned())]);
         assert_eq!(kinds(&at(4.0), &at(3.9)), [(ChangeKind::Improvement, "deflection_mm 50 %".to_owned())]);
+        // Of small figures the tolerance is 0.01.
+        let exact = |deflection_mm| {
+            let figures = BTreeMap::from([("slip_mm 50 %".into(), [deflection_mm, 0.0])]);
+            sweeps(SweepEntry { figures, ..sweep(90.0, 100.0, 4.0) })
+        };
+        assert!(kinds(&exact(0.0), &exact(0.009)).is_empty());
+        assert_eq!(kinds(&exact(0.0), &exact(0.011)), [(ChangeKind::Regression, "slip_mm 50 %".to_owned())]);
+        // A screen selects the simulated runs.
+        let screened = sweeps(SweepEntry { screened: true, ..sweep(90.0, 100.0, 9.0) });
+        assert!(kinds(&at(4.0), &screened).is_empty());
+    }
+
+    #[test]
+    fn probabilities_of_different_verdicts_are_not_compared() {
+        let slips = sweeps(SweepEntry { expected: VerdictKind::Slips, ..sweep(5.0, 100.0, 9.0) });
+        let found = kinds(&sweeps(sweep(95.0, 100.0, 4.0)), &slips);
+        assert_eq!(found, [(ChangeKind::Moved, "expectation".to_owned())]);
     }
 }

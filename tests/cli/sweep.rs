@@ -90,7 +90,7 @@ fn a_sweep_goes_on_where_it_was_cut_off() {
         fs::remove_file(out.join("runs.csv")).unwrap();
         fs::write(out.join("runs.part"), format!("{key}\n{}", &table[..cut])).unwrap();
         assert_eq!(swept(&out, &["--runs", "14"]), whole, "cut at {cut}");
-        // The journal of another sweep is none of this one's.
+        // The journal of another sweep does not count.
         fs::write(out.join("runs.part"), format!("other {key}\n{table}")).unwrap();
         assert_eq!(swept(&out, &["--runs", "14"]), whole);
     }
@@ -138,9 +138,9 @@ fn what_does_not_belong_together_is_not_merged() {
         &[first.clone(), all],
         "sweep.json: settings: found other variables, sampling, screen or expectation, expected those of the first part",
     );
-    refused(&[first.clone()], "found 1 of 2 parts, expected also 2");
+    refused(std::slice::from_ref(&first), "found 1 of 2 parts, expected also 2");
     refused(&[first.clone(), first.clone()], "found part 1/2, which ");
-    refused(&[WHOLE.1.clone()], "shard: found none, expected a part (benchdog sweep --shard M/N)");
+    refused(std::slice::from_ref(&WHOLE.1), "shard: found none, expected a part (benchdog sweep --shard M/N)");
     refused(&[first.clone(), folder.path().join("nowhere")], "a part without it is not finished");
 
     let table = fs::read_to_string(two[1].join("runs.csv")).unwrap();
