@@ -60,7 +60,7 @@ fn quantiles(summary: &SweepSummary) -> Vec<Vec<String>> {
 }
 
 fn importance(summary: &SweepSummary) -> Vec<Vec<String>> {
-    let shown = summary.importance.iter().filter(|of| of.load_factor.value >= LEAST_INDEX);
+    let shown = summary.importance.iter().filter(|of| of.load_factor.value >= LEAST_INDEX.max(of.load_factor.error));
     let rows = shown.map(|of: &Importance| vec![of.variable.clone(), share(of.load_factor), share(of.holds)]);
     std::iter::once(texts(["what matters", "of the load factor", "of holding or not"])).chain(rows).collect()
 }
