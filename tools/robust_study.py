@@ -20,6 +20,8 @@ from pathlib import Path
 
 from compare_binaries import paper_operations
 
+# The draws of planner and sweeps.
+SWEEP = '[sweep]\npreset = "workshop"\nsampling = "sobol"\n'
 # Seed of the sweeps; the planner's own small sweeps have seed 1.
 SEED = "2"
 
@@ -65,7 +67,7 @@ def main() -> None:
         folder.mkdir(parents=True, exist_ok=True)
         for name, operation in paper_operations().items():
             scenario = folder / f"{name}.toml"
-            scenario.write_text(f'format = 1\nname = "{name}"\n\n{operation}\n[planner]\nseed = 1\n')
+            scenario.write_text(f'format = 1\nname = "{name}"\n\n{operation}\n[planner]\nseed = 1\n\n{SWEEP}')
             for kind, options in kinds.items():
                 file = folder / f"{name}-{kind}.json"
                 plan = planned(arguments.benchdog, scenario, file, options)

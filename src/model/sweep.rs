@@ -31,9 +31,9 @@ impl Sweep {
 #[serde(rename_all = "lowercase")]
 pub enum Sampling {
     /// The points of a scrambled Sobol sequence: more even than independent ones.
-    #[default]
     Sobol,
     /// Independent points.
+    #[default]
     Independent,
 }
 

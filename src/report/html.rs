@@ -15,8 +15,7 @@ use crate::model::{
 };
 
 /// Elements that HTML leaves open and maud therefore does not close; closed here, the page is also well-formed XML.
-pub(super) const META: &str =
-    "<meta charset=\"utf-8\"/><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
+const META: &str = "<meta charset=\"utf-8\"/><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
 
 /// The cell of a figure that does not exist.
 const NO_FIGURE: &str = "–";
@@ -34,27 +33,35 @@ const HANDS: [&str; 2] = ["hand-0", "hand-1"];
 /// The CSS classes of the joints' lines, highest torque ratio first.
 const JOINTS: [&str; JOINTS_SHOWN] = ["joint-0", "joint-1", "joint-2"];
 
-/// The page: a table of all scenarios, then a section for each with checks and plots. Sections of failures are open.
-#[must_use]
-pub fn page(outcomes: &[Outcome]) -> String {
-    let title = format!("Benchdog: {}", console::count(outcomes).trim_end());
+/// A page with this title as its heading, the style of all pages and a further one.
+pub(super) fn document(title: &str, style: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 (PreEscaped(META))
                 title { (title) }
-                style { (PreEscaped(include_str!("report.css"))) }
+                style { (PreEscaped(include_str!("report.css"))) (PreEscaped(style)) }
             }
             body {
                 h1 { (title) }
-                p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Equal runs give equal pages." }
-                (table(outcomes))
-                @for outcome in outcomes { (section(outcome)) }
+                (body)
             }
         }
     };
     page.into_string()
+}
+
+/// The page: a table of all scenarios, then a section for each with checks and plots. Sections of failures are open.
+#[must_use]
+pub fn page(outcomes: &[Outcome]) -> String {
+    let title = format!("Benchdog: {}", console::count(outcomes).trim_end());
+    let body = html! {
+        p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Equal runs give equal pages." }
+        (table(outcomes))
+        @for outcome in outcomes { (section(outcome)) }
+    };
+    document(&title, "", &body)
 }
 
 fn table(outcomes: &[Outcome]) -> Markup {

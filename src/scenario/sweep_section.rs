@@ -37,7 +37,7 @@ pub struct SweepSection {
     pub preset: Option<Preset>,
     /// The number of runs, 1 to 2^31; 1000 by default.
     pub runs: Option<u64>,
-    /// How points are drawn: `sobol`, the default, or `independent`.
+    /// How points are drawn: `independent`, the default, or `sobol`.
     pub sampling: Sampling,
     /// Seed of the draws; 1 by default.
     pub seed: Option<u64>,

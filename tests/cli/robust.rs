@@ -44,8 +44,8 @@ fn a_robust_plan_holds_as_often_as_it_says_and_costs_comfort() {
         let summary = json(&folder.path().join(out).join("sweep.json"));
         summary["estimate"]["probability"].as_f64().unwrap()
     };
-    // At 0.98 five or more of 80 Sobol points do not fail.
-    assert!(probability(&robust, "of-robust") > 0.95);
+    // At 0.98 six or more of 80 independent runs fail once in 150 seeds.
+    assert!(probability(&robust, "of-robust") > 0.93);
     assert!(probability(&usual, "of-usual") < 0.9);
 }
 

@@ -1,8 +1,8 @@
 //! A comparison of two results on the console and as a page.
 
-use maud::{DOCTYPE, PreEscaped, html as markup};
+use maud::html as markup;
 
-use super::html::META;
+use super::html::document;
 use crate::compare::{ChangeKind, Comparison};
 
 /// A kind of change in words, with its class in the style sheet.
@@ -66,35 +66,25 @@ pub fn text(comparison: &Comparison) -> String {
 #[must_use]
 pub fn html(comparison: &Comparison, tolerance: f64) -> String {
     let title = format!("Benchdog: {}", sentence(comparison));
-    let page = markup! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                (PreEscaped(META))
-                title { (title) }
-                style { (PreEscaped(include_str!("../report.css"))) }
-            }
-            body {
-                h1 { (title) }
-                p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Tolerance " (tolerance) "." }
-                @for (name, before, after) in &comparison.versions { p { "Version of " (name) ": " (before) ", now " (after) "." } }
-                @if comparison.changes.is_empty() { p { "Nothing changed by more than the tolerance." } }
-                @else {
-                    div.wide {
-                        table {
-                            tr { @for head in ["", "name", "what", "before", "after", "by"] { th { (head) } } }
-                            @for change in &comparison.changes {
-                                @let (word, class) = words(change.kind);
-                                tr {
-                                    td class=(class) { (word) }
-                                    td.name { (change.name) } td { (change.what) } td { (change.before) } td { (change.after) } td { (change.by) }
-                                }
-                            }
+    let body = markup! {
+        p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Tolerance " (tolerance) "." }
+        @for (name, before, after) in &comparison.versions { p { "Version of " (name) ": " (before) ", now " (after) "." } }
+        @if comparison.changes.is_empty() { p { "Nothing changed by more than the tolerance." } }
+        @else {
+            div.wide {
+                table {
+                    tr { @for head in ["", "name", "what", "before", "after", "by"] { th { (head) } } }
+                    @for change in &comparison.changes {
+                        @let (word, class) = words(change.kind);
+                        tr {
+                            td class=(class) { (word) }
+                            td.name { (change.name) }
+                            @for cell in [&change.what, &change.before, &change.after, &change.by] { td { (cell) } }
                         }
                     }
                 }
             }
         }
     };
-    page.into_string()
+    document(&title, "", &body)
 }

@@ -1,8 +1,8 @@
 //! A sweep as one HTML page, in the style of the report of a run: it works offline and contains no scripts.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
-use super::{super::html::META, charts, console::decided, sentence};
+use super::{super::html::document, charts, console::decided, sentence};
 use crate::{
     model::sweep::{Distribution, Variable},
     sweep::{
@@ -33,42 +33,29 @@ pub fn report_page(
         Some(false) => ("failed", "FAIL"),
         None => ("", ""),
     };
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                (PreEscaped(META))
-                title { (title) }
-                style { (PreEscaped(include_str!("../report.css"))) (PreEscaped(STYLE)) }
-            }
-            body {
-                h1 { (title) }
-                p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Equal sweeps give equal pages." }
-                p { @if !result.1.is_empty() { span class=(result.0) { (result.1) } " " } strong { (sentence(summary)) } "." }
-                p { (decided(summary)) "." }
-                (verdicts(summary))
-                (figures(summary, records))
-                h2 { "What matters" }
-                (PreEscaped(charts::importance(summary)))
-                h2 { "Prediction and simulation" }
-                p { "Over the " (summary.agreement.runs) " simulated runs." }
-                div.plots { (PreEscaped(charts::agreement(&summary.agreement))) }
-                (quantiles(summary))
-                (worst(summary, recordings))
-                (variables(summary))
-                p.quiet {
-                    (info.runs) " runs, " (format!("{:?}", info.sampling).to_lowercase()) " points, seed " (info.seed)
-                    @if let Some(shard) = info.shard { ", part " (shard) }
-                    @if let Some(screen) = info.screen {
-                        "; simulated over predicted failing load " (format!("{:.3}", screen.ratio))
-                    }
-                    ". Program " code { (short(&info.fingerprints.program)) } ", inputs " code { (short(&info.fingerprints.inputs)) } "; "
-                    (info.versions.iter().map(|(name, version)| format!("{name} {version}")).collect::<Vec<_>>().join(", ")) "."
-                }
-            }
+    let body = html! {
+        p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Equal sweeps give equal pages." }
+        p { @if !result.1.is_empty() { span class=(result.0) { (result.1) } " " } strong { (sentence(summary)) } "." }
+        p { (decided(summary)) "." }
+        (verdicts(summary))
+        (figures(summary, records))
+        h2 { "What matters" }
+        (PreEscaped(charts::importance(summary)))
+        h2 { "Prediction and simulation" }
+        p { "Over the " (summary.agreement.runs) " simulated runs." }
+        div.plots { (PreEscaped(charts::agreement(&summary.agreement))) }
+        (quantiles(summary))
+        (worst(summary, recordings))
+        (variables(summary))
+        p.quiet {
+            (info.runs) " runs, " (format!("{:?}", info.sampling).to_lowercase()) " points, seed " (info.seed)
+            @if let Some(shard) = info.shard { ", part " (shard) }
+            @if let Some(screen) = info.screen { "; simulated over predicted failing load " (format!("{:.3}", screen.ratio)) }
+            ". Program " code { (short(&info.fingerprints.program)) } ", inputs " code { (short(&info.fingerprints.inputs)) } "; "
+            (info.versions.iter().map(|(name, version)| format!("{name} {version}")).collect::<Vec<_>>().join(", ")) "."
         }
     };
-    page.into_string()
+    document(&title, STYLE, &body)
 }
 
 fn short(fingerprint: &str) -> &str {
