@@ -86,6 +86,9 @@ pub struct SweepEntry {
 /// The quantiles that are compared: places in [`QUANTILES`] with those of their neighbours, and names.
 const COMPARED: [([usize; 3], &str); 2] = [([3, 4, 5], "50 %"), ([5, 6, 7], "95 %")];
 
+/// The fewest runs whose quantiles are compared: of fewer the spread between quantiles tells little of their error.
+const LEAST_RUNS: u64 = 20;
+
 impl Baseline {
     /// Results without any.
     #[must_use]
@@ -109,7 +112,7 @@ impl Baseline {
     pub fn add_sweep(&mut self, summary: &SweepSummary) -> bool {
         self.versions.extend(summary.info.versions.clone());
         let mut figures = BTreeMap::new();
-        for of in &summary.quantiles {
+        for of in summary.quantiles.iter().filter(|of| of.runs >= LEAST_RUNS) {
             for ([below, at, above], name) in COMPARED {
                 let [low, high] = [of.values[below], of.values[above]];
                 let spread = (high - low) / (QUANTILES[above] - QUANTILES[below]);

@@ -43,7 +43,7 @@ fn a_scenario_without_the_section_has_no_sweep() {
 #[test]
 fn the_preset_varies_every_quantity_and_gives_a_source_of_each() {
     let sweep = read_sweep("[sweep]\npreset = \"workshop\"\n");
-    assert_eq!((sweep.runs, sweep.sampling, sweep.seed), (1000, Sampling::Sobol, 1));
+    assert_eq!((sweep.runs, sweep.sampling, sweep.seed), (1000, Sampling::Independent, 1));
     let mut quantities: Vec<_> = NAMES.iter().map(|entry| entry.1).collect();
     quantities.dedup();
     assert_eq!(sweep.variables.iter().map(|variable| variable.quantity).collect::<Vec<_>>(), quantities);
