@@ -160,6 +160,7 @@ fn no_run_gives_a_page_without_charts_of_runs() {
     assert!(text(&summary).starts_with("a <b> & \"c\": holds with probability 0.0000"));
 }
 
+#[cfg(feature = "cli")]
 #[test]
 fn the_test_case_fails_with_the_sentence() {
     let of = |probability| junit(&summarise(&info(probability), &records())).unwrap();
