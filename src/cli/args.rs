@@ -6,13 +6,15 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::{
     cache::{CacheArgs, CacheCommand},
-    help, versions,
+    format::Format,
+    help,
+    sweep_args::{CompareArgs, MergeArgs, SweepArgs},
+    versions,
 };
 use crate::model::{
     frames::{Pose, PoseRecord, RpyRecord},
     scenario::{Budget, PlannerKind, PlannerSettings},
 };
-use crate::sweep::{info::Shard, screen::Screen};
 
 /// Plans how a two-armed robot holds a board that a person drills or cuts, and verifies the plan in simulation.
 #[derive(Debug, Parser)]
@@ -298,90 +300,6 @@ pub struct SimulateArgs {
     pub report: ReportArgs,
 }
 
-/// `benchdog sweep`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = help::SWEEP)]
-pub struct SweepArgs {
-    /// Scenario file (.toml) or plan file (.json)
-    #[arg(value_name = "SCENARIO|PLAN")]
-    pub input: PathBuf,
-    /// Of a plan: scenario that applies instead of the one in the plan
-    #[arg(long, value_name = "FILE")]
-    pub scenario: Option<PathBuf>,
-    /// Number of runs; overrides the scenario's
-    #[arg(long, value_name = "N")]
-    pub runs: Option<NonZero<u64>>,
-    /// Seed of the draws; overrides the scenario's
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// End once the interval of the probability is at most this wide
-    #[arg(long, value_name = "WIDTH", conflicts_with = "shard")]
-    pub until: Option<f64>,
-    /// Simulate every run, also those that the statics would decide
-    #[arg(long)]
-    pub all: bool,
-    /// Share of the runs that is simulated as a check though the statics would decide them
-    #[arg(long, value_name = "SHARE", default_value_t = Screen::AUDIT_SHARE, conflicts_with = "all")]
-    pub audit: f64,
-    /// Do only part M of N of the runs, for `benchdog merge`
-    #[arg(long, value_name = "M/N")]
-    pub shard: Option<Shard>,
-    /// Number of the worst runs that are recorded
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    pub worst: usize,
-    /// Number of threads; by default one per core. The results do not depend on it
-    #[arg(long, value_name = "N")]
-    pub jobs: Option<NonZero<usize>>,
-    /// Output format
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    pub format: Format,
-    /// Folder of the sweep
-    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
-    pub out: PathBuf,
-    /// Maps between runs.
-    #[command(flatten)]
-    pub cache: CacheArgs,
-}
-
-/// `benchdog merge`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = help::MERGE)]
-pub struct MergeArgs {
-    /// Folders of all parts of a sweep
-    #[arg(required = true, value_name = "DIR")]
-    pub parts: Vec<PathBuf>,
-    /// Output format
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    pub format: Format,
-    /// Folder for the sweep
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
-}
-
-/// `benchdog compare`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = help::COMPARE)]
-pub struct CompareArgs {
-    /// What was: a folder of `run` or `sweep`, or of several of them; a verdict.json, a sweep.json or a baseline
-    #[arg(value_name = "BEFORE")]
-    pub before: PathBuf,
-    /// What is, likewise
-    #[arg(value_name = "AFTER", required_unless_present = "write_baseline")]
-    pub after: Option<PathBuf>,
-    /// Changes up to this are none: of a margin as a share of its limit, of a probability, of a quantile as a share of it
-    #[arg(long, value_name = "SHARE", default_value_t = 0.02)]
-    pub tolerance: f64,
-    /// Also write the comparison as a page to this file
-    #[arg(long, value_name = "FILE", requires = "after")]
-    pub html: Option<PathBuf>,
-    /// Write the last of the results as a baseline to this file
-    #[arg(long, value_name = "FILE")]
-    pub write_baseline: Option<PathBuf>,
-    /// Output format
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    pub format: Format,
-}
-
 /// `benchdog import`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::IMPORT)]
@@ -639,15 +557,6 @@ impl From<BudgetChoice> for Budget {
             BudgetChoice::Exhaustive => Self::Exhaustive,
         }
     }
-}
-
-/// An output format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// A table
-    Human,
-    /// JSON
-    Json,
 }
 
 /// Which simulations to record.

@@ -8,10 +8,11 @@ use std::{
 use serde_json::Value;
 
 use super::{
-    args::{CompareArgs, Format},
     exit::{CliError, Exit},
+    format::Format,
     inputs, output,
     sweep::folder::SUMMARY,
+    sweep_args::CompareArgs,
 };
 use crate::{
     compare::{Baseline, ChangeKind, compare as compared},

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    args::{Format, RecordChoice, ReportArgs},
+    args::{RecordChoice, ReportArgs},
     exit::{CliError, Exit},
+    format::Format,
     inputs::{self, is_same_file},
     output,
     pipeline::Run,

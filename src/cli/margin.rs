@@ -4,8 +4,9 @@
 use serde::Serialize;
 
 use super::{
-    args::{Format, MarginArgs},
+    args::MarginArgs,
     exit::{CliError, Exit},
+    format::Format,
     output,
     predicted::{Predicted, predicted},
     progress::Progress,

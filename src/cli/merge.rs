@@ -3,11 +3,11 @@
 use std::{fs, path::Path};
 
 use super::{
-    args::MergeArgs,
     exit::{CliError, Exit},
     inputs,
     progress::Progress,
     sweep::folder::{PLAN, RUNS, SUMMARY, SweepFolder},
+    sweep_args::MergeArgs,
 };
 use crate::{
     report,

@@ -11,6 +11,7 @@ mod doctor;
 mod exit;
 mod export;
 mod finish;
+mod format;
 mod front;
 mod help;
 mod import;
@@ -41,6 +42,7 @@ mod schema;
 mod select;
 mod simulate;
 mod sweep;
+mod sweep_args;
 mod threads;
 mod versions;
 #[cfg(feature = "recording")]

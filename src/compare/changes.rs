@@ -202,6 +202,13 @@ fn of_sweep(name: &str, before: &SweepEntry, after: &SweepEntry, tolerance: f64)
             by: format!("{by:+.4}, {low:+.4} to {high:+.4}{expected}"),
         });
     }
+    changes.extend(of_figures(name, before, after, tolerance));
+    changes
+}
+
+/// The quantiles that changed.
+fn of_figures(name: &str, before: &SweepEntry, after: &SweepEntry, tolerance: f64) -> Vec<Change> {
+    let mut changes = Vec::new();
     for (figure, [first, first_error]) in &before.figures {
         let Some([second, second_error]) = after.figures.get(figure) else { continue };
         let of_all = figure.starts_with("predicted_load_factor");
@@ -213,9 +220,9 @@ fn of_sweep(name: &str, before: &SweepEntry, after: &SweepEntry, tolerance: f64)
             continue;
         }
         // A larger load factor is better, and so is a later failure; of other figures less is better.
-        let is_better_larger = of_all || figure.starts_with("failed_at");
+        let better_by = if of_all || figure.starts_with("failed_at") { by } else { -by };
         changes.push(Change {
-            kind: sided(if is_better_larger { by } else { -by }),
+            kind: sided(better_by),
             name: name.into(),
             what: figure.clone(),
             before: format!("{first:.3}"),

@@ -6,6 +6,7 @@
 pub mod activation_colour;
 pub mod board;
 pub mod board_mesh;
+pub mod expectation;
 pub mod frames;
 pub mod grasp;
 pub mod lateral;

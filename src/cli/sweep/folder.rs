@@ -8,8 +8,8 @@ use std::{
 use super::{arrow, runner::JOURNAL, runner::Journal};
 use crate::{
     cli::{
-        args::Format,
         exit::{CliError, Exit},
+        format::Format,
         interrupt, output,
         progress::Progress,
     },

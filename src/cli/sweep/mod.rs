@@ -15,12 +15,13 @@ use self::{
     study::Study,
 };
 use super::{
-    args::SweepArgs,
     exit::{CliError, Exit},
     inputs, interrupt, output, pipeline,
     planners::Planners,
     progress::Progress,
-    recording, threads,
+    recording,
+    sweep_args::SweepArgs,
+    threads,
     versions::versions,
 };
 use crate::{
