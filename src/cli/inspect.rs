@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{
-    args::{Format, InspectArgs, LimitArgs},
+    args::{InspectArgs, LimitArgs},
     exit::{CliError, Exit},
+    format::Format,
     output,
     versions::versions,
 };
