@@ -13,7 +13,7 @@ use super::{
 use crate::{
     check::CheckedPlan,
     model::{
-        plan::{Plan, Robustness},
+        plan::{Plan, PlannerRecord, Robustness},
         scenario::{Expectation, Limits, Scenario},
         sweep::Sweep,
         verdict::VerdictKind,
@@ -21,7 +21,7 @@ use crate::{
     planner::{Infeasible, Outcome, Planner, Unreliable, Watch},
     scenario,
     statics::{ContactModel, InternalForces, RobustOutcome, StabilityWorkspace, Variation},
-    sweep::{ArmJoints, Draws, estimate::Estimate, record::RunRecord, screen::Screen},
+    sweep::{ArmJoints, Draws, estimate::Estimate, screen::Screen},
 };
 
 /// The multiples of `limits.load_factor` that are required, one after the other. The steps are the same for all scenarios, so that
@@ -58,6 +58,9 @@ pub fn plan(planner: &Planner, scenario: &Scenario, wanted: f64, watch: &dyn Wat
         Some(sweep) => sweep.clone(),
         None => scenario::usual_sweep(scenario, planner.robot())?,
     };
+    // A run needs no list of what varies.
+    let tested = Scenario { sweep: None, ..scenario.clone() };
+    let demand = Demand { planner, scenario: &tested, sweep: &sweep, wanted, watch };
     let mut best = 0.0_f64;
     let mut step = 0;
     while let Some(&factor) = STEPS.get(step) {
@@ -68,13 +71,14 @@ pub fn plan(planner: &Planner, scenario: &Scenario, wanted: f64, watch: &dyn Wat
             Outcome::Infeasible(_) => break,
         };
         let mut needed = f64::INFINITY;
-        for plan in plans {
+        for mut plan in plans {
             // The plan answers the scenario that was asked.
-            let plan = Plan { scenario: plan.scenario.map(|_| scenario.clone()), ..plan };
-            match test(&plan, scenario, planner, &sweep, wanted, watch)? {
-                Tested::Robust(found) => {
-                    let robustness = Robustness { load_factor: limits.load_factor, ..found };
-                    return Ok(Outcome::Found(with(plan, robustness)));
+            plan.scenario = plan.scenario.map(|_| scenario.clone());
+            match demand.test(&plan)? {
+                Tested::Robust { estimate: Estimate { probability, low, high, .. }, runs } => {
+                    let robustness = Robustness { probability, low, high, runs, load_factor: limits.load_factor };
+                    plan.planner = plan.planner.map(|record| PlannerRecord { robust: Some(robustness), ..record });
+                    return Ok(Outcome::Found(plan));
                 }
                 Tested::Fails { probability, short_by } => {
                     needed = needed.min(factor * short_by);
@@ -87,10 +91,32 @@ pub fn plan(planner: &Planner, scenario: &Scenario, wanted: f64, watch: &dyn Wat
     Ok(Outcome::Infeasible(Infeasible { unreliable: Some(Unreliable { best, wanted }), ..Infeasible::default() }))
 }
 
+/// The next step that is tried: the last one that does not require more than `needed`, or else the one after this.
+fn next_step(step: usize, needed: f64) -> usize {
+    let reached = STEPS.iter().rposition(|&factor| factor <= needed).unwrap_or(0);
+    reached.max(step + 1)
+}
+
+/// What plans are tested for.
+struct Demand<'a> {
+    planner: &'a Planner,
+    /// The scenario without its sweep.
+    scenario: &'a Scenario,
+    sweep: &'a Sweep,
+    /// The probability of holding.
+    wanted: f64,
+    watch: &'a dyn Watch,
+}
+
 /// What came of testing a plan.
 enum Tested {
     /// It holds often enough.
-    Robust(Robustness),
+    Robust {
+        /// By a sweep.
+        estimate: Estimate,
+        /// The runs of this sweep.
+        runs: u64,
+    },
     /// It does not.
     Fails {
         /// The probability of holding, as far as it was found out.
@@ -100,39 +126,36 @@ enum Tested {
     },
 }
 
-/// Tests a plan: unfavourable corner, predictions, small sweep.
-fn test(
-    plan: &Plan,
-    scenario: &Scenario,
-    planner: &Planner,
-    sweep: &Sweep,
-    wanted: f64,
-    watch: &dyn Watch,
-) -> Result<Tested, CliError> {
-    let checked = CheckedPlan::new(planner.robot(), plan, &scenario.human, &scenario.tool)?;
-    let draws = Draws::new(sweep, &ArmJoints::of(plan)).map_err(|error| CliError::Usage(format!("sweep: {error}")))?;
-    let unscreened = Study { scenario, checked: &checked, draws: &draws, screen: None };
-    let predicted = PredictedDraws::of(&unscreened, wanted);
-    let fails = |ratio: f64| Tested::Fails { probability: predicted.hold(ratio), short_by: predicted.short_by(ratio) };
-    // Without a simulation, if no ratio that plans have would help.
-    if predicted.hold(LARGEST_RATIO) < wanted || !resists_corner(&checked, scenario, &draws, wanted) {
-        return Ok(fails(1.0));
+impl Demand<'_> {
+    /// Tests a plan: unfavourable corner, predictions, small sweep.
+    fn test(&self, plan: &Plan) -> Result<Tested, CliError> {
+        let &Self { planner, scenario, sweep, wanted, watch } = self;
+        let checked = CheckedPlan::new(planner.robot(), plan, &scenario.human, &scenario.tool)?;
+        let draws = Draws::new(sweep, &ArmJoints::of(plan));
+        let draws = draws.map_err(|error| CliError::Usage(format!("sweep: {error}")))?;
+        let unscreened = Study { scenario, checked: &checked, draws: &draws, screen: None };
+        let predicted = PredictedDraws::of(&unscreened, wanted);
+        let fails = |ratio| Tested::Fails { probability: predicted.hold(ratio), short_by: predicted.short_by(ratio) };
+        // Without a simulation, if no ratio that plans have would help.
+        if predicted.hold(LARGEST_RATIO) < wanted || !resists_corner(&checked, scenario, &draws, wanted) {
+            return Ok(fails(1.0));
+        }
+        let screen = study::screen(&checked, scenario, sweep, Screen::AUDIT_SHARE, watch)?;
+        let ratio = screen.map_or(1.0, |screen| screen.ratio);
+        if predicted.hold(ratio) < wanted {
+            return Ok(fails(ratio));
+        }
+        let study = Study { screen, ..unscreened };
+        let runs = ((FAILURES / (1.0 - wanted)).ceil() as u64).clamp(LEAST_RUNS, MOST_RUNS);
+        let records: Result<Vec<_>, _> = (0..runs).into_par_iter().map(|index| study.run(index, watch)).collect();
+        let expect = Expectation { confidence: scenario.expect.confidence, ..Expectation::of(VerdictKind::Holds) };
+        let estimate = Estimate::of(&expect, &records?);
+        if estimate.probability < wanted {
+            // The predictions are too good: one step further.
+            return Ok(Tested::Fails { probability: estimate.probability, short_by: 1.0 });
+        }
+        Ok(Tested::Robust { estimate, runs })
     }
-    let screen = study::screen(&checked, scenario, sweep, Screen::AUDIT_SHARE, watch)?;
-    let ratio = screen.map_or(1.0, |screen| screen.ratio);
-    if predicted.hold(ratio) < wanted {
-        return Ok(fails(ratio));
-    }
-    let study = Study { screen, ..unscreened };
-    let runs = ((FAILURES / (1.0 - wanted)).ceil() as u64).clamp(LEAST_RUNS, MOST_RUNS);
-    let records: Result<Vec<RunRecord>, _> = (0..runs).into_par_iter().map(|index| study.run(index, watch)).collect();
-    let expect = Expectation { confidence: scenario.expect.confidence, ..Expectation::of(VerdictKind::Holds) };
-    let Estimate { probability, low, high, .. } = Estimate::of(&expect, &records?);
-    if probability < wanted {
-        // The predictions are too good: one step further.
-        return Ok(Tested::Fails { probability, short_by: 1.0 });
-    }
-    Ok(Tested::Robust(Robustness { probability, low, high, runs, load_factor: scenario.limits.load_factor }))
 }
 
 /// The predicted load factors of many draws.
@@ -187,18 +210,4 @@ fn resists_corner(checked: &CheckedPlan<'_>, scenario: &Scenario, draws: &Draws,
         // Not proven.
         _ => true,
     }
-}
-
-/// The plan with the record of its robustness.
-fn with(mut plan: Plan, robustness: Robustness) -> Plan {
-    if let Some(record) = &mut plan.planner {
-        record.robust = Some(robustness);
-    }
-    plan
-}
-
-/// The next step that is tried: the last one that does not require more than `needed`, or else the one after this.
-fn next_step(step: usize, needed: f64) -> usize {
-    let reached = STEPS.iter().rposition(|&factor| factor <= needed).unwrap_or(0);
-    reached.max(step + 1)
 }
