@@ -17,10 +17,17 @@ pub type Key = [u8; 32];
 
 /// The key of a map of a program.
 pub fn key(program: &str, source: &MapSource<'_>) -> Key {
+    hash_of(|text| {
+        writeln!(text, "{program}")?;
+        source.write_inputs(text)
+    })
+}
+
+/// The SHA-256 of a text, which is not kept.
+pub fn hash_of(write: impl FnOnce(&mut dyn fmt::Write) -> fmt::Result) -> [u8; 32] {
     let mut text = Hashed(Sha256::new());
     // A hash takes any text.
-    let _ = fmt::Write::write_fmt(&mut text, format_args!("{program}\n"));
-    let _ = source.write_inputs(&mut text);
+    let _ = write(&mut text);
     text.0.finalize().into()
 }
 

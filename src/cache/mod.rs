@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 pub use builtin::{Builtin, BuiltinWriter};
 pub use folder::{Cleared, Folder, Host, KeptMap, MOST_BYTES};
+pub use key::hash_of;
 
 use crate::planner::{MapSource, MapStore};
 

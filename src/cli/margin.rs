@@ -137,7 +137,10 @@ pub fn simulated(
 }
 
 /// The judgement on a plan under a multiple of its load.
-fn judge_at(
+///
+/// # Errors
+/// If the simulation cannot be set up from the plan, and after a stop.
+pub fn judge_at(
     checked: &CheckedPlan<'_>,
     scenario: &Scenario,
     factor: f64,

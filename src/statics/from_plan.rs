@@ -30,12 +30,7 @@ impl ContactModel {
     /// # Errors
     /// If a pad is off the board.
     pub fn of_plan(checked: &CheckedPlan<'_>, friction: f64) -> Result<Self, ContactModelError> {
-        let object = &checked.plan().object;
-        let hand = |arm: &CheckedArm<'_>| {
-            HandModel::new(&checked.robot().arms[arm.index], &arm.chain, arm.hold, object, friction)
-        };
-        let hands: Result<Vec<_>, _> = checked.arms().iter().map(hand).collect();
-        Ok(Self::from_hands(hands?, object, &checked.plan().operation))
+        Self::under(checked, friction, &Uncertainty::default())
     }
 
     /// The contact model of a plan whose world deviates from it. Contacts between rigid pads and board stay rigid.

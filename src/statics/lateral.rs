@@ -55,7 +55,7 @@ impl LoadCases {
     /// # Errors
     /// If a pad is off the board.
     pub fn of_plan(checked: &CheckedPlan<'_>, friction: f64, load: &Load) -> Result<Self, ContactModelError> {
-        Ok(Self::new(ContactModel::of_plan(checked, friction)?, &checked.plan().operation, load))
+        Self::under(checked, friction, load, &Uncertainty::default())
     }
 
     /// The cases of a plan whose world deviates from it, see [`ContactModel::under`].

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt, str::FromStr};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{draw::Dimension, screen::Screen};
+use super::{draw::Dimension, screen::Screen, table};
 use crate::model::{
     scenario::Expectation,
     sweep::{Sampling, Variable},
@@ -49,6 +49,12 @@ pub struct SweepInfo {
 }
 
 impl SweepInfo {
+    /// The header of the table of its runs.
+    #[must_use]
+    pub fn header(&self) -> Vec<String> {
+        table::header(self.dimensions.iter().map(|dimension| dimension.name.as_str()))
+    }
+
     /// A text that sweeps have in common whose runs with equal indices are equal: everything but how many runs there are and what
     /// is made of them.
     #[must_use]

@@ -106,7 +106,7 @@ impl SweepFolder {
         format: Format,
         progress: &Progress,
     ) -> Result<Exit, CliError> {
-        let header = table::header(info.dimensions.iter().map(|dimension| dimension.name.as_str()));
+        let header = info.header();
         let summary = summarise(info, records);
         self.remove_recordings(&summary.worst_runs())?;
         for index in summary.worst_runs() {

@@ -5,9 +5,7 @@ pub mod folder;
 mod runner;
 pub mod study;
 
-use std::{fmt, path::PathBuf};
-
-use sha2::{Digest, Sha256};
+use std::path::PathBuf;
 
 use self::{
     folder::SweepFolder,
@@ -25,6 +23,7 @@ use super::{
     versions::versions,
 };
 use crate::{
+    cache::hash_of,
     check::CheckedPlan,
     model::{FORMAT, plan::Plan, scenario::Scenario, stop::Stop as _, sweep::Sweep},
     planner::{Outcome, write_robot},
@@ -36,7 +35,6 @@ use crate::{
         estimate::Estimate,
         info::{Fingerprints, Shard, SweepInfo},
         record::RunRecord,
-        table,
     },
 };
 
@@ -95,7 +93,7 @@ fn swept(
     folder: &SweepFolder,
     progress: &Progress,
 ) -> Result<Exit, CliError> {
-    let header = table::header(info.dimensions.iter().map(|dimension| dimension.name.as_str()));
+    let header = info.header();
     let key = info.key();
     let known = folder.known_runs(&key, &header);
     folder.begin()?;
@@ -197,21 +195,11 @@ fn inputs_fingerprint(study: &Study<'_>) -> String {
     scenario.robot.description.clear();
     scenario.robot.packages.clear();
     let plan = Plan { scenario: None, robot: String::new(), ..study.checked.plan().clone() };
-    let mut hashed = Hashed(Sha256::new());
-    // A hash takes any text.
-    let _ = fmt::Write::write_fmt(&mut hashed, format_args!("{plan:?} {scenario:?} "));
-    let _ = write_robot(&mut hashed, study.checked.robot());
-    base16ct::lower::encode_string(&hashed.0.finalize())
-}
-
-/// Text that is hashed as it is written.
-struct Hashed(Sha256);
-
-impl fmt::Write for Hashed {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        self.0.update(text.as_bytes());
-        Ok(())
-    }
+    let hash = hash_of(|text| {
+        write!(text, "{plan:?} {scenario:?} ")?;
+        write_robot(text, study.checked.robot())
+    });
+    base16ct::lower::encode_string(&hash)
 }
 
 /// The bytes of the recording of a run, which is simulated for it; `None` without recordings.

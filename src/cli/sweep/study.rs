@@ -2,19 +2,19 @@
 
 use crate::{
     check::CheckedPlan,
-    cli::{exit::CliError, pipeline},
-    judge::{Judgement, failing_load, judge},
+    cli::{exit::CliError, margin, pipeline},
+    judge::{Judgement, failing_load},
     model::{
         load::ForceProfile,
         scenario::Scenario,
         stop::Stop,
         sweep::Sweep,
+        uncertainty::Uncertainty,
         verdict::{CheckKind, VerdictKind},
     },
-    sim::{self, Conditions},
     statics::{LoadCases, ResponseOutcome, StabilityWorkspace},
     sweep::{
-        Draws,
+        Drawn, Draws,
         record::{Decided, MeasuredRun, PredictedRun, RunRecord},
         screen::Screen,
     },
@@ -33,10 +33,14 @@ pub struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// The scenario of a run: its deviations are those of the scenario and those drawn.
+    /// The scenario of a run.
     pub fn scenario_of(&self, index: u64) -> Scenario {
-        let drawn = self.draws.draw(index).uncertainty;
-        Scenario { uncertainty: self.scenario.uncertainty.and(&drawn), ..self.scenario.clone() }
+        self.scenario_under(&self.draws.draw(index).uncertainty)
+    }
+
+    /// The scenario with drawn deviations beside its own.
+    fn scenario_under(&self, drawn: &Uncertainty) -> Scenario {
+        Scenario { uncertainty: self.scenario.uncertainty.and(drawn), ..self.scenario.clone() }
     }
 
     /// The predicted load factor of a run; 0 without a prediction.
@@ -49,8 +53,8 @@ impl Study<'_> {
     /// # Errors
     /// If the simulation cannot be set up, and after a stop.
     pub fn run(&self, index: u64, stop: &dyn Stop) -> Result<RunRecord, CliError> {
-        let values = self.draws.draw(index).values;
-        let scenario = self.scenario_of(index);
+        let Drawn { values, uncertainty } = self.draws.draw(index);
+        let scenario = self.scenario_under(&uncertainty);
         let predicted = predicted(self.checked, &scenario);
         let screened = self.screen.zip(predicted).is_some_and(|(screen, run)| screen.holds(run.load_factor));
         let audited = self.screen.is_some_and(|screen| screen.is_audited(index));
@@ -106,12 +110,7 @@ pub fn screen(
         return Ok(None);
     }
     let Some(PredictedRun { load_factor, .. }) = predicted(checked, scenario) else { return Ok(None) };
-    let judged = |factor: f64| {
-        let conditions = Conditions::of(scenario).scaled(factor);
-        let trace = sim::simulate_until(checked, &conditions, stop).map_err(CliError::Simulation)?;
-        Ok::<_, CliError>(judge(&trace, &scenario.limits))
-    };
-    let simulated = failing_load(load_factor, judged)?;
+    let simulated = failing_load(load_factor, |factor| margin::judge_at(checked, scenario, factor, stop))?;
     let ratio = simulated.holds_at / load_factor;
     Ok((ratio.is_finite() && ratio > 0.0).then_some(Screen { ratio, audit_share, seed: sweep.seed }))
 }
