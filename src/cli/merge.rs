@@ -1,6 +1,10 @@
 //! `benchdog merge`: joins the parts of a sweep into the files that one sweep of all runs would have written.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    io::{self, ErrorKind},
+    path::Path,
+};
 
 use super::{
     exit::{CliError, Exit},
@@ -32,20 +36,26 @@ struct Part<'a> {
 pub fn merge(args: &MergeArgs) -> Result<Exit, CliError> {
     let progress = Progress::begin("reading the parts", "")?;
     let parts = args.parts.iter().map(|folder| Part::read(folder)).collect::<Result<Vec<_>, _>>()?;
-    let parts = in_order(parts)?;
+    let mut parts = in_order(parts)?;
     let folder = SweepFolder::new(&args.out);
     let read: Vec<_> = args.parts.iter().flat_map(|part| SweepFolder::new(part).files()).collect();
     inputs::protect(&read, folder.files())?;
     report::file::check_folder(&args.out)?;
     folder.begin()?;
     let info = SweepInfo { shard: None, ..parts[0].info.clone() };
-    let mut records: Vec<RunRecord> = parts.iter().flat_map(|part| part.records.iter().cloned()).collect();
+    let mut records: Vec<RunRecord> = parts.iter_mut().flat_map(|part| std::mem::take(&mut part.records)).collect();
     records.sort_unstable_by_key(|record| record.index);
     // Each part has recorded the worst of its own runs, so it has those that are among the worst of all.
     let recording = |index: u64| {
-        let part = parts.iter().find(|part| index % part.shard.of == part.shard.number - 1);
-        let path = part.map(|part| SweepFolder::new(part.folder).recording(index));
-        Ok(path.and_then(|path| fs::read(path).ok()))
+        let Some(part) = parts.iter().find(|part| index % part.shard.of == part.shard.number - 1) else {
+            return Ok(None);
+        };
+        let path = SweepFolder::new(part.folder).recording(index);
+        match fs::read(&path) {
+            // A program without recordings made the part.
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            read => read.map(Some).map_err(|error| unreadable(&path, &error, "")),
+        }
     };
     folder.write(&info, &records, &parts[0].plan, &recording, args.format, &progress)
 }
@@ -55,10 +65,8 @@ impl<'a> Part<'a> {
         let files = SweepFolder::new(folder);
         let read = |name: &str| {
             let path = files.file(name);
-            fs::read(&path).map_err(|error| {
-                let why = if name == SUMMARY { "; a part without it is not finished" } else { "" };
-                CliError::Usage(format!("{}: failed to read: {error}{why}", path.display()))
-            })
+            let why = if name == SUMMARY { "; a part without it is not finished" } else { "" };
+            fs::read(&path).map_err(|error| unreadable(&path, &error, why))
         };
         let wrong = |name: &str, problem: String| CliError::Usage(format!("{}:{problem}", files.file(name).display()));
         let summary: SweepSummary = serde_json::from_slice(&read(SUMMARY)?)
@@ -67,7 +75,7 @@ impl<'a> Part<'a> {
         let Some(shard) = info.shard else {
             return Err(wrong(SUMMARY, " shard: found none, expected a part (benchdog sweep --shard M/N)".into()));
         };
-        let header = table::header(info.dimensions.iter().map(|dimension| dimension.name.as_str()));
+        let header = info.header();
         let text = String::from_utf8_lossy(&read(RUNS)?).into_owned();
         let records = table::read(&text, &header, false).map_err(|error| wrong(RUNS, error.to_string()))?;
         let complete = records.iter().map(|record| record.index).eq(shard.indices(info.runs));
@@ -102,6 +110,11 @@ impl<'a> Part<'a> {
         let (what, expected, found) = known.or_else(rest).or_else(plans)?;
         Some(format!("{what}: found {found}, expected {expected} as in {}", other.folder.display()))
     }
+}
+
+/// A file that cannot be read, and what that means.
+fn unreadable(path: &Path, error: &io::Error, why: &str) -> CliError {
+    CliError::Usage(format!("{}: failed to read: {error}{why}", path.display()))
 }
 
 /// The parts by their number.
