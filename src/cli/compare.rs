@@ -33,16 +33,14 @@ pub fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
     let first = results(&args.before, &mut read)?;
     let second = args.after.as_deref().map(|path| results(path, &mut read)).transpose()?;
     inputs::protect(&read, args.write_baseline.iter().chain(&args.html).cloned())?;
+    if second.as_ref().is_some_and(|second| have_no_kind_in_common(&first, second)) {
+        let found = "found scenarios on one side and sweeps on the other, expected results of one kind";
+        return Err(CliError::Usage(found.into()));
+    }
     if let Some(path) = &args.write_baseline {
         report::file::write_whole(path, report::json::pretty(second.as_ref().unwrap_or(&first)).as_bytes())?;
     }
     let Some(second) = second else { return Ok(Exit::Met) };
-    let kinds = [&first, &second].map(|of| (of.scenarios.is_empty(), of.sweeps.is_empty()));
-    if matches!(kinds, [(true, _), (_, true)] | [(_, true), (true, _)]) {
-        return Err(CliError::Usage(
-            "found scenarios on one side and sweeps on the other, expected results of one kind".into(),
-        ));
-    }
     let comparison = compared(&first, &second, args.tolerance);
     if let Some(path) = &args.html {
         report::file::write_whole(path, report::compare::html(&comparison, args.tolerance).as_bytes())?;
@@ -52,6 +50,12 @@ pub fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         Format::Json => output::print(&report::json::pretty(&comparison))?,
     }
     Ok(if comparison.count(ChangeKind::Regression) > 0 { Exit::NotMet } else { Exit::Met })
+}
+
+/// True for scenarios alone on one side and sweeps alone on the other.
+fn have_no_kind_in_common(first: &Baseline, second: &Baseline) -> bool {
+    let [first, second] = [first, second].map(|of| (of.scenarios.is_empty(), of.sweeps.is_empty()));
+    matches!((first, second), ((true, _), (_, true)) | ((_, true), (true, _)))
 }
 
 /// The results at a path: a baseline, a verdict, a sweep, or a folder of verdicts and sweeps.

@@ -40,8 +40,8 @@ pub struct ScenarioEntry {
     pub verdict: VerdictKind,
     /// Whether it is the expected one.
     pub met: bool,
-    /// The checks by name.
-    pub checks: BTreeMap<String, CheckEntry>,
+    /// The checks.
+    pub checks: BTreeMap<CheckKind, CheckEntry>,
 }
 
 /// A check of a verdict.
@@ -100,9 +100,10 @@ impl Baseline {
     #[must_use]
     pub fn add_verdict(&mut self, verdict: &Verdict) -> bool {
         self.versions.extend(verdict.versions.clone());
-        let checks = verdict.checks.iter().map(|check| {
-            (check.name.name().to_owned(), CheckEntry { value: check.value, limit: check.limit, margin: check.margin })
-        });
+        let checks = verdict
+            .checks
+            .iter()
+            .map(|check| (check.name, CheckEntry { value: check.value, limit: check.limit, margin: check.margin }));
         let entry = ScenarioEntry { verdict: verdict.verdict, met: verdict.met, checks: checks.collect() };
         self.scenarios.insert(verdict.name.clone(), entry).is_none()
     }
@@ -141,23 +142,4 @@ impl Baseline {
     pub fn is_empty(&self) -> bool {
         self.scenarios.is_empty() && self.sweeps.is_empty()
     }
-}
-
-/// The unit of a check by its name.
-pub(super) fn unit_of(name: &str) -> &'static str {
-    const ALL: [CheckKind; 12] = [
-        CheckKind::Slip,
-        CheckKind::SlipRotation,
-        CheckKind::Sag,
-        CheckKind::Deflection,
-        CheckKind::Creep,
-        CheckKind::TorqueRatio,
-        CheckKind::GripWrench,
-        CheckKind::PadOpen,
-        CheckKind::ContactLost,
-        CheckKind::Drop,
-        CheckKind::PersonOverlap,
-        CheckKind::Clearance,
-    ];
-    ALL.into_iter().find(|kind| kind.name() == name).map_or("", CheckKind::unit)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use super::{
-    baseline::{Baseline, ScenarioEntry, SweepEntry, unit_of},
+    baseline::{Baseline, ScenarioEntry, SweepEntry},
     noise::difference,
 };
 
@@ -136,7 +136,7 @@ fn of_scenario(name: &str, before: &ScenarioEntry, after: &ScenarioEntry, tolera
         let Some(second) = after.checks.get(check) else {
             // Without a simulation there are no checks at all, which the verdict tells.
             if !after.checks.is_empty() {
-                changes.push(one_sided(name, check, Some(format!("{:.3}", first.value)), None));
+                changes.push(one_sided(name, check.name(), Some(format!("{:.3}", first.value)), None));
             }
             continue;
         };
@@ -149,12 +149,12 @@ fn of_scenario(name: &str, before: &ScenarioEntry, after: &ScenarioEntry, tolera
         if by.abs() <= tolerance || both_fail {
             continue;
         }
-        let unit = unit_of(check);
+        let unit = check.unit();
         let value = |of: f64| format!("{of:.3} {unit}").trim_end_matches(" 1").trim_end().to_owned();
         changes.push(Change {
             kind: sided(by),
             name: name.into(),
-            what: check.clone(),
+            what: check.to_string(),
             before: value(first.value),
             after: value(second.value),
             by: format!("margin {:+.1} % of the limit", 100.0 * by),
@@ -240,7 +240,7 @@ mod tests {
     use super::*;
     use crate::{
         compare::CheckEntry,
-        model::verdict::VerdictKind,
+        model::verdict::{CheckKind, VerdictKind},
         sweep::{info::Fingerprints, interval::wilson},
     };
 
@@ -250,7 +250,7 @@ mod tests {
         ScenarioEntry {
             verdict,
             met,
-            checks: BTreeMap::from([("deflection".into(), deflection), ("person_overlap".into(), overlap)]),
+            checks: BTreeMap::from([(CheckKind::Deflection, deflection), (CheckKind::PersonOverlap, overlap)]),
         }
     }
 

@@ -121,7 +121,7 @@ impl Verdict {
 }
 
 /// The quantities that are checked, in the order of tables (`docs/method.md#8-judgement`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckKind {
     /// Largest translation of a hand on the board since the hand-over, mm.

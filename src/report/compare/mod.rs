@@ -2,8 +2,11 @@
 
 use maud::html as markup;
 
-use super::html::document;
-use crate::compare::{ChangeKind, Comparison};
+use super::{columns::aligned, html::document};
+use crate::compare::{Change, ChangeKind, Comparison};
+
+/// The head of the table of changes.
+const HEAD: [&str; 6] = ["", "name", "what", "before", "after", "by"];
 
 /// A kind of change in words, with its class in the style sheet.
 fn words(kind: ChangeKind) -> (&'static str, &'static str) {
@@ -33,27 +36,14 @@ pub fn sentence(comparison: &Comparison) -> String {
 /// A table of the changes, the versions that differ, and the number of changes.
 #[must_use]
 pub fn text(comparison: &Comparison) -> String {
-    let mut rows = vec![["", "name", "what", "before", "after", "by"].map(str::to_owned)];
-    rows.extend(comparison.changes.iter().map(|change| {
-        [
-            words(change.kind).0.to_owned(),
-            change.name.clone(),
-            change.what.clone(),
-            change.before.clone(),
-            change.after.clone(),
-            change.by.clone(),
-        ]
-    }));
-    let mut text = String::new();
-    if rows.len() > 1 {
-        let widths: [usize; 6] =
-            std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
-        for row in &rows {
-            let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}"));
-            text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
-            text.push('\n');
-        }
-    }
+    let head = HEAD.map(str::to_owned).to_vec();
+    let changes = comparison.changes.iter().map(|change| {
+        let Change { kind, name, what, before, after, by } = change.clone();
+        vec![words(kind).0.to_owned(), name, what, before, after, by]
+    });
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(changes).collect();
+    // A head alone says nothing.
+    let mut text = if rows.len() > 1 { aligned(&rows, HEAD.len()) } else { String::new() };
     for (name, before, after) in &comparison.versions {
         text.push_str(&format!("version of {name}: {before}, now {after}\n"));
     }
@@ -73,7 +63,7 @@ pub fn html(comparison: &Comparison, tolerance: f64) -> String {
         @else {
             div.wide {
                 table {
-                    tr { @for head in ["", "name", "what", "before", "after", "by"] { th { (head) } } }
+                    tr { @for head in HEAD { th { (head) } } }
                     @for change in &comparison.changes {
                         @let (word, class) = words(change.kind);
                         tr {
