@@ -9,9 +9,11 @@ pub mod bounds;
 mod checked_plan;
 mod flaw;
 mod posture;
+mod staged;
 mod tolerances;
 
 pub use board::check_plate;
 pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan, Contact, fingers_across};
 pub use flaw::{Flaw, Flaws, ON_MATERIAL, off_material};
+pub use staged::{Holding, PiecePlan, StagedFlaw, StagedStates};
 pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, POSTURE_DEG, POSTURE_M, PoseTolerance};

@@ -57,6 +57,8 @@ fn phase_events(trace: &Trace, samples: &[Sample]) -> Vec<Event> {
                 Phase::Ramp => format!("ramp: the load increases; the tool tip sagged {:.2} mm", sag_mm(trace, sample)),
                 Phase::Hold => format!("hold: the full load, factor {:.2}", sample.load_factor),
                 Phase::Release => "release: no load".to_owned(),
+                Phase::Move => "move: the arms move the board".to_owned(),
+                Phase::Regrasp => "regrasp: one arm changes its grasp".to_owned(),
             },
         })
         .collect()

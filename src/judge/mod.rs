@@ -11,6 +11,7 @@ mod fingerprint;
 mod judgement;
 mod measure;
 mod self_checks;
+mod staged;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +21,7 @@ pub use confirm::confirmed;
 pub use failing_load::{FailingLoad, failing_load};
 pub use fingerprint::fingerprint;
 pub use judgement::Judgement;
+pub use staged::{StageJudgement, judge_staged};
 
 use crate::model::{
     measures::Measures,
@@ -121,7 +123,7 @@ struct Judged<'a> {
 fn judged<'a>(samples: &'a [Sample], measures: &Measures) -> Judged<'a> {
     let dropped = |index: usize| measures.hands.iter().any(|hand| hand.slip_mm[index] > checks::DROP_MM);
     let lost = (0..samples.len()).find(|&index| !samples[index].has_contact() || dropped(index));
-    let end = samples.iter().rposition(|sample| sample.phase.is_loaded()).map(|last| last + 1);
+    let end = samples.iter().rposition(|sample| sample.phase.is_judged()).map(|last| last + 1);
     match (lost.map(|lost| lost + 1), end) {
         (Some(lost), end) if end.is_none_or(|end| lost <= end) => Judged { samples: &samples[..lost], is_lost: true },
         (_, end) => Judged { samples: &samples[..end.unwrap_or(0)], is_lost: false },

@@ -22,6 +22,7 @@ pub mod polygon;
 mod pose_form;
 pub mod scenario;
 pub mod staged_plan;
+pub mod staged_trace;
 pub mod stop;
 pub mod sweep;
 pub mod task;

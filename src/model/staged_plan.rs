@@ -86,6 +86,9 @@ pub struct HoldStage {
 pub struct WorkedPiece {
     /// The piece.
     pub piece: Piece,
+    /// Roll of a drill about its axis from x_T = x_O, rad; 0 by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll_rad: Option<f64>,
     /// The person's posture in its middle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human: Option<HumanPosture>,

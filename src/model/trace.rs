@@ -16,6 +16,10 @@ pub enum Phase {
     Hold,
     /// The load is removed.
     Release,
+    /// Of a task: all arms move the board.
+    Move,
+    /// Of a task: one arm changes its grasp, the others hold the board.
+    Regrasp,
 }
 
 impl Phase {
@@ -27,7 +31,14 @@ impl Phase {
             Self::Ramp => "ramp",
             Self::Hold => "hold",
             Self::Release => "release",
+            Self::Move => "move",
+            Self::Regrasp => "regrasp",
         }
+    }
+
+    /// True if a hold is judged in this phase, and up to its end: under a load, or while arms move.
+    pub fn is_judged(self) -> bool {
+        self.is_loaded() || matches!(self, Self::Move | Self::Regrasp)
     }
 
     /// True if the tool's wrench acts in this phase.

@@ -38,8 +38,7 @@ pub fn assemble_placed(
     let operation = scenario.operation.rolled(candidate.work.roll_rad);
     let object = placed_object(scenario, x_wo);
     let arms = plan_arms(problem, candidate);
-    let free_share = Configuration { placement: Placement { x_wo, x_wb }, ..Configuration::new(problem, candidate) }
-        .free_share_of_sight(problem);
+    let free_share = Configuration::placed(problem, candidate, Placement { x_wo, x_wb }).free_share_of_sight(problem);
     let figures = problem.human.posture_figures(&candidate.work.q_h_rad, &problem.normal_t, free_share);
     let posture = HumanPosture::new(&scenario.human, x_wb, candidate.work.q_h_rad);
     let comfort = comfort::weighted(*comfort, &scenario.comfort);

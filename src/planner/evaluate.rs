@@ -69,7 +69,11 @@ pub struct Rejected {
 impl Configuration {
     /// The configuration of a candidate whose arms have joint angles.
     pub fn new(problem: &Problem<'_>, candidate: &Candidate) -> Self {
-        let placement = candidate.placement(problem);
+        Self::placed(problem, candidate, candidate.placement(problem))
+    }
+
+    /// The configuration of a candidate with board and person at given poses.
+    pub fn placed(problem: &Problem<'_>, candidate: &Candidate, placement: Placement) -> Self {
         Self {
             placement,
             link_poses: problem.robot.link_poses(&candidate.arms),

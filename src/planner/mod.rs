@@ -41,6 +41,7 @@ mod search;
 mod second_search;
 mod select;
 mod stats;
+pub mod task;
 mod task_family;
 mod transfer;
 mod verify;

@@ -477,3 +477,61 @@ impl WarmStartBudget {
         }
     }
 }
+
+/// Numbers of the search for whole tasks ([`super::task`]).
+pub mod task {
+    /// Pieces of the path whose best holds are the search's holds, at most; of longer paths as many at equal distances.
+    pub const ROOTS: usize = 16;
+    /// Pieces of the path that are planned by themselves, at most; of longer paths as many at equal distances.
+    pub const PLANNED_PIECES: usize = 64;
+    /// Speed of a joint whose URDF states no limit, rad/s or m/s (assumed).
+    pub const DEFAULT_SPEED_RAD_S: f64 = 1.0;
+    /// Poses of the tool that are used.
+    pub const TOOL_POSES: usize = 2;
+    /// Poses of the tool that are nearer to each other than this are the same, m, rad: the person stands differently beyond.
+    pub const DISTINCT_TOOL_M: f64 = 0.1;
+    /// The same for rotations, rad.
+    pub const DISTINCT_TOOL_RAD: f64 = 0.35;
+    /// Person, tool and board are moved together, which the muscles do not feel and which lets the arms reach other grasps: positions
+    /// of a lattice along x_W, along y_W and of a turn about the vertical,
+    pub const SHIFTS: usize = 3;
+    /// its step, m,
+    pub const SHIFT_M: f64 = 0.08;
+    /// and that of the turn, rad.
+    pub const SHIFT_RAD: f64 = 0.3;
+    /// Grips that are drawn near those of the best holds, per piece,
+    pub const NEAR_GRIPS: usize = 100;
+    /// and how far at most: along the edge, m; depth, m; angle, rad.
+    pub const NEAR_GRASP: [f64; 3] = [0.08, 0.015, 0.5];
+    /// Board poses for which grips are drawn, per piece.
+    pub const DRAWN_BOARDS: usize = 30;
+    /// First stream of the random numbers for grips.
+    pub const GRIP_STREAM: u128 = 1 << 65;
+    /// Grips that are kept of those that reach a piece.
+    pub const GRIPS_PER_PIECE: usize = 120;
+    /// Largest motion of a joint to a neighbouring board pose, rad: more is a jump to another configuration.
+    pub const MOST_FOLLOWED_RAD: f64 = 1.2;
+    /// Postures of the map from which one for a piece is searched for.
+    pub const MAPPED_STARTS: usize = 3;
+    /// Cost per rad of the joint that moves most: breaks ties in favour of less motion.
+    pub const COST_PER_RAD: f64 = 0.002;
+
+    /// Largest step of a motion test in any joint or in the board's rotation, rad: 2 degrees.
+    pub const STEP_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
+    /// Largest step of a motion test in the board's centre, m.
+    pub const STEP_M: f64 = 0.01;
+    /// Largest joint step after projection onto the grasps, rad: anything longer is a jump to another configuration.
+    pub const JUMP_RAD: f64 = 3.0 * STEP_RAD;
+    /// Ways on which an open gripper leaves the board in its plane: directions from -z_G, rad,
+    pub const WITHDRAWAL_ANGLES_RAD: [f64; 5] = [0.0, 0.6, -0.6, 1.1, -1.1];
+    /// and turns meanwhile, rad; the first one that is possible is taken.
+    pub const WITHDRAWAL_TURNS_RAD: [f64; 3] = [0.0, 0.6, -0.6];
+    /// Longest such way, m: deep pads and an edge that is passed obliquely.
+    pub const WITHDRAWAL_M: f64 = 0.2;
+    /// Collision tests of one free motion, at most: a few tenths of a second.
+    pub const FREE_TESTS: usize = 6_000;
+    /// Share of the board's weight that hands carry beside the weight while arms move: the board accelerates by that share of gravity.
+    pub const CARRIED_RESERVE: f64 = 0.5;
+    /// First stream of the random numbers for free motions.
+    pub const SEED_STREAM: u128 = 1 << 64;
+}

@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use rayon::prelude::*;
+
 use super::{
     assemble::verified,
     evaluate::{Evaluator, Feasible},
@@ -19,9 +21,10 @@ use super::{
     second_search::search_again,
     select,
     stats::SearchStats,
+    task::{self, TaskInfeasible, TaskPlan, TaskSearch},
     task_family::TaskFamily,
     warm_starts::WarmStarts,
-    watch::{Phase, Subordinate, Watch, begin, go_on},
+    watch::{Counter, Phase, Subordinate, Watch, begin, go_on},
 };
 use crate::{
     model::{
@@ -29,6 +32,8 @@ use crate::{
         plan::Plan,
         scenario::{Optima, Person, PlannerKind, PlannerSettings, Scenario, StandingPlace},
         stop::Never,
+        task::Task,
+        tool_path::Piece,
     },
     robot::Robot,
 };
@@ -451,6 +456,50 @@ impl<'a> Search<'a> {
             }
             Outcome::Infeasible(why) => Ok(Outcome::Infeasible(why)),
         }
+    }
+
+    /// The staged plan of a task with the person's best response, beside the best plans for its pieces by themselves.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn task(self, task: &Task) -> Result<Result<TaskPlan, TaskInfeasible>, PlanError> {
+        let Self { planner, scenario, watch } = self;
+        let maps = planner.maps(scenario);
+        let no_hold = |piece: usize, why| {
+            let place = task.pieces().get(piece).copied().unwrap_or(Piece { stroke: 0, from_m: 0.0, to_m: 0.0 });
+            Ok(Err(TaskInfeasible { piece, place, alone: Some(Box::new(why)) }))
+        };
+        // The optima of the first piece serve for all, and make them comparable.
+        let scenario = match planner.normalised(&maps, scenario, watch)? {
+            Outcome::Found(scenario) => scenario,
+            Outcome::Infeasible(why) => return no_hold(0, why),
+        };
+        let pieces = task::pieces(&scenario, task);
+        let chosen = task::planned_by_themselves(pieces.len());
+        // Threads that make the same map would make it twice.
+        for &piece in &chosen {
+            planner.warm_starts(&maps, &pieces[piece], watch)?;
+        }
+        let counter = Counter::new(watch, Phase::Pieces, chosen.len());
+        let plan = |&piece: &usize| -> Result<(usize, Outcome<Plan>), PlanError> {
+            let warm = planner.warm_starts(&maps, &pieces[piece], &counter)?;
+            // A piece has neighbours that are searched too.
+            let found = best_plan(&pieces[piece], &maps, &warm, false, &counter)?;
+            counter.advance();
+            Ok((piece, found))
+        };
+        let planned = chosen.par_iter().map(plan).collect::<Result<Vec<_>, _>>()?;
+        go_on(watch)?;
+        let mut separate = vec![None; pieces.len()];
+        for (piece, outcome) in planned {
+            match outcome {
+                Outcome::Found(plan) => separate[piece] = Some(plan),
+                Outcome::Infeasible(why) => return no_hold(piece, why),
+            }
+        }
+        let robot = &maps.library.robot;
+        let search = TaskSearch { task, scenario: &scenario, pieces: &pieces, separate: &separate, robot, watch };
+        Ok(search.run()?.map(|staged| TaskPlan { staged, separate: separate.clone() }))
     }
 
     /// Plans for a whole circle that is cut, with the person's best response: one grasp, a sequence of board poses with one

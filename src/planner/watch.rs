@@ -82,6 +82,10 @@ pub enum Phase {
         /// All weightings, those that are searched again included.
         of: u64,
     },
+    /// The best holds of a task's pieces by themselves.
+    Pieces,
+    /// The way through the holds of a task.
+    Task,
     /// One grasp for all points of a circle.
     OneGrasp,
     /// A sequence of poses for the points of a circle.
@@ -106,6 +110,8 @@ impl std::fmt::Display for Phase {
             Self::SecondSearch => write!(f, "searching a second time, more thoroughly"),
             Self::Explanation => write!(f, "finding out why nothing was found"),
             Self::Weighting { number, of } => write!(f, "searching weighting {number} of {of}"),
+            Self::Pieces => write!(f, "planning the pieces of the path"),
+            Self::Task => write!(f, "searching the stages of the task"),
             Self::OneGrasp => write!(f, "searching one grasp for the circle"),
             Self::Sequence => write!(f, "searching a sequence of poses for the circle"),
             Self::Point { number, of } => write!(f, "planning point {number} of {of}"),
@@ -155,6 +161,8 @@ impl<'w> Counter<'w> {
         }
     }
 }
+
+impl Watch for Counter<'_> {}
 
 impl Stop for Counter<'_> {
     fn is_stopped(&self) -> bool {

@@ -43,7 +43,8 @@ const ROBOT_CLEARANCE: &str = "robot_clearance_m";
 const GRIP_WRENCH: &str = "grip_wrench_g";
 
 /// A phase is stored as its index; later versions append.
-const PHASES: [Phase; 5] = [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Grip];
+const PHASES: [Phase; 7] =
+    [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Grip, Phase::Move, Phase::Regrasp];
 
 /// Data of the trace that does not depend on time.
 #[derive(Serialize, Deserialize)]

@@ -112,6 +112,8 @@ pub struct Joint {
     pub upper: f64,
     /// Position of a joint that is not part of an arm or a gripper, rad or m.
     pub rest: f64,
+    /// Largest speed, rad/s or m/s; 0 where the URDF states none.
+    pub most_speed: f64,
     /// The joint that it follows.
     pub mimic: Option<Mimic>,
 }
@@ -432,6 +434,7 @@ impl Joint {
             lower: 0.0,
             upper: 0.0,
             rest: 0.0,
+            most_speed: 0.0,
             mimic: None,
         }
     }

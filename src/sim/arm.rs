@@ -18,6 +18,7 @@ use super::{
     pad_shape::{GraspingHand, PadLoading},
     pad_springs::{PadLayer, PadSprings},
     servo::Servo,
+    staged::ArmCommand,
     world::{contact_softness_s2, drive_inertia_kg},
 };
 use crate::{
@@ -51,6 +52,8 @@ pub(super) struct SimArm {
     pub hand: SimHand,
     /// Its elastic pads, or an elastic grip.
     pad_springs: Option<PadSprings>,
+    /// Factor of the force with which the gripper closes; negative while it opens.
+    grip_share: f64,
 }
 
 /// The board of a scene.
@@ -106,7 +109,7 @@ impl SimArm {
             joined.join(world, board.body);
         }
         let bodies = chain.links.iter().map(|link| link.body).collect();
-        Ok(Self { multibody, joints, bodies, hand, pad_springs })
+        Ok(Self { multibody, joints, bodies, hand, pad_springs, grip_share: 1.0 })
     }
 
     /// Sets the rest angle of every servo, and the forces of the fingers, from the state before a step.
@@ -119,10 +122,42 @@ impl SimArm {
             joint.rest_rad = joint.servo.rest_rad(q_rad, velocity_rad_s, timestep_s);
             joint.place.set_spring(multibody, joint.servo.stiffness_nm_rad, joint.rest_rad);
         }
-        self.hand.begin_step(multibody, hand_over.grip_share());
+        self.hand.begin_step(multibody, hand_over.grip_share() * self.grip_share);
         if let Some(springs) = &mut self.pad_springs {
             springs.store_state(multibody);
         }
+    }
+
+    /// Gives every joint a new target, and the gripper another share of its force.
+    pub fn command(&mut self, command: &ArmCommand) {
+        let ArmCommand { q_rad, speed_rad_s, arm_nm, board_nm, grip_share } = command;
+        for (k, joint) in self.joints.iter_mut().enumerate() {
+            (joint.servo.commanded_rad, joint.servo.commanded_rad_s) = (q_rad[k], speed_rad_s[k]);
+            (joint.servo.arm_nm, joint.board_nm) = (arm_nm[k], board_nm[k]);
+        }
+        self.grip_share = *grip_share;
+    }
+
+    /// Gives the fingers the pads of another grasp, and the grip force of that grasp, N.
+    pub fn regrip(
+        &mut self,
+        world: &mut PhysicsWorld,
+        robot: &Robot,
+        (number, index, hold): (usize, usize, &ArmHold),
+        object: &PlacedObject,
+        conditions: &Conditions,
+    ) {
+        let SimHand::Fingers(fingers) = &mut self.hand else { return };
+        let arm = &robot.arms[index];
+        let bodies = ArmBodies::new(robot, arm, None, object.size_m[2]);
+        let contact = pad_contact(world, arm, (number, hold), &bodies, object, conditions);
+        let force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale_of(number);
+        fingers.regrip(world, arm, contact, force_n);
+    }
+
+    /// True if the gripper has rigid pads.
+    pub fn has_rigid_pads(&self) -> bool {
+        matches!(self.hand, SimHand::Fingers(_)) && self.pad_springs.is_none()
     }
 
     /// Kinetic and gravitational energy of the arm, J.
@@ -181,11 +216,23 @@ fn hand(
         let limits = measured.limits.scaled(grip_scale);
         return SimHand::Joined(Box::new(JoinedHand::new(arm, merged, chain, limits, object.size_m[2])));
     }
-    let grasping = GraspingHand { arm, bodies: merged, x_og: hold.x_og };
-    let loading = PadLoading::new(&grasping, object, hold.grip_force_n * grip_scale, contact_softness_s2(world));
-    let contact =
-        PadContact { friction: conditions.friction_of(number), loading, collider: collider_of(object, number) };
+    let contact = pad_contact(world, arm, (number, hold), merged, object, conditions);
     SimHand::Fingers(Box::new(SimGripper::new(world, robot, arm, merged, chain, contact)))
+}
+
+/// How the pads of a hand touch the board.
+fn pad_contact(
+    world: &PhysicsWorld,
+    arm: &Arm,
+    (number, hold): (usize, &ArmHold),
+    bodies: &ArmBodies,
+    object: &PlacedObject,
+    conditions: &Conditions,
+) -> PadContact {
+    let force_n = hold.grip_force_n * conditions.uncertainty.grip_force_scale_of(number);
+    let grasping = GraspingHand { arm, bodies, x_og: hold.x_og };
+    let loading = PadLoading::new(&grasping, object, force_n, contact_softness_s2(world));
+    PadContact { friction: conditions.friction_of(number), loading, collider: collider_of(object, number) }
 }
 
 /// Moves a chain, with its bodies and pads, from zero to these joint positions.
@@ -217,6 +264,7 @@ fn driven_joints(
         .map(|(k, &place)| {
             let servo = Servo {
                 commanded_rad: hold.q_rad[k],
+                commanded_rad_s: 0.0,
                 arm_nm: feed_forward.arm_nm[k],
                 board_nm: 0.0,
                 stiffness_nm_rad: arm.stiffness_nm_rad[k] * stiffness_scale,

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use super::conditions::Conditions;
 use crate::{
     check::CheckedPlan,
-    collision::{BoardBody, Body, CollisionModel, Nearest, PersonClearance, Scene},
+    collision::{BoardBody, Body, CollisionModel, Nearest, PersonClearance, PersonPart, Scene},
     model::trace::{PersonTouch, Sample, Trace},
     robot::{ArmState, Robot},
 };
@@ -34,22 +34,25 @@ struct Watched {
     near_m: f64,
     /// The last measured distance, m; infinite if there are no bodies to measure.
     distance_m: f64,
+    /// True before the first measurement.
+    is_new: bool,
     /// The first pair of bodies that overlapped.
     touch: Option<[Body; 2]>,
 }
 
 impl Watched {
     fn new(near_m: f64) -> Self {
-        Self { near_m, distance_m: f64::INFINITY, touch: None }
+        Self { near_m, distance_m: f64::INFINITY, is_new: true, touch: None }
     }
 
     /// True if the distance has to be measured in a step.
     fn is_due(&self, step: usize, interval_steps: usize) -> bool {
-        step.is_multiple_of(interval_steps) || self.distance_m < self.near_m
+        self.is_new || step.is_multiple_of(interval_steps) || self.distance_m < self.near_m
     }
 
     /// Takes the nearest bodies, searched for within a distance.
     fn measure(&mut self, within: impl Fn(f64) -> Option<Nearest>) {
+        self.is_new = false;
         let found = within(self.distance_m + SLACK_M).or_else(|| within(f64::INFINITY));
         let Some(Nearest { bodies, distance_m }) = found else { return };
         self.distance_m = distance_m;
@@ -121,14 +124,22 @@ impl<'a> DistanceMonitor<'a> {
         }
     }
 
+    /// Another person, or the same one elsewhere; the first overlap so far is entered in the trace.
+    pub fn replace_person(&mut self, parts: &[PersonPart], trace: &mut Trace) {
+        self.enter(trace);
+        let person = (!parts.is_empty()).then(|| PersonClearance::new(parts, self.board));
+        self.person = person.map(|person| (person, Watched::new(NEAR_PERSON_M)));
+    }
+
     /// Enters the first overlaps in the trace.
-    pub fn finish(self, trace: &mut Trace) {
+    pub fn enter(&self, trace: &mut Trace) {
         let names = |bodies: [Body; 2]| bodies.map(|body| body.describe(self.robot));
         let person = self.person.as_ref().and_then(|(_, person)| person.touch);
-        trace.person_touch = person.map(|bodies| {
+        let touched = person.map(|bodies| {
             let [body, part] = names(bodies);
             PersonTouch { body, part }
         });
+        trace.person_touch = trace.person_touch.take().or(touched);
         trace.robot_touch = self.itself.touch.map(names);
     }
 }

@@ -36,6 +36,11 @@ pub enum SimError {
         /// The arm.
         arm: String,
     },
+    /// A gripper that cannot let go of a board and grip it again.
+    #[error(
+        "found a gripper without rigid pads, expected grippers with pads without stiffness_n_m: staged plans regrasp"
+    )]
+    Staged,
     /// The engine refused a part of the scene.
     #[error("failed to build the scene: the robot's joints do not form a tree")]
     Engine,

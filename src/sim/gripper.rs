@@ -134,6 +134,14 @@ impl SimGripper {
         }
     }
 
+    /// Gives the fingers pads with other contacts, and another force, N.
+    pub fn regrip(&mut self, world: &mut PhysicsWorld, arm: &Arm, contact: PadContact, force_n: f64) {
+        for (pad, finger) in self.pads.iter_mut().zip(&arm.gripper.fingers) {
+            pad.replace(world, &finger.pad, contact);
+        }
+        self.force_n = force_n;
+    }
+
     /// Stores the fingers' state before a step.
     pub fn store_state(&mut self, multibody: &Multibody) {
         for finger in &mut self.fingers {

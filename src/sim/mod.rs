@@ -102,6 +102,7 @@ mod pad_springs;
 mod phases;
 mod scene;
 mod servo;
+mod staged;
 mod tool_load;
 mod world;
 
@@ -110,6 +111,7 @@ use distance_monitor::DistanceMonitor;
 pub use error::SimError;
 pub use mjcf::mjcf;
 pub use scene::{SimScene, blank_sample};
+pub use staged::simulate_staged;
 use tool_load::ToolLoad;
 
 use crate::{
@@ -177,7 +179,7 @@ pub fn simulate_until(checked: &CheckedPlan<'_>, conditions: &Conditions, stop: 
             break;
         }
     }
-    distances.finish(&mut trace);
+    distances.enter(&mut trace);
     Ok(trace)
 }
 

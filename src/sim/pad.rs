@@ -67,20 +67,15 @@ impl SimPad {
         contact: PadContact,
     ) -> Self {
         let x_fp = x_gf.inverse() * x_gp(pad, k);
-        let colliders = pad_parts(pad, &contact.loading).map(|PadPart { solid, x_pc, .. }| {
-            let collider = match solid {
-                Solid::Box { half_m: [x, y, z] } => ColliderBuilder::cuboid(x, y, z),
-                Solid::Ball { radius_m } => ColliderBuilder::ball(radius_m),
-            };
-            let collider = collider
-                .density(0.0)
-                .friction(contact.friction)
-                .friction_combine_rule(CoefficientCombineRule::Multiply)
-                .position(convert::to_engine_pose(&(x_fp * x_pc)))
-                .collision_groups(pad_groups(contact.collider));
-            world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
-        });
-        Self { finger, x_fp, colliders }
+        Self { finger, x_fp, colliders: insert_parts(world, pad, finger, &x_fp, contact) }
+    }
+
+    /// Replaces the contacts, as those of another grasp.
+    pub fn replace(&mut self, world: &mut PhysicsWorld, pad: &Pad, contact: PadContact) {
+        for collider in self.colliders {
+            world.remove_collider(collider);
+        }
+        self.colliders = insert_parts(world, pad, self.finger, &self.x_fp, contact);
     }
 
     /// Largest penetration of the pad's contacts with the board before the last step, m; 0 without contact.
@@ -104,6 +99,29 @@ impl SimPad {
         }
         PadSample { normal_force_n: wrench_w.force_n.dot(&(x_wp.rotation * Vector3::z())), wrench_w, p_wp_m }
     }
+}
+
+/// Inserts the solids of a pad's face.
+fn insert_parts(
+    world: &mut PhysicsWorld,
+    pad: &Pad,
+    finger: RigidBodyHandle,
+    x_fp: &Pose,
+    contact: PadContact,
+) -> [ColliderHandle; 3] {
+    pad_parts(pad, &contact.loading).map(|PadPart { solid, x_pc, .. }| {
+        let collider = match solid {
+            Solid::Box { half_m: [x, y, z] } => ColliderBuilder::cuboid(x, y, z),
+            Solid::Ball { radius_m } => ColliderBuilder::ball(radius_m),
+        };
+        let collider = collider
+            .density(0.0)
+            .friction(contact.friction)
+            .friction_combine_rule(CoefficientCombineRule::Multiply)
+            .position(convert::to_engine_pose(&(x_fp * x_pc)))
+            .collision_groups(pad_groups(contact.collider));
+        world.colliders.insert_with_parent(collider, finger, &mut world.bodies)
+    })
 }
 
 /// Impulse, with its moment about a point, of a manifold's contacts on the board in the last substep, world axes.

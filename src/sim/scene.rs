@@ -13,6 +13,7 @@ use super::{
     feed_forward::feed_forward,
     hand_over::HandOver,
     pad::BoardHandles,
+    staged::ArmCommand,
     tool_load::{ToolState, wrench_w},
     world::{new_world, sweep_for_joints},
 };
@@ -21,6 +22,7 @@ use crate::{
     model::{
         frames::Pose,
         load::ForceFrame,
+        plan::ArmHold,
         trace::{ArmSample, PadSample, Phase, Sample, StepCheck},
         wrench::Wrench,
     },
@@ -141,6 +143,34 @@ impl SimScene {
         );
         body.add_torque(convert::to_engine_vector(&self.tool_wrench_w.moment_nm), false);
         body.add_force_at_point(convert::to_engine_vector(&support.force_n), com_w, false);
+    }
+
+    /// Gives the arms new targets.
+    pub(super) fn command(&mut self, arms: &[ArmCommand]) {
+        for (arm, command) in self.arms.iter_mut().zip(arms) {
+            arm.command(command);
+        }
+    }
+
+    /// # Errors
+    /// [`SimError::Staged`] if a gripper has no rigid pads: it cannot let go and grip again.
+    pub(super) fn may_regrasp(&self) -> Result<(), SimError> {
+        if self.arms.iter().all(SimArm::has_rigid_pads) { Ok(()) } else { Err(SimError::Staged) }
+    }
+
+    /// Gives an arm the pads of a new grasp of a box, and its grip force, N.
+    pub(super) fn regrip(
+        &mut self,
+        initial: &CheckedPlan<'_>,
+        arm: usize,
+        x_og: &Pose,
+        grip_force_n: f64,
+        conditions: &Conditions,
+    ) {
+        let checked = &initial.arms()[arm];
+        let hold = ArmHold { x_og: *x_og, grip_force_n, ..checked.hold.clone() };
+        let object = conditions.uncertainty.board(&initial.plan().object);
+        self.arms[arm].regrip(&mut self.world, initial.robot(), (arm, checked.index, &hold), &object, conditions);
     }
 
     /// X_WO.

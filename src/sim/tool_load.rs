@@ -90,8 +90,8 @@ impl<'a> ToolLoad<'a> {
         let still =
             ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m: self.operation.x_ot.translation.vector };
         let state = match phase {
-            Phase::Grip | Phase::Settle | Phase::Release => still,
             Phase::Ramp | Phase::Hold => self.acting(ramp, loaded_s, held_s),
+            _ => still,
         };
         (phase, state)
     }

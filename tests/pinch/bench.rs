@@ -48,6 +48,7 @@ fn joint(kind: JointKind, links: [usize; 2], x_pj: Pose, axis_j: Vector3<f64>, l
         lower: limits[0],
         upper: limits[1],
         rest: 0.0_f64.clamp(limits[0], limits[1]),
+        most_speed: 0.0,
         mimic: None,
     }
 }

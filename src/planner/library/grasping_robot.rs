@@ -59,6 +59,11 @@ impl GraspingArm {
     pub fn reach(&self) -> &ReachMap {
         self.reach.get_or_init(|| ReachMap::new(&self.chain))
     }
+
+    /// Travel of its fingers on the board, m.
+    pub fn finger_travel_m(&self) -> [f64; 2] {
+        self.finger_travel_m
+    }
 }
 
 impl GraspingRobot {

@@ -16,6 +16,7 @@ mod postures;
 mod reach;
 mod resample;
 
+pub use board_grasps::grasps_of_board;
 pub use draws::draw_grasp;
 pub use entry::LibraryEntry;
 pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, largest_joint_difference_rad, pattern};

@@ -35,8 +35,9 @@ pub(super) fn read(
         .filter(|axis| axis.iter().all(|v| v.is_finite()))
         .ok_or_else(|| at(format!("found axis {:?}, expected a direction", joint.axis.xyz.0)))?;
     let rest = 0.0_f64.clamp(lower, upper);
+    let most_speed = joint.limit.velocity.max(0.0);
     let name = joint.name.clone();
-    let read = Joint { name, kind, parent_link, child_link, x_pj, axis_j, lower, upper, rest, mimic: None };
+    let read = Joint { name, kind, parent_link, child_link, x_pj, axis_j, lower, upper, rest, most_speed, mimic: None };
     Ok((read, joint.limit.effort))
 }
 

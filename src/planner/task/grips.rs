@@ -1,0 +1,140 @@
+//! Grips of the board, each with the board poses at which the arms have it without regrasping.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+
+use super::{
+    super::{
+        domain::{ANGLE_RAD, uniform},
+        library::{ArmGrasp, BoardGrasp, GraspingRobot, grasps_of_board, largest_joint_difference_rad},
+        params::task::{DRAWN_BOARDS, GRIP_STREAM, GRIPS_PER_PIECE, MOST_FOLLOWED_RAD, NEAR_GRASP, NEAR_GRIPS},
+    },
+    holds::Root,
+    places::Places,
+    problem::TaskProblem,
+};
+use crate::statics::StabilityWorkspace;
+
+/// A grip: a grasp of every arm, and the arms' configurations at board poses that they reach from one another.
+pub struct Grip {
+    /// By board pose.
+    pub at: BTreeMap<usize, BoardGrasp>,
+    /// True if it is that of a best hold of a piece.
+    is_of_root: bool,
+}
+
+/// The grips of the best holds of single pieces, grips near these, and grips drawn for the board poses; for each piece those that
+/// resist its load and that of most other pieces.
+pub fn grips(problem: &TaskProblem<'_>, roots: &[Root], places: &Places) -> Vec<Grip> {
+    let robot = problem.robot;
+    let random =
+        |number: usize| Pcg64::new(u128::from(problem.of_piece(0).scenario.planner.seed), GRIP_STREAM + number as u128);
+    let of_roots = roots.iter().filter_map(|root| Some((of_root(robot, root, places)?, true)));
+    let near = |number: usize| near_root(robot, &roots[number % roots.len()], places, &mut random(number));
+    let count = if roots.is_empty() { 0 } else { NEAR_GRIPS * problem.pieces() };
+    let near: Vec<_> = (0..count).into_par_iter().filter_map(near).collect();
+    eprintln!("DBG near {}", near.len());
+    let drawn = |number: usize| {
+        let mut random = random(count + number);
+        let Some((place, x_wo)) = places.drawn(&mut random) else { return Vec::new() };
+        let entries = grasps_of_board(robot, &x_wo, &mut random).unwrap_or_default();
+        entries.into_iter().map(|entry| (place, entry.grasp)).collect::<Vec<_>>()
+    };
+    let drawn: Vec<_> = (0..DRAWN_BOARDS * problem.pieces()).into_par_iter().flat_map_iter(drawn).collect();
+    let sources: Vec<_> = of_roots.chain(near.into_iter().chain(drawn).map(|source| (source, false))).collect();
+    let grips: Vec<_> = sources.into_par_iter().map(|(source, of)| grown(robot, places, source, of)).collect();
+    selected(problem, grips, places)
+}
+
+/// A grip near that of a best hold, drawn at random, at one of the board poses of its piece; `None` if it does not fit or the arms do
+/// not reach it there.
+fn near_root(robot: &GraspingRobot, root: &Root, places: &Places, random: &mut Pcg64) -> Option<(usize, BoardGrasp)> {
+    let place = places.drawn_of(root.piece, random)?;
+    let mut from = root.grasp.clone();
+    for (arm, own) in robot.arms.iter().zip(&mut from.arms) {
+        let [along_m, depth_m, angle_rad] = NEAR_GRASP.map(|most| uniform(random, -most, most));
+        own.grasp.along_m += along_m;
+        own.grasp.depth_m = (own.grasp.depth_m + depth_m).clamp(arm.depth_m[0], arm.depth_m[1]);
+        own.grasp.angle_rad = (own.grasp.angle_rad + angle_rad).clamp(ANGLE_RAD[0], ANGLE_RAD[1]);
+        if !robot.fits(arm, &own.grasp) {
+            return None;
+        }
+    }
+    Some((place, followed(robot, &from, places, place)?))
+}
+
+/// The grip of a best hold at the board pose of its piece; `None` if the arms do not reach it there.
+fn of_root(robot: &GraspingRobot, root: &Root, places: &Places) -> Option<(usize, BoardGrasp)> {
+    places.central(root.piece).find_map(|place| Some((place, followed(robot, &root.grasp, places, place)?)))
+}
+
+/// The same grip at another board pose, if the arms follow the board there without a collision.
+fn followed(robot: &GraspingRobot, from: &BoardGrasp, places: &Places, place: usize) -> Option<BoardGrasp> {
+    let x_wo = places.x_wo(place)?;
+    let arms = robot.arms.iter().zip(&from.arms).map(|(arm, own)| {
+        let q_rad = arm.inverse.local(&(x_wo * own.grasp.x_og(&robot.board)), &own.q_rad).found()?;
+        Some(ArmGrasp { grasp: own.grasp, q_rad })
+    });
+    let there = BoardGrasp { x_wo, arms: arms.collect::<Option<_>>()? };
+    let near = largest_joint_difference_rad(&from.arms, &there.arms) < MOST_FOLLOWED_RAD;
+    (near && robot.is_clear(&there)).then_some(there)
+}
+
+/// A grip with all board poses that it reaches over neighbouring ones.
+fn grown(robot: &GraspingRobot, places: &Places, (place, grasp): (usize, BoardGrasp), is_of_root: bool) -> Grip {
+    let mut at = BTreeMap::from([(place, grasp)]);
+    let mut tried = vec![false; places.count()];
+    tried[place] = true;
+    let mut open = VecDeque::from([place]);
+    while let Some(here) = open.pop_front() {
+        for next in places.beside(here) {
+            if std::mem::replace(&mut tried[next], true) {
+                continue;
+            }
+            if let Some(there) = at.get(&here).and_then(|from| followed(robot, from, places, next)) {
+                at.insert(next, there);
+                open.push_back(next);
+            }
+        }
+    }
+    Grip { at, is_of_root }
+}
+
+/// Of each piece the grips that serve it and most other pieces, and all those of best holds. Each is tested at one board pose for
+/// each piece at the tool: a shift hardly changes what hands resist.
+fn selected(problem: &TaskProblem<'_>, grips: Vec<Grip>, places: &Places) -> Vec<Grip> {
+    let pieces = problem.pieces();
+    let served = |workspace: &mut StabilityWorkspace, grip: &Grip| {
+        let mut served = vec![false; pieces];
+        let mut tested = vec![false; pieces];
+        for (&place, grasp) in &grip.at {
+            if std::mem::replace(&mut tested[places.piece(place)], true) {
+                continue;
+            }
+            for piece in (0..pieces).filter(|&piece| !served[piece]).collect::<Vec<_>>() {
+                let posture = places.posture(place, piece);
+                served[piece] = posture.is_some_and(|of| problem.resists(workspace, piece, grasp, of.roll_rad));
+            }
+        }
+        served
+    };
+    let served: Vec<_> = grips.par_iter().map_init(StabilityWorkspace::new, served).collect();
+    let counts: Vec<_> = served.iter().map(|pieces| pieces.iter().filter(|served| **served).count()).collect();
+    eprintln!(
+        "DBG all grips {} served pieces histogram {:?}",
+        grips.len(),
+        counts.iter().fold([0; 17], |mut a: [usize; 17], n| {
+            a[(*n).min(16)] += 1;
+            a
+        })
+    );
+    let mut kept: Vec<bool> = grips.iter().map(|grip| grip.is_of_root).collect();
+    for piece in 0..pieces {
+        let mut of_piece: Vec<_> = (0..grips.len()).filter(|&grip| served[grip][piece]).collect();
+        of_piece.sort_by_key(|&grip| std::cmp::Reverse((counts[grip], grips[grip].at.len())));
+        of_piece.into_iter().take(GRIPS_PER_PIECE).for_each(|grip| kept[grip] = true);
+    }
+    grips.into_iter().zip(kept).filter(|(_, kept)| *kept).map(|(grip, _)| grip).collect()
+}

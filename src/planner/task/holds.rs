@@ -1,0 +1,144 @@
+//! The holds that a task may use, and what leads from one to another.
+//!
+//! A hold for a single piece is comfortable because of where the tool is. So the board poses are those that bring each piece to
+//! one of the best holds' poses of the tool, as it is there or with person, tool and board shifted and turned together
+//! ([`Places`]): the robot turns and shifts the board under the tool, and the person stays. With the board where it is, the
+//! pieces before and after are worked on as long as the person has a posture for them. A hold is a grip (`grips.rs`) at one of
+//! these poses.
+
+use rayon::prelude::*;
+
+use super::{
+    super::{
+        library::{BoardGrasp, largest_joint_difference_rad},
+        params::task::COST_PER_RAD,
+        problem::posture_map,
+    },
+    graph::{Arc, ArcKind},
+    grips::{Grip, grips},
+    places::Places,
+    problem::{Posture, TaskProblem},
+};
+use crate::statics::StabilityWorkspace;
+
+/// The best hold of one piece alone.
+pub struct Root {
+    pub piece: usize,
+    pub grasp: BoardGrasp,
+    pub posture: Posture,
+    pub objective: f64,
+}
+
+/// A grasp of the board at a pose.
+pub struct Hold {
+    pub grasp: BoardGrasp,
+    /// The number of its board pose.
+    pub place: usize,
+    /// The number of its grip.
+    grip: usize,
+}
+
+/// The holds and what leads from one to another.
+pub struct Holds {
+    pub holds: Vec<Hold>,
+    pub arcs: Vec<Vec<Arc>>,
+    pub places: Places,
+    /// By hold and piece: what the piece costs, from below; infinite where the hold does not resist its load.
+    pub serving: Vec<Vec<f64>>,
+}
+
+impl Holds {
+    /// The holds that follow from the best holds of single pieces; the last piece of a closed path is beside the first one.
+    pub fn new(problem: &TaskProblem<'_>, roots: &[Root], closed: bool) -> Self {
+        let t0 = std::time::Instant::now();
+        let of_first = problem.of_piece(0);
+        // Force and person are the same at all pieces, seen from the tool.
+        let map = posture_map(of_first.scenario, &of_first.human, problem.watch);
+        eprintln!("DBG map {:?}", t0.elapsed());
+        let places = Places::new(problem, &map, roots, closed);
+        eprintln!("DBG places {} {:?}", places.count(), t0.elapsed());
+        let grips = grips(problem, roots, &places);
+        eprintln!(
+            "DBG grips {} {:?} {:?}",
+            grips.len(),
+            t0.elapsed(),
+            grips
+                .iter()
+                .map(|g| {
+                    let mut v: Vec<_> = g.at.keys().map(|&p| places.piece(p)).collect();
+                    v.sort();
+                    v.dedup();
+                    v.len()
+                })
+                .fold([0; 9], |mut a: [usize; 9], n| {
+                    a[n.min(8)] += 1;
+                    a
+                })
+        );
+        let of_grip = |(grip, Grip { at, .. }): (usize, &Grip)| {
+            at.iter().map(move |(&place, grasp)| Hold { grasp: grasp.clone(), place, grip }).collect::<Vec<_>>()
+        };
+        let holds: Vec<_> = grips.iter().enumerate().flat_map(of_grip).collect();
+        let serving = |workspace: &mut StabilityWorkspace, hold: &Hold| {
+            let mut costs = places.costs(problem, hold.place, &hold.grasp);
+            for (piece, cost) in costs.iter_mut().enumerate().filter(|(_, cost)| cost.is_finite()) {
+                let posture = places.posture(hold.place, piece);
+                if !posture.is_some_and(|of| problem.resists(workspace, piece, &hold.grasp, of.roll_rad)) {
+                    *cost = f64::INFINITY;
+                }
+            }
+            costs
+        };
+        let serving = holds.par_iter().map_init(StabilityWorkspace::new, serving).collect();
+        eprintln!("DBG pieces served by a hold {:?}", {
+            let s: &Vec<Vec<f64>> = &serving;
+            s.iter().map(|c| c.iter().filter(|c| c.is_finite()).count()).fold([0; 12], |mut a: [usize; 12], n| {
+                a[n.min(11)] += 1;
+                a
+            })
+        });
+        eprintln!("DBG serving {:?}", t0.elapsed());
+        let arcs = arcs(&holds, &grips, &places);
+        eprintln!("DBG arcs {:?}", t0.elapsed());
+        Self { holds, arcs, places, serving }
+    }
+}
+
+/// The arms whose grasps differ.
+pub fn changed_arms(from: &BoardGrasp, to: &BoardGrasp) -> Vec<usize> {
+    let pairs = from.arms.iter().zip(&to.arms).enumerate();
+    pairs.filter(|(_, (a, b))| a.grasp != b.grasp).map(|(arm, _)| arm).collect()
+}
+
+/// Motions of a grip between neighbouring board poses; regrasps between grips at the same one.
+fn arcs(holds: &[Hold], grips: &[Grip], places: &Places) -> Vec<Vec<Arc>> {
+    // Holds of one grip follow one another in the order of places.
+    let mut first = Vec::with_capacity(grips.len());
+    let mut count = 0;
+    for grip in grips {
+        first.push(count);
+        count += grip.at.len();
+    }
+    let mut at_place: Vec<Vec<usize>> = vec![Vec::new(); places.count()];
+    for (number, hold) in holds.iter().enumerate() {
+        at_place[hold.place].push(number);
+    }
+    let of_hold = |(number, hold): (usize, &Hold)| {
+        let own = &holds[first[hold.grip]..first[hold.grip] + grips[hold.grip].at.len()];
+        let beside = places.beside(hold.place);
+        let moves = beside.into_iter().filter_map(|place| {
+            let to = first[hold.grip] + own.binary_search_by_key(&place, |other| other.place).ok()?;
+            let turned_rad = largest_joint_difference_rad(&hold.grasp.arms, &holds[to].grasp.arms);
+            Some(Arc { to, kind: ArcKind::Move, hands: 0, extra: COST_PER_RAD * turned_rad })
+        });
+        // A hand that lets go needs another one that holds meanwhile.
+        let may_regrasp = hold.grasp.arms.len() > 1;
+        let others = at_place[hold.place].iter().copied().filter(|&to| may_regrasp && to != number);
+        let regrasps = others.map(|to| {
+            let hands = changed_arms(&hold.grasp, &holds[to].grasp).len();
+            Arc { to, kind: ArcKind::Regrasp, hands, extra: 0.0 }
+        });
+        moves.chain(regrasps.filter(|arc| arc.hands > 0)).collect()
+    };
+    holds.par_iter().enumerate().map(of_hold).collect()
+}

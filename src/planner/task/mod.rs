@@ -1,0 +1,185 @@
+//! Plans for whole tasks: holds, motions of the board and regrasps for a path that is cut or drilled
+//! (docs/method.md#11-tasks).
+//!
+//! The way of the data: a plan for each piece by itself (the caller) → [`holds`]: all combinations of these plans' grasps, with
+//! the board where each piece is at a comfortable pose of the tool → [`graph`]: the cheapest way through the pieces, whose steps
+//! [`transitions`] checks → [`stages`]: the staged plan, with timed motions.
+
+mod free_motion;
+mod graph;
+mod grips;
+mod holds;
+mod motion;
+mod places;
+mod problem;
+mod regrasp;
+mod stages;
+mod timing;
+mod transitions;
+
+use self::{
+    graph::{Costs, Found, Graph},
+    holds::{Holds, Root},
+    problem::{Posture, TaskProblem},
+    transitions::Transitions,
+};
+use super::{
+    candidate::Candidate,
+    library::{BoardGrasp, GraspingRobot},
+    outcome::{Infeasible, PlanError},
+    params::task::{PLANNED_PIECES, ROOTS},
+    watch::{Event, Phase, Watch, begin, go_on},
+};
+use crate::model::{
+    plan::Plan,
+    scenario::Scenario,
+    staged_plan::StagedPlan,
+    task::Task,
+    tool_path::{Piece, Stroke},
+};
+
+/// The plan of a task.
+#[derive(Clone, Debug)]
+pub struct TaskPlan {
+    /// The stages.
+    pub staged: StagedPlan,
+    /// The best plan for each piece by itself, which no robot can carry out without regrasping at every piece; `None` for pieces of
+    /// a long path that were not planned by themselves.
+    pub separate: Vec<Option<Plan>>,
+}
+
+/// Why there is no plan for a task.
+#[derive(Clone, Debug)]
+pub struct TaskInfeasible {
+    /// The first piece that is not served, from 0.
+    pub piece: usize,
+    /// Where it is.
+    pub place: Piece,
+    /// Why no hold serves it by itself; `None` if one does, but it cannot be reached from holds for the pieces before.
+    pub alone: Option<Box<Infeasible>>,
+}
+
+impl std::fmt::Display for TaskInfeasible {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { piece, place: Piece { stroke, from_m, .. }, alone } = self;
+        write!(f, "piece {} of the path ({from_m:.3} m along stroke {}): ", piece + 1, stroke + 1)?;
+        match alone {
+            Some(why) => write!(f, "no hold serves it: {why}"),
+            None => f.write_str("no hold that serves it is reached from holds for the pieces before"),
+        }
+    }
+}
+
+/// The scenarios of a task's pieces, named after the scenario and their number.
+#[must_use]
+pub fn pieces(scenario: &Scenario, task: &Task) -> Vec<Scenario> {
+    let thickness_m = scenario.object.size_m[2];
+    let of_piece = |(number, piece): (usize, &Piece)| {
+        let operation = task.operation_of(piece, thickness_m)?;
+        let name = format!("{}-{}", scenario.name, number + 1);
+        Some(Scenario { name, operation, ..scenario.clone() })
+    };
+    task.pieces().iter().enumerate().filter_map(of_piece).collect()
+}
+
+/// The pieces that are planned by themselves: all of a short path, as many as a plan affords at equal distances of a long one.
+pub fn planned_by_themselves(count: usize) -> Vec<usize> {
+    evenly(count, PLANNED_PIECES)
+}
+
+/// At most `most` of `count` numbers at equal distances.
+fn evenly(count: usize, most: usize) -> Vec<usize> {
+    let chosen = count.min(most);
+    (0..chosen).map(|number| number * count / chosen).collect()
+}
+
+/// What a search is given.
+pub struct TaskSearch<'a> {
+    pub task: &'a Task,
+    /// The scenario of the task; its operation is that of the first piece.
+    pub scenario: &'a Scenario,
+    /// The scenarios of the pieces.
+    pub pieces: &'a [Scenario],
+    /// The best plans of pieces by themselves.
+    pub separate: &'a [Option<Plan>],
+    pub robot: &'a GraspingRobot,
+    pub watch: &'a dyn Watch,
+}
+
+impl TaskSearch<'_> {
+    /// The staged plan; after a stop before there was one [`PlanError::Stopped`].
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn run(&self) -> Result<Result<StagedPlan, TaskInfeasible>, PlanError> {
+        let Self { task, pieces, robot, watch, .. } = *self;
+        let mut problem = TaskProblem::new(task, pieces, self.best(), robot, watch)?;
+        let roots = self.roots(&problem);
+        begin(watch, Phase::Task);
+        let holds = Holds::new(&problem, &roots, self.is_closed());
+        let costs = Costs { per_move: task.move_cost, per_regrasp: task.regrasp_cost };
+        eprintln!(
+            "DBG holds {} places {} arcs {} served {:?}",
+            holds.holds.len(),
+            holds.places.count(),
+            holds.arcs.iter().map(Vec::len).sum::<usize>(),
+            (0..problem.pieces())
+                .map(|k| holds.serving.iter().filter(|s| s[k].is_finite()).count())
+                .collect::<Vec<_>>()
+        );
+        let graph = Graph { arcs: holds.arcs.clone(), serving: holds.serving.clone(), costs };
+        let mut transitions = Transitions::new(&mut problem, &holds);
+        loop {
+            go_on(watch)?;
+            let t0 = std::time::Instant::now();
+            let found = graph.cheapest(&mut transitions);
+            eprintln!("DBG cheapest {:?} {}", t0.elapsed(), transitions.counts());
+            let Some(found) = found else { return Err(PlanError::Stopped) };
+            let way = match found {
+                Found::Way(way) => way,
+                Found::Nothing { served } => return Ok(Err(self.infeasible(served))),
+            };
+            // A way whose plans are all accepted ends the loop; each other round excludes at least one hold for one piece.
+            if let Some(staged) = stages::staged(self, &mut transitions, &holds, &way.steps) {
+                watch.tell(&Event::Found);
+                return Ok(Ok(staged));
+            }
+        }
+    }
+
+    /// The objective of the best hold for each piece alone: of pieces without a plan that of the nearest piece with one.
+    fn best(&self) -> Vec<f64> {
+        let objective = |plan: &Plan| plan.comfort.map_or(0.0, |comfort| comfort.objective);
+        let known: Vec<_> = self.separate.iter().map(|plan| plan.as_ref().map(objective)).collect();
+        let nearest = |piece: usize| {
+            let planned =
+                known.iter().enumerate().filter_map(|(number, best)| Some((number.abs_diff(piece), (*best)?)));
+            planned.min_by_key(|(distance, _)| *distance).map_or(0.0, |(_, best)| best)
+        };
+        (0..known.len()).map(nearest).collect()
+    }
+
+    fn roots(&self, problem: &TaskProblem<'_>) -> Vec<Root> {
+        let planned: Vec<_> = (0..self.separate.len()).filter(|&piece| self.separate[piece].is_some()).collect();
+        let root = |chosen: usize| {
+            let piece = planned[chosen];
+            let plan = self.separate[piece].as_ref()?;
+            let Candidate { work, arms } = Candidate::of_plan(problem.of_piece(piece), plan)?;
+            let posture = Posture { x_wb: plan.human?.x_wb, q_h_rad: work.q_h_rad, roll_rad: work.roll_rad };
+            let grasp = BoardGrasp { x_wo: plan.object.x_wo, arms };
+            Some(Root { piece, grasp, posture, objective: problem.best[piece] })
+        };
+        evenly(planned.len(), ROOTS).into_iter().filter_map(root).collect()
+    }
+
+    /// True if the path ends where it begins, so that the last piece is beside the first one.
+    fn is_closed(&self) -> bool {
+        matches!(self.task.path[..], [Stroke::Circle { .. }])
+    }
+
+    fn infeasible(&self, served: usize) -> TaskInfeasible {
+        let place = self.task.pieces().get(served).copied();
+        let place = place.unwrap_or(Piece { stroke: 0, from_m: 0.0, to_m: 0.0 });
+        TaskInfeasible { piece: served, place, alone: None }
+    }
+}

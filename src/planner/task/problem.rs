@@ -1,0 +1,172 @@
+//! The problem of a task: one problem for each piece of the path, and what is tested of a hold.
+
+use nalgebra::Point3;
+
+use super::super::{
+    assemble::{accepted, assemble_placed},
+    assessment::{assess, test_stability},
+    candidate::{Candidate, Placement, WorkPose},
+    evaluate::{self, Configuration, Evaluator},
+    library::{BoardGrasp, GraspingRobot},
+    outcome::PlanError,
+    problem::Problem,
+    stats::SearchStats,
+    watch::Watch,
+};
+use crate::{
+    comfort::{self, Response, ResponseQuery},
+    human::{ArmAngles, Standing},
+    model::{
+        frames::Pose,
+        operation::Operation,
+        plan::{Comfort, Plan},
+        scenario::Scenario,
+        task::Task,
+    },
+    statics::StabilityWorkspace,
+};
+
+/// The person at a piece.
+#[derive(Clone, Copy, Debug)]
+pub struct Posture {
+    pub x_wb: Pose,
+    pub q_h_rad: ArmAngles,
+    /// Roll of the tool from the piece's operation, rad.
+    pub roll_rad: f64,
+}
+
+impl Posture {
+    /// The posture of a response; its roll is counted from `roll_rad`.
+    pub fn of(response: &Response, roll_rad: f64) -> Self {
+        Self { x_wb: response.x_wb, q_h_rad: response.q_rad, roll_rad: roll_rad + response.roll_rad() }
+    }
+}
+
+/// The problems of all pieces.
+pub struct TaskProblem<'a> {
+    pub task: &'a Task,
+    pub robot: &'a GraspingRobot,
+    pub evaluators: Vec<Evaluator<'a>>,
+    /// The objective of the best hold for each piece alone.
+    pub best: Vec<f64>,
+    pub watch: &'a dyn Watch,
+}
+
+impl<'a> TaskProblem<'a> {
+    /// The problem of a task whose pieces have these scenarios and best objectives.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid.
+    pub fn new(
+        task: &'a Task,
+        pieces: &'a [Scenario],
+        best: Vec<f64>,
+        robot: &'a GraspingRobot,
+        watch: &'a dyn Watch,
+    ) -> Result<Self, PlanError> {
+        let evaluator =
+            |scenario| Ok(Evaluator::new(Problem::new(scenario, robot, watch)?, SearchStats::unlimited(watch)));
+        let evaluators = pieces.iter().map(evaluator).collect::<Result<_, PlanError>>()?;
+        Ok(Self { task, robot, evaluators, best, watch })
+    }
+
+    pub fn pieces(&self) -> usize {
+        self.evaluators.len()
+    }
+
+    pub fn of_piece(&self, piece: usize) -> &Problem<'a> {
+        &self.evaluators[piece].problem
+    }
+
+    /// A piece's operation with the tool rolled.
+    pub fn operation(&self, piece: usize, roll_rad: f64) -> Operation {
+        self.of_piece(piece).scenario.operation.rolled(roll_rad)
+    }
+
+    /// The pose of the board with a piece at a pose of the tool.
+    pub fn board_pose(&self, x_wt: &Pose, roll_rad: f64, piece: usize) -> Pose {
+        x_wt * self.operation(piece, roll_rad).x_ot.inverse()
+    }
+
+    /// What a piece costs with this objective: the share of the best one that it loses; `None` below the least comfort.
+    pub fn cost(&self, piece: usize, objective: f64) -> Option<f64> {
+        let kept = objective / self.best[piece];
+        (kept >= self.task.least_comfort).then_some((1.0 - kept).max(0.0))
+    }
+
+    /// The comfort of a posture at a piece beside a robot with these points.
+    pub fn comfort(&self, piece: usize, x_wo: &Pose, posture: &Posture, robot_points_w: &[Point3<f64>]) -> Comfort {
+        let problem = self.of_piece(piece);
+        let wrench_w = self.operation(piece, posture.roll_rad).wrench_w(x_wo);
+        let Posture { x_wb, q_h_rad, .. } = posture;
+        comfort::posture_comfort(&problem.human, &problem.objective, robot_points_w, x_wb, q_h_rad, &wrench_w)
+    }
+
+    /// The robot's points of the peripersonal metric.
+    pub fn robot_points_w(&self, link_poses: &[Pose]) -> Vec<Point3<f64>> {
+        comfort::robot_points_w(&self.robot.robot, link_poses)
+    }
+
+    /// The person's best response to a piece near a posture. Without link poses and points of the robot only the board is in the
+    /// way.
+    pub fn response_near(
+        &self,
+        piece: usize,
+        x_wo: &Pose,
+        from: &Posture,
+        link_poses: &[Pose],
+        robot_points_w: &[Point3<f64>],
+    ) -> Option<Posture> {
+        let operation = self.operation(piece, from.roll_rad);
+        let query: ResponseQuery<'_> =
+            evaluate::response_query(self.of_piece(piece), operation, link_poses, *x_wo, robot_points_w);
+        comfort::response_near(&query, &from.x_wb, &from.q_h_rad).map(|found| Posture::of(&found, from.roll_rad))
+    }
+
+    /// True if a grasp resists the load at a piece.
+    pub fn resists(&self, workspace: &mut StabilityWorkspace, piece: usize, grasp: &BoardGrasp, roll_rad: f64) -> bool {
+        let mut candidate = Candidate::without_person(grasp);
+        candidate.work.roll_rad = roll_rad;
+        let problem = self.of_piece(piece);
+        let stability = assess(problem, workspace, &candidate, &grasp.x_wo);
+        test_stability(problem, &candidate, &grasp.x_wo, &stability).is_ok()
+    }
+
+    /// True if a person in this posture, who keeps all limits of a posture by itself, may stand there, touches nothing and sees
+    /// the work.
+    pub fn is_free(&self, piece: usize, grasp: &BoardGrasp, posture: &Posture) -> bool {
+        let problem = self.of_piece(piece);
+        if !problem.human.may_stand(&Standing::of(&posture.x_wb)) {
+            return false;
+        }
+        let candidate = candidate(grasp, posture);
+        let placement = Placement { x_wo: grasp.x_wo, x_wb: posture.x_wb };
+        let configuration = Configuration::placed(problem, &candidate, placement);
+        let scene = configuration.scene(problem);
+        self.robot.collision.first_violation_of_person(&scene).is_none()
+            && evaluate::test_sight(problem, &configuration).is_ok()
+    }
+
+    /// The plan of a hold for a piece, if it is accepted.
+    pub fn plan(&mut self, piece: usize, grasp: &BoardGrasp, posture: &Posture) -> Option<Plan> {
+        let link_poses = self.robot.link_poses(&grasp.arms);
+        let points_w = self.robot_points_w(&link_poses);
+        let evaluator = &mut self.evaluators[piece];
+        let Problem { scenario, human, objective, .. } = &evaluator.problem;
+        let Posture { x_wb, q_h_rad, roll_rad } = posture;
+        let wrench_w = scenario.operation.rolled(*roll_rad).wrench_w(&grasp.x_wo);
+        let comfort = comfort::posture_comfort(human, objective, &points_w, x_wb, q_h_rad, &wrench_w);
+        let placement = Placement { x_wo: grasp.x_wo, x_wb: *x_wb };
+        let plan = assemble_placed(evaluator, &candidate(grasp, posture), &placement, &comfort, 0)?;
+        accepted(evaluator, plan)
+    }
+}
+
+/// A grasp with a posture as a candidate of the search for single holds.
+fn candidate(grasp: &BoardGrasp, posture: &Posture) -> Candidate {
+    let mut candidate = Candidate::without_person(grasp);
+    let heading_rad = Standing::of(&posture.x_wb).heading_rad;
+    let Posture { q_h_rad, roll_rad, .. } = *posture;
+    candidate.work = WorkPose { q_h_rad, heading_rad, roll_rad, ..candidate.work };
+    candidate
+}

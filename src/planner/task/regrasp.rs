@@ -1,0 +1,131 @@
+//! One arm lets go, moves and grips the board elsewhere, while the others hold it still.
+//!
+//! The open gripper leaves the board in the board's plane, a planner of free motions (`free_motion.rs`) brings the arm beside the
+//! new grasp, and the gripper comes onto the board in its plane. On the first and the last way its fingers may be beside the
+//! board, as they are in a grasp; in between the whole arm keeps its clearance from robot and board.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use rand_pcg::Pcg64;
+
+use super::{
+    super::{
+        library::{ArmGrasp, BoardGrasp, GraspingArm, GraspingRobot},
+        params::task::{FREE_TESTS, STEP_M, STEP_RAD, WITHDRAWAL_ANGLES_RAD, WITHDRAWAL_M, WITHDRAWAL_TURNS_RAD},
+    },
+    free_motion::{self, FreeMotion},
+};
+use crate::{
+    collision::Scene,
+    robot::{ArmState, Gripper},
+};
+
+/// The ways off the board at both ends of a regrasp, each from the grasp; between them the arm moves freely.
+pub struct Ends {
+    away: Vec<Vec<f64>>,
+    towards: Vec<Vec<f64>>,
+}
+
+/// The ends of an arm's regrasp from its grasp to another one on the board where it is; `None` if the gripper cannot leave one of
+/// them.
+pub fn ends(robot: &GraspingRobot, from: &BoardGrasp, to: &ArmGrasp, arm: usize) -> Option<Ends> {
+    let free = FreeArm::new(robot, from, arm);
+    Some(Ends { away: free.withdrawn(&from.arms[arm])?, towards: free.withdrawn(to)? })
+}
+
+/// The joint path of a regrasp with these ends; `None` if none was found.
+pub fn path(
+    robot: &GraspingRobot,
+    from: &BoardGrasp,
+    Ends { away, towards }: &Ends,
+    arm: usize,
+    random: &mut Pcg64,
+) -> Option<Vec<Vec<f64>>> {
+    let free = FreeArm::new(robot, from, arm);
+    let chain = &robot.arms[arm].chain;
+    let is_free = |q_rad: &[f64]| free.is_clear(q_rad, false);
+    let problem = FreeMotion {
+        lower: chain.lower(),
+        upper: chain.upper(),
+        is_free: &is_free,
+        step_rad: STEP_RAD,
+        most_tests: FREE_TESTS,
+    };
+    let between = free_motion::find(&problem, away.last()?, towards.last()?, random)?;
+    let towards = towards.iter().rev().cloned().collect();
+    Some([away.clone(), between, towards].concat())
+}
+
+/// An arm that has let go, beside the others that hold the board.
+struct FreeArm<'a> {
+    robot: &'a GraspingRobot,
+    from: &'a BoardGrasp,
+    arm: usize,
+    /// The robot's arms that hold the board, and all of them.
+    holding: [Vec<usize>; 2],
+    open_m: [f64; 2],
+}
+
+impl<'a> FreeArm<'a> {
+    fn new(robot: &'a GraspingRobot, from: &'a BoardGrasp, arm: usize) -> Self {
+        let all: Vec<_> = robot.arms.iter().map(|arm| arm.index).collect();
+        let others = all.iter().copied().filter(|&index| index != robot.arms[arm].index).collect();
+        Self { robot, from, arm, holding: [others, all], open_m: open_travel_m(Self::gripper_of(robot, arm)) }
+    }
+
+    fn gripper_of(robot: &GraspingRobot, arm: usize) -> &Gripper {
+        &robot.robot.arms[robot.arms[arm].index].gripper
+    }
+
+    /// True if the arm with an open gripper is clear of everything; of the board only but for the fingers if it is `at_board`.
+    fn is_clear(&self, q_rad: &[f64], at_board: bool) -> bool {
+        let state = |(number, (arm, own)): (usize, (&'a GraspingArm, &'a ArmGrasp))| (number, arm.index, &own.q_rad);
+        let states = self.robot.arms.iter().zip(&self.from.arms).enumerate().map(state);
+        let states: Vec<_> = states
+            .map(|(number, index, own)| {
+                let is_free = number == self.arm;
+                let closed_m = self.robot.arms[number].finger_travel_m();
+                let finger_travel_m = if is_free { self.open_m } else { closed_m };
+                ArmState { arm: index, q_rad: if is_free { q_rad } else { own }, finger_travel_m }
+            })
+            .collect();
+        let link_poses = self.robot.robot.link_poses(&self.robot.robot.positions(&states));
+        let holding = &self.holding[usize::from(at_board)];
+        let scene = Scene { holding, ..self.robot.scene(&link_poses, self.from.x_wo) };
+        self.robot.collision.first_violation(&scene).is_none()
+    }
+
+    /// The shortest of some ways off the board in its plane, the grasp first: at its end the whole arm keeps its clearance.
+    fn withdrawn(&self, own: &ArmGrasp) -> Option<Vec<Vec<f64>>> {
+        let turns = WITHDRAWAL_TURNS_RAD.into_iter();
+        let ways = turns.flat_map(|turn_rad| WITHDRAWAL_ANGLES_RAD.map(|angle_rad| (angle_rad, turn_rad)));
+        ways.into_iter().find_map(|(angle_rad, turn_rad)| self.withdrawn_along(own, angle_rad, turn_rad))
+    }
+
+    /// The way off the board at an angle from -z_G in the board's plane, while the gripper turns about its y axis.
+    fn withdrawn_along(&self, own: &ArmGrasp, angle_rad: f64, turn_rad: f64) -> Option<Vec<Vec<f64>>> {
+        let x_wg = self.from.x_wo * own.grasp.x_og(&self.robot.board);
+        let about_y = |angle_rad: f64| UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle_rad);
+        let direction_g = about_y(angle_rad) * -Vector3::z();
+        let steps = (WITHDRAWAL_M / STEP_M).ceil() as usize;
+        let mut way = vec![own.q_rad.clone()];
+        for number in 1..=steps {
+            let share = number as f64 / steps as f64;
+            let shift = Isometry3::from_parts((direction_g * (WITHDRAWAL_M * share)).into(), about_y(turn_rad * share));
+            let q_rad = self.robot.arms[self.arm].inverse.near(&(x_wg * shift), &way[number - 1]).found()?;
+            let is_off = self.is_clear(&q_rad, false);
+            if !is_off && !self.is_clear(&q_rad, true) {
+                return None;
+            }
+            way.push(q_rad);
+            if is_off {
+                return Some(way);
+            }
+        }
+        None
+    }
+}
+
+/// Travel of each finger of an open gripper, m.
+pub fn open_travel_m(gripper: &Gripper) -> [f64; 2] {
+    [0, 1].map(|finger| gripper.travel_for_gap_m(finger, gripper.opening_m[1]))
+}

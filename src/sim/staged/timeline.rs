@@ -1,0 +1,356 @@
+//! What arms, grippers and tool do over the time of a staged plan (docs/method.md#114-simulation-of-stages).
+//!
+//! A stage is a row of segments. In each of them every arm follows a joint path, or stays, while the torques that it feeds forward
+//! and the share of its grip force change linearly.
+
+use nalgebra::Vector3;
+
+use super::{
+    super::{phases::grip_steps, tool_load::ToolState},
+    arms::CarriedBy,
+};
+use crate::{
+    check::Holding,
+    model::{
+        frames::Pose,
+        scenario::SimulationSettings,
+        staged_plan::{HoldStage, Stage, StagedPlan},
+        task::Task,
+        tool_path::Piece,
+        trace::Phase,
+        wrench::Wrench,
+    },
+};
+
+/// Time for which the arms hold the board still before a tool works on it, s: their swing after a motion has died away.
+const STILL_S: f64 = 0.4;
+
+/// Time after the tool has left the board, s.
+const LIFTED_S: f64 = 0.2;
+
+/// Time in which the weight goes from one distribution among the hands to another, s, as in the hand-over at the start.
+const SHIFT_S: f64 = 0.3;
+
+/// Time in which a gripper opens, s.
+const OPEN_S: f64 = 0.4;
+
+/// Share of its grip force with which a gripper opens: against the dampers of the fingers some cm/s.
+const OPEN_SHARE: f64 = -0.15;
+
+/// Time in which a gripper closes on the board, s, with the same share, and then its force grows.
+const CLOSE_S: f64 = 0.5;
+
+/// Time in which the force of a closed gripper grows, s.
+const GRIP_S: f64 = 0.1;
+
+/// What an arm does at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmCommand {
+    /// Joint angles, rad.
+    pub q_rad: Vec<f64>,
+    /// Joint speeds, rad/s.
+    pub speed_rad_s: Vec<f64>,
+    /// Torques for the arm's own weight, N m.
+    pub arm_nm: Vec<f64>,
+    /// Torques for its share of the board's weight, N m.
+    pub board_nm: Vec<f64>,
+    /// Share of the grip force with which the gripper closes; negative while it opens.
+    pub grip_share: f64,
+}
+
+/// What happens in a step.
+#[derive(Clone, Debug)]
+pub struct Command {
+    /// The number of the stage.
+    pub stage: usize,
+    /// The piece that is worked on last or next.
+    pub piece: usize,
+    /// The phase.
+    pub phase: Phase,
+    /// Every arm of the plan.
+    pub arms: Vec<ArmCommand>,
+    /// The tool.
+    pub tool: ToolState,
+    /// The planned pose of the board.
+    pub x_wo: Pose,
+    /// The arm that grips the board by a new grasp from this step on, with X_OG and the grip force, N.
+    pub regrips: Option<(usize, Pose, f64)>,
+}
+
+/// A point of an arm's path.
+#[derive(Clone, Debug)]
+pub struct Knot {
+    pub time_s: f64,
+    pub q_rad: Vec<f64>,
+    pub arm_nm: Vec<f64>,
+    pub board_nm: Vec<f64>,
+}
+
+/// An arm in a segment.
+#[derive(Clone, Debug)]
+pub struct ArmSegment {
+    /// In the order of time, at least one.
+    pub knots: Vec<Knot>,
+    /// Share of the grip force at the beginning and at the end.
+    pub grip: [f64; 2],
+}
+
+/// A part of a stage.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    pub stage: usize,
+    pub piece: usize,
+    pub phase: Phase,
+    pub duration_s: f64,
+    pub arms: Vec<ArmSegment>,
+    /// The planned poses of the board at the knots of a motion; one if it stays.
+    pub x_wo: Vec<Pose>,
+    /// The stroke and the lengths along it, m, from which and to which the tool works, and the load factor at both ends.
+    pub work: Option<(usize, [f64; 2], [f64; 2])>,
+    pub regrips: Option<(usize, Pose, f64)>,
+}
+
+/// All segments of a plan.
+pub struct Timeline<'a> {
+    task: &'a Task,
+    thickness_m: f64,
+    rolls_rad: Vec<f64>,
+    segments: Vec<Segment>,
+    /// The first step of every segment, counted from 1, and the number of steps.
+    first: Vec<usize>,
+    steps: usize,
+    timestep_s: f64,
+}
+
+impl<'a> Timeline<'a> {
+    /// The timeline of a plan whose board is held like this before each stage.
+    pub fn new(
+        plan: &'a StagedPlan,
+        holdings: &[Holding],
+        carried: &CarriedBy<'_>,
+        settings: &SimulationSettings,
+    ) -> Self {
+        let mut builder = Builder { carried, settings, task: &plan.task, segments: Vec::new(), piece: 0 };
+        for (number, (stage, holding)) in plan.stages.iter().zip(holdings).enumerate() {
+            if number == 0 {
+                // The scene's grippers close in these steps, and its arms take over the weight.
+                let grip_s = grip_steps(settings) as f64 * settings.timestep_s;
+                builder.still(Phase::Grip, 0, holding, grip_s);
+                builder.still(Phase::Settle, 0, holding, settings.settle_s - grip_s);
+            }
+            match stage {
+                Stage::Hold(hold) => builder.hold(number, holding, hold),
+                Stage::Move(motion) => {
+                    let paths: Vec<_> = motion.arms.iter().map(|path| &path.q_rad[..]).collect();
+                    builder.motion(number, holding, &motion.time_s, &paths);
+                }
+                Stage::Regrasp(regrasp) => builder.regrasp(number, [holding, &holdings[number + 1]], regrasp),
+            }
+        }
+        let segments = builder.segments;
+        let timestep_s = settings.timestep_s;
+        let mut first = Vec::with_capacity(segments.len());
+        let mut steps = 0;
+        for segment in &segments {
+            first.push(steps + 1);
+            steps += ((segment.duration_s / timestep_s).round() as usize).max(1);
+        }
+        let rolls_rad = plan.worked_pieces().map(|(_, worked)| worked.roll_rad.unwrap_or(0.0)).collect();
+        Self { task: &plan.task, thickness_m: plan.object.size_m[2], rolls_rad, segments, first, steps, timestep_s }
+    }
+
+    /// The number of steps.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// What happens in a step, from 1.
+    pub fn at(&self, step: usize) -> Option<Command> {
+        let number = self.first.partition_point(|&first| first <= step).checked_sub(1)?;
+        let segment = self.segments.get(number)?;
+        let end = self.first.get(number + 1).copied().unwrap_or(self.steps + 1);
+        let done = step + 1 - self.first[number];
+        let share = done as f64 / (end - self.first[number]) as f64;
+        let time_s = share * segment.duration_s;
+        let arms = segment.arms.iter().map(|arm| arm.at(time_s, share)).collect();
+        Some(Command {
+            stage: segment.stage,
+            piece: segment.piece,
+            phase: segment.phase,
+            arms,
+            tool: self.tool(segment, share),
+            x_wo: board_at(segment, time_s),
+            regrips: segment.regrips.filter(|_| done == 1),
+        })
+    }
+
+    /// The time of the first step, s.
+    pub fn timestep_s(&self) -> f64 {
+        self.timestep_s
+    }
+
+    fn tool(&self, segment: &Segment, share: f64) -> ToolState {
+        let none = ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m: Vector3::zeros() };
+        let Some((stroke, [from_m, to_m], [low, high])) = segment.work else { return none };
+        let along_m = from_m + share * (to_m - from_m);
+        let Some(operation) = self.task.operation_at(stroke, along_m, self.thickness_m) else { return none };
+        let operation = operation.rolled(self.rolls_rad.get(segment.piece).copied().unwrap_or(0.0));
+        let load_factor = low + share * (high - low);
+        let wrench_o = operation.wrench_o.scaled(load_factor);
+        ToolState { load_factor, wrench_o, p_ot_m: operation.x_ot.translation.vector }
+    }
+}
+
+/// The planned pose of the board.
+fn board_at(segment: &Segment, time_s: f64) -> Pose {
+    let knots = segment.arms.first().map_or(&[][..], |arm| &arm.knots);
+    let next = knots.partition_point(|knot| knot.time_s <= time_s).min(segment.x_wo.len() - 1);
+    match next.checked_sub(1) {
+        Some(last) if next < knots.len() && knots[next].time_s > knots[last].time_s => {
+            let share = (time_s - knots[last].time_s) / (knots[next].time_s - knots[last].time_s);
+            let share = share.clamp(0.0, 1.0);
+            segment.x_wo[last].try_lerp_slerp(&segment.x_wo[next], share, 1e-9).unwrap_or(segment.x_wo[next])
+        }
+        _ => segment.x_wo[next],
+    }
+}
+
+impl ArmSegment {
+    fn at(&self, time_s: f64, share: f64) -> ArmCommand {
+        let grip_share = self.grip[0] + share * (self.grip[1] - self.grip[0]);
+        let next = self.knots.partition_point(|knot| knot.time_s <= time_s);
+        let [last, next] = [next.saturating_sub(1), next.min(self.knots.len() - 1)].map(|number| &self.knots[number]);
+        let whole_s = next.time_s - last.time_s;
+        let part = if whole_s > 0.0 { (time_s - last.time_s) / whole_s } else { 0.0 };
+        let between = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect();
+        let rate = |(a, b): (&f64, &f64)| if whole_s > 0.0 { (b - a) / whole_s } else { 0.0 };
+        ArmCommand {
+            q_rad: between(&last.q_rad, &next.q_rad),
+            speed_rad_s: last.q_rad.iter().zip(&next.q_rad).map(rate).collect(),
+            arm_nm: between(&last.arm_nm, &next.arm_nm),
+            board_nm: between(&last.board_nm, &next.board_nm),
+            grip_share,
+        }
+    }
+}
+
+/// Builds segments.
+struct Builder<'b, 'a> {
+    carried: &'b CarriedBy<'a>,
+    settings: &'b SimulationSettings,
+    task: &'b Task,
+    segments: Vec<Segment>,
+    /// The next piece.
+    piece: usize,
+}
+
+impl Builder<'_, '_> {
+    /// All arms as they hold the board, for a time; torques go from one distribution to another.
+    fn resting(&self, holding: &Holding, duration_s: f64, from: &[Vec<f64>], to: &[Vec<f64>]) -> Vec<ArmSegment> {
+        let arm = |(number, hold): (usize, &crate::model::plan::ArmHold)| {
+            let arm_nm = self.carried.arm_nm(number, &hold.q_rad);
+            let knot = |time_s: f64, board_nm: &Vec<f64>| Knot {
+                time_s,
+                q_rad: hold.q_rad.clone(),
+                arm_nm: arm_nm.clone(),
+                board_nm: board_nm.clone(),
+            };
+            ArmSegment { knots: vec![knot(0.0, &from[number]), knot(duration_s, &to[number])], grip: [1.0; 2] }
+        };
+        holding.arms.iter().enumerate().map(arm).collect()
+    }
+
+    fn push(&mut self, stage: usize, phase: Phase, duration_s: f64, arms: Vec<ArmSegment>, x_wo: Vec<Pose>) {
+        let piece = self.piece;
+        self.segments.push(Segment { stage, piece, phase, duration_s, arms, x_wo, work: None, regrips: None });
+    }
+
+    fn still(&mut self, phase: Phase, stage: usize, holding: &Holding, duration_s: f64) {
+        let board_nm = self.carried.board_nm(holding, None);
+        let arms = self.resting(holding, duration_s, &board_nm, &board_nm);
+        self.push(stage, phase, duration_s, arms, vec![holding.x_wo]);
+    }
+
+    /// The tool is put on, works along pieces without a corner, and is lifted.
+    fn hold(&mut self, stage: usize, holding: &Holding, hold: &HoldStage) {
+        self.still(Phase::Settle, stage, holding, STILL_S);
+        let board_nm = self.carried.board_nm(holding, None);
+        let pieces: Vec<Piece> = hold.pieces.iter().map(|worked| worked.piece).collect();
+        let mut first = 0;
+        for number in 0..pieces.len() {
+            let goes_on = pieces.get(number + 1).is_some_and(|next| {
+                next.stroke == pieces[number].stroke
+                    && !self.task.path[next.stroke].has_corner_at(next.from_m)
+                    && next.to_m > next.from_m
+            });
+            if goes_on {
+                continue;
+            }
+            self.run(stage, holding, &board_nm, &pieces[first..=number]);
+            first = number + 1;
+        }
+    }
+
+    /// Works on pieces of one stroke without lifting the tool.
+    fn run(&mut self, stage: usize, holding: &Holding, board_nm: &[Vec<f64>], pieces: &[Piece]) {
+        let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return };
+        let (stroke, begin_m, end_m) = (first.stroke, first.from_m, last.to_m);
+        let ramp_s = self.settings.ramp_s;
+        let mut parts = vec![(Phase::Ramp, ramp_s, [begin_m; 2], [0.0, 1.0], 0)];
+        for (number, piece) in pieces.iter().enumerate() {
+            let is_hole = end_m == begin_m;
+            let duration_s = if is_hole { self.settings.hold_s } else { piece.length_m() / self.task.speed_m_s };
+            parts.push((Phase::Hold, duration_s, [piece.from_m, piece.to_m], [1.0; 2], number));
+        }
+        parts.push((Phase::Release, LIFTED_S, [end_m; 2], [0.0; 2], pieces.len() - 1));
+        let first_piece = self.piece;
+        for (phase, duration_s, along_m, load, number) in parts {
+            self.piece = first_piece + number;
+            let arms = self.resting(holding, duration_s, board_nm, board_nm);
+            self.push(stage, phase, duration_s, arms, vec![holding.x_wo]);
+            if let Some(segment) = self.segments.last_mut() {
+                segment.work = Some((stroke, along_m, load));
+            }
+        }
+        self.piece = first_piece + pieces.len();
+    }
+
+    fn motion(&mut self, stage: usize, holding: &Holding, time_s: &[f64], paths: &[&[Vec<f64>]]) {
+        let (arms, x_wo) = self.carried.along(holding, time_s, paths);
+        let duration_s = time_s.last().copied().unwrap_or(0.0);
+        self.push(stage, Phase::Move, duration_s, arms, x_wo);
+    }
+
+    fn regrasp(
+        &mut self,
+        stage: usize,
+        [before, after]: [&Holding; 2],
+        regrasp: &crate::model::staged_plan::RegraspStage,
+    ) {
+        let Some(arm) = before.arms.iter().position(|hold| hold.name == regrasp.arm.name) else { return };
+        let shared_nm = self.carried.board_nm(before, None);
+        let alone_nm = self.carried.board_nm(before, Some(arm));
+        let then_nm = self.carried.board_nm(after, None);
+        let x_wo = vec![before.x_wo];
+        let mut with_grip =
+            |builder: &mut Self, holding: &Holding, duration_s: f64, torques: [&[Vec<f64>]; 2], grip| {
+                let mut arms = builder.resting(holding, duration_s, torques[0], torques[1]);
+                arms[arm].grip = grip;
+                builder.push(stage, Phase::Regrasp, duration_s, arms, x_wo.clone());
+            };
+        with_grip(self, before, SHIFT_S, [&shared_nm, &alone_nm], [1.0; 2]);
+        with_grip(self, before, OPEN_S, [&alone_nm, &alone_nm], [OPEN_SHARE; 2]);
+        let duration_s = regrasp.time_s.last().copied().unwrap_or(0.0);
+        let mut arms = self.resting(before, duration_s, &alone_nm, &alone_nm);
+        arms[arm] = self.carried.free_path(arm, &regrasp.time_s, &regrasp.arm.q_rad);
+        arms[arm].grip = [OPEN_SHARE; 2];
+        self.push(stage, Phase::Regrasp, duration_s, arms, x_wo.clone());
+        let closing = self.segments.len();
+        with_grip(self, after, CLOSE_S, [&alone_nm, &alone_nm], [-OPEN_SHARE; 2]);
+        if let Some(segment) = self.segments.get_mut(closing) {
+            segment.regrips = Some((arm, regrasp.x_og, regrasp.grip_force_n));
+        }
+        with_grip(self, after, GRIP_S, [&alone_nm, &alone_nm], [-OPEN_SHARE, 1.0]);
+        with_grip(self, after, SHIFT_S, [&alone_nm, &then_nm], [1.0; 2]);
+    }
+}
