@@ -71,27 +71,89 @@ fn main() {
     }
 }
 mod sim_it {
-    use benchdog::{check::{CheckedPlan, StagedStates}, judge::judge_staged, model::{stop::Never, staged_plan::StagedPlan}, scenario::LoadedScenario, sim::{Conditions, simulate_staged}};
+    use benchdog::{
+        check::{CheckedPlan, StagedStates},
+        judge::judge_staged,
+        model::{staged_plan::StagedPlan, stop::Never},
+        scenario::LoadedScenario,
+        sim::{Conditions, simulate_staged},
+    };
     pub fn go(loaded: &LoadedScenario, plan: &StagedPlan) {
         let t0 = std::time::Instant::now();
-        let states = match StagedStates::new(&loaded.robot, plan) { Ok(s) => s, Err(f) => { println!("FLAW {f}"); return; } };
+        let states = match StagedStates::new(&loaded.robot, plan) {
+            Ok(s) => s,
+            Err(f) => {
+                println!("FLAW {f}");
+                return;
+            }
+        };
         let s = &loaded.scenario;
         let mut pieces = Vec::new();
-        for p in &states.pieces { match StagedStates::checked(&loaded.robot, p, &s.human, &s.tool) { Ok(c) => pieces.push(c), Err(f) => { println!("FLAWS {} {f}", p.plan.name); return; } } }
-        for c in &pieces { if let Some(x) = c.first_contact(0.0) { println!("contact {} {}", c.plan().name, x.reason); } if let Some(x) = c.why_not_so(&s.limits) { println!("not so {} {x}", c.plan().name); } }
+        for p in &states.pieces {
+            match StagedStates::checked(&loaded.robot, p, &s.human, &s.tool) {
+                Ok(c) => pieces.push(c),
+                Err(f) => {
+                    println!("FLAWS {} {f}", p.plan.name);
+                    return;
+                }
+            }
+        }
+        for c in &pieces {
+            if let Some(x) = c.first_contact(0.0) {
+                println!("contact {} {}", c.plan().name, x.reason);
+            }
+            if let Some(x) = c.why_not_so(&s.limits) {
+                println!("not so {} {x}", c.plan().name);
+            }
+        }
         let mut initial_plan = states.pieces[0].plan.clone();
-        initial_plan.object.x_wo = states.holdings[0].x_wo; initial_plan.arms = states.holdings[0].arms.clone(); initial_plan.human = None;
+        initial_plan.object.x_wo = states.holdings[0].x_wo;
+        initial_plan.arms = states.holdings[0].arms.clone();
+        initial_plan.human = None;
         let initial = CheckedPlan::new(&loaded.robot, &initial_plan, &s.human, &s.tool).unwrap();
         let mut conditions = Conditions::of(s);
         conditions.settings.ramp_s = 0.5;
         println!("checked {:?}", t0.elapsed());
         let t0 = std::time::Instant::now();
         let trace = simulate_staged(plan, &states, &initial, &pieces, &conditions, &Never).unwrap();
-        println!("simulated {:.1} s in {:?}; broke {:?} touch {:?} {:?}", trace.trace.samples.last().unwrap().time_s, t0.elapsed(), trace.trace.broke_down, trace.trace.person_touch, trace.trace.robot_touch);
-        for i in [0usize, 1, 10, 24, 25, 26, 30, 200, 300] { let s = &trace.trace.samples[i]; println!("{i} {} {:?} contact {} pads {:?}", s.time_s, s.phase, s.has_contact(), s.arms.iter().flat_map(|a| a.pads.iter().map(|p| p.normal_force_n)).collect::<Vec<_>>()); }
+        println!(
+            "simulated {:.1} s in {:?}; broke {:?} touch {:?} {:?}",
+            trace.trace.samples.last().unwrap().time_s,
+            t0.elapsed(),
+            trace.trace.broke_down,
+            trace.trace.person_touch,
+            trace.trace.robot_touch
+        );
+        for i in [0usize, 1, 10, 24, 25, 26, 30, 200, 300] {
+            let s = &trace.trace.samples[i];
+            println!(
+                "{i} {} {:?} contact {} pads {:?}",
+                s.time_s,
+                s.phase,
+                s.has_contact(),
+                s.arms.iter().flat_map(|a| a.pads.iter().map(|p| p.normal_force_n)).collect::<Vec<_>>()
+            );
+        }
         for j in judge_staged(&trace, plan, &s.limits) {
-            println!("stage {} {} {:.2}..{:.2} s: {} {:?} {:?}", j.span.stage, plan.stages[j.span.stage].name(), trace.trace.samples[j.span.first].time_s, trace.trace.samples[j.span.last].time_s, j.judgement.verdict, j.judgement.first_failure, j.judgement.reason);
-            println!("    {}", j.judgement.checks.iter().map(|c| format!("{} {:.2}/{}", c.name, c.value, c.limit)).collect::<Vec<_>>().join(", "));
+            println!(
+                "stage {} {} {:.2}..{:.2} s: {} {:?} {:?}",
+                j.span.stage,
+                plan.stages[j.span.stage].name(),
+                trace.trace.samples[j.span.first].time_s,
+                trace.trace.samples[j.span.last].time_s,
+                j.judgement.verdict,
+                j.judgement.first_failure,
+                j.judgement.reason
+            );
+            println!(
+                "    {}",
+                j.judgement
+                    .checks
+                    .iter()
+                    .map(|c| format!("{} {:.2}/{}", c.name, c.value, c.limit))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            );
         }
     }
 }

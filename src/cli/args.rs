@@ -9,6 +9,7 @@ use super::{
     format::Format,
     help,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
+    task_args::{CircleArgs, TaskArgs},
     versions,
 };
 use crate::model::{
@@ -38,6 +39,8 @@ pub enum Command {
     Front(FrontArgs),
     /// Plan the cut of a whole circle: with one grasp, with a sequence of poses, and with 16 separate plans
     Circle(CircleArgs),
+    /// Plan, simulate and judge a whole task: a path that is cut or drilled in holds, motions and regrasps
+    Task(TaskArgs),
     /// Simulate and judge a plan, also one from another planner
     Simulate(SimulateArgs),
     /// Make a plan of the grasps of another planner, from isaac_grasp or moveit_msgs/Grasp in YAML
@@ -259,23 +262,6 @@ pub struct FrontArgs {
     /// Scenario file
     pub scenario: PathBuf,
     /// Folder for `front.csv`, `front.svg` and the plans
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
-    /// Budget and seed of each search.
-    #[command(flatten)]
-    pub search: SearchArgs,
-    /// Maps between runs.
-    #[command(flatten)]
-    pub cache: CacheArgs,
-}
-
-/// `benchdog circle`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = help::CIRCLE)]
-pub struct CircleArgs {
-    /// Scenario of a cut; the circle about the board's centre goes through its point
-    pub scenario: PathBuf,
-    /// Folder for `circle.csv`, `motion.csv` and the plans
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Budget and seed of each search.

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    args::CircleArgs,
     cache,
     curve::circle_radius_m,
     exit::{CliError, Exit},
     inputs, interrupt, output,
     plan::{infeasible, load_for_planning},
     progress::Progress,
+    task_args::CircleArgs,
 };
 use crate::{
     model::{plan::Plan, scenario::ResponseKind},

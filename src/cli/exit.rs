@@ -56,6 +56,9 @@ impl From<Exit> for ExitCode {
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
+    /// A staged plan of the planner that does not fit its robot: a bug.
+    #[error("the planner made a staged plan that does not fit its robot: {0}")]
+    Staged(#[from] crate::check::StagedFlaw),
     /// An input file is invalid.
     #[error(transparent)]
     Input(#[from] InputError),
@@ -124,7 +127,7 @@ impl CliError {
     pub fn exit(&self) -> Exit {
         match self {
             _ if self.is_stop() => Exit::Interrupted,
-            Self::JUnit(_) | Self::Csv(_) => Exit::Bug,
+            Self::JUnit(_) | Self::Csv(_) | Self::Staged(_) => Exit::Bug,
             #[cfg(feature = "recording")]
             Self::Record(error) if error.is_about_a_file() => Exit::Input,
             #[cfg(feature = "recording")]

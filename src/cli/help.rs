@@ -73,6 +73,15 @@ circle.csv lists the comfort at 16 points for the three strategies. The plans ar
 hold-16.json, sequence-1.json to sequence-16.json and separate-1.json to separate-16.json.
 motion.csv is the sequence's path of the arms' joints and the board from point to point.";
 
+/// `benchdog task --help`.
+pub const TASK: &str = "\
+Examples:
+  benchdog task scenarios/whole-circle.toml     plan, simulate and judge 16 pieces of a circle
+  benchdog task scenarios/whole-circle.toml --plan-only
+  benchdog simulate out/whole-circle/plan.json  judge the staged plan again, or that of another planner
+
+The folder of the task has plan.json, verdict.json, stages.csv, path.csv and report.html.";
+
 /// `benchdog sweep --help`.
 pub const SWEEP: &str = "\
 Examples:

@@ -43,6 +43,8 @@ mod select;
 mod simulate;
 mod sweep;
 mod sweep_args;
+mod task;
+mod task_args;
 mod threads;
 mod versions;
 #[cfg(feature = "recording")]
@@ -72,6 +74,8 @@ pub fn main() -> ExitCode {
         Command::Replan(args) => replan::replan(args),
         Command::Front(args) => front::front(args),
         Command::Circle(args) => circle::circle(args),
+        Command::Task(args) => task::task(args),
+        Command::Simulate(args) if crate::scenario::is_staged_plan(&args.plan) => task::simulate(args),
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
         Command::Reproduce(args) => reproduce::reproduce(args),

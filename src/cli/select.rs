@@ -7,7 +7,7 @@ use std::{
 
 use glob::Pattern;
 
-use super::{args::PlannerArgs, exit::CliError};
+use super::{args::PlannerArgs, exit::CliError, output};
 use crate::scenario::{self, LoadedScenario};
 
 /// A scenario, and whether it passes `--filter`.
@@ -28,7 +28,7 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
     let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
     let mut names = BTreeMap::<String, PathBuf>::new();
     let mut selected = Vec::new();
-    for path in files(arguments)? {
+    for path in without_tasks(files(arguments)?) {
         let mut loaded = scenario::load(&path)?;
         planner.apply(&mut loaded.scenario.planner);
         let name = loaded.scenario.name.clone();
@@ -47,6 +47,18 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
         "--filter {given}: found no scenario that passes, expected one of {}",
         known.join(", ")
     )))
+}
+
+/// The files without task files, unless there is nothing else: a task among scenarios is left out with a note.
+fn without_tasks(files: Vec<PathBuf>) -> Vec<PathBuf> {
+    let (tasks, scenarios): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| scenario::is_task(path));
+    if scenarios.is_empty() {
+        return tasks;
+    }
+    for path in tasks {
+        output::message(&format!("{}: a task, left out: it is run by `benchdog task`", path.display()));
+    }
+    scenarios
 }
 
 /// The files that the arguments name. An existing path is never a pattern, even if it contains * ? or [.

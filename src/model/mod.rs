@@ -23,6 +23,7 @@ mod pose_form;
 pub mod scenario;
 pub mod staged_plan;
 pub mod staged_trace;
+pub mod staged_verdict;
 pub mod stop;
 pub mod sweep;
 pub mod task;

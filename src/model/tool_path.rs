@@ -144,7 +144,7 @@ impl Stroke {
             Self::Circle { .. } => {
                 let length_m = self.length_m();
                 let count = (length_m / spacing_m).ceil().max(TAU / MOST_TURN_RAD) as usize;
-                (0..=count).map(|number| self.at(length_m * number as f64 / count as f64).point_m).collect()
+                (0..=count).map(|number| self.at(length_m * (number % count) as f64 / count as f64).point_m).collect()
             }
         }
     }

@@ -24,6 +24,7 @@ mod plot;
 pub mod posture;
 pub mod summary;
 pub mod sweep;
+pub mod task;
 #[cfg(test)]
 mod tests;
 

@@ -13,6 +13,7 @@ use super::{
     locate,
     object_section::ObjectSection,
     sweep_section::SweepSection,
+    task_section::TaskSection,
 };
 use crate::model::{
     operation::OperationKind,
@@ -43,8 +44,10 @@ pub struct ScenarioFile {
     /// The board; by default that of the reproduction of the paper.
     #[serde(default)]
     pub object: ObjectSection,
-    /// The forceful operation.
-    pub operation: OperationSection,
+    /// The forceful operation. A task file has `task` in its place.
+    pub operation: Option<OperationSection>,
+    /// A path that is cut or drilled, in place of `operation`.
+    pub task: Option<TaskSection>,
     /// How comfort is defined.
     #[serde(default)]
     pub comfort: ComfortSettings,

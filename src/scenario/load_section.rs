@@ -44,7 +44,7 @@ pub enum LoadKind {
 }
 
 /// `[load]`: `kind` determines which other keys are allowed.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LoadSection {
     /// `ramp`, `drill`, `path` or `measured`; `ramp` by default.

@@ -19,7 +19,9 @@ pub mod plan_input;
 pub mod replan_request;
 mod resolve;
 mod robot_file;
+mod staged_file;
 mod sweep_section;
+mod task_section;
 mod uncertainty_section;
 
 use std::path::{Path, PathBuf};
@@ -29,12 +31,14 @@ use plan_file::ReadPlan;
 pub use plan_file::read_plan;
 pub use replan_request::{ReplanRequest, read_replan_request};
 pub use robot_file::robot_parameters;
+pub use staged_file::{LoadedStagedPlan, is_staged_plan, load_staged};
 pub use sweep_section::usual_sweep;
 
 use crate::{
-    model::{plan::Plan, scenario::Scenario},
+    model::{plan::Plan, scenario::Scenario, task::Task},
     robot::Robot,
 };
+use resolve::Resolved;
 
 /// A resolved scenario with its robot and, if the file names one, its plan.
 #[derive(Clone, Debug)]
@@ -46,6 +50,8 @@ pub struct LoadedScenario {
     pub scenario: Scenario,
     /// The robot.
     pub robot: Robot,
+    /// The task of a task file; the scenario's operation is then that of its first piece.
+    pub task: Option<Task>,
     /// The plan that `planner.plan` names.
     pub plan: Option<Plan>,
     /// For each value that the plan's file leaves out, what it follows from.
@@ -87,20 +93,54 @@ pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
     load_text(path, &error::read_text(path)?)
 }
 
+/// True if a file has the section `[task]`. One that cannot be read has none.
+#[must_use]
+pub fn is_task(path: &Path) -> bool {
+    let file = std::fs::read_to_string(path).ok().and_then(|text| text.parse::<toml::Table>().ok());
+    file.is_some_and(|file| file.contains_key("task"))
+}
+
+/// Reads, checks and completes a task file.
+///
+/// # Errors
+/// As for [`load`], and if the file has no `[task]`.
+pub fn load_task(path: &Path) -> Result<(LoadedScenario, Task), InputError> {
+    let text = error::read_text(path)?;
+    let loaded = load_any(path, &text)?;
+    match loaded.task.clone() {
+        Some(task) => Ok((loaded, task)),
+        None => {
+            let expected = "[task] with a path that is cut or drilled; a scenario of one hold is run by `benchdog run`";
+            Err(check::Checker::toml(path, &text).value("operation", "[operation]", expected))
+        }
+    }
+}
+
 /// Checks and completes the text of a scenario file. Files that it names are relative to the folder of `path`.
 ///
 /// # Errors
 /// As for [`load`].
 pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
+    let loaded = load_any(path, text)?;
+    if loaded.task.is_some() {
+        let expected = "[operation] with one operation; a task is run by `benchdog task`";
+        return Err(check::Checker::toml(path, text).value("task", "[task]", expected));
+    }
+    Ok(loaded)
+}
+
+fn load_any(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
     if let Ok(probe) = toml::from_str::<check::FormatProbe>(text) {
         check::Checker::toml(path, text).format(probe.format)?;
     }
     let file = file::parse(path, text)?;
-    let (scenario, robot) = resolve::resolve(path, text, &file)?;
+    let Resolved { scenario, task, robot } = resolve::resolve(path, text, &file)?;
     let folder = folder_of(path);
     let mut inputs = vec![path.to_owned()];
     inputs.extend(robot.files.iter().cloned());
     inputs.extend(file.load.file.as_ref().map(|forces| folder.join(forces)));
+    let of_path = file.task.as_ref().and_then(|task| task.file.as_ref());
+    inputs.extend(of_path.map(|path| folder.join(path)));
     inputs.extend(file.sweep.iter().flat_map(|sweep| sweep.files()).map(|values| folder.join(values)));
     let (plan, filled_in) = match &scenario.planner.plan {
         Some(plan) => {
@@ -112,7 +152,7 @@ pub fn load_text(path: &Path, text: &str) -> Result<LoadedScenario, InputError> 
         }
         None => (None, Vec::new()),
     };
-    Ok(LoadedScenario { path: path.to_owned(), scenario, robot, plan, filled_in, inputs })
+    Ok(LoadedScenario { path: path.to_owned(), scenario, robot, task, plan, filled_in, inputs })
 }
 
 /// The folder that the paths in a file are relative to.

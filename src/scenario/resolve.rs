@@ -8,10 +8,11 @@ use super::{
     InputError,
     check::Checker,
     file::{GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
-    load_section::{self, check_load},
+    load_section::{self, LoadSection, check_load},
     object_section,
     robot_file::{load_robot, robot_parameters},
     sweep_section::{self, check_expectation, check_sweep},
+    task_section,
     uncertainty_section::check_uncertainty,
 };
 use crate::{
@@ -32,17 +33,28 @@ use crate::{
             Board, ComfortSettings, Expectation, Grip, Limits, Person, PlannerSettings, PostureLimits, Scenario, Sex,
             SimulationSettings, StandingPlace, Tool,
         },
+        task::Task,
         uncertainty::Uncertainty,
         wrench::Wrench,
     },
     robot::{PadGrip, Robot, RobotOptions},
 };
 
+/// What a scenario file resolves to.
+pub struct Resolved {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// The task of a task file.
+    pub task: Option<Task>,
+    /// The robot.
+    pub robot: Robot,
+}
+
 /// The resolved scenario of a file, and its robot.
 ///
 /// # Errors
 /// If the robot cannot be loaded or a value is invalid.
-pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario, Robot), InputError> {
+pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<Resolved, InputError> {
     let check = Checker::toml(path, text);
     check.name(&file.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -59,7 +71,7 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         check.that(file.planner.plan.is_some(), "planner.plan", found, expected)?;
     }
     let object = object_section::board(&check, &file.object, &robot)?;
-    let operation = operation(&check, &file.operation, &object)?;
+    let (operation, task) = operation_or_task(&check, file, &object, folder)?;
     let mut scenario = Scenario {
         format: FORMAT,
         name: file.name.clone(),
@@ -82,7 +94,31 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<(Scenario
         scenario.sweep = Some(sweep_section::sweep(&check, section, &scenario, &robot, folder)?);
     }
     check_values(&check, &scenario, &robot)?;
-    Ok((scenario, robot))
+    Ok(Resolved { scenario, task, robot })
+}
+
+/// The operation of a file or, of a task file, that of the first piece, with the task.
+fn operation_or_task(
+    check: &Checker<'_>,
+    file: &ScenarioFile,
+    object: &Board,
+    folder: &Path,
+) -> Result<(Operation, Option<Task>), InputError> {
+    let section = match (&file.operation, &file.task) {
+        (Some(section), None) => return Ok((operation(check, section, object)?, None)),
+        (None, Some(section)) => section,
+        (None, None) => return Err(check.value("operation", "nothing", "[operation], or [task] of a task file")),
+        (Some(_), Some(_)) => return Err(check.value("task", "[task] beside [operation]", "one of them")),
+    };
+    let of_holds = "a scenario of one hold, with [operation]";
+    check.absent("sweep", file.sweep.is_some(), of_holds)?;
+    check.absent("planner.plan", file.planner.plan.is_some(), of_holds)?;
+    check.absent("load", file.load != LoadSection::default(), of_holds)?;
+    check.absent("uncertainty", file.uncertainty != Uncertainty::default(), of_holds)?;
+    let task = task_section::task(check, section, object, folder)?;
+    let first = task.pieces().first().and_then(|piece| task.operation_of(piece, object.size_m[2]));
+    let operation = check.present("task", first, "a path of some length")?;
+    Ok((operation, Some(task)))
 }
 
 /// Checks all values of a resolved scenario but those of board and operation, which depend on the form of the file.

@@ -35,7 +35,6 @@ pub fn grips(problem: &TaskProblem<'_>, roots: &[Root], places: &Places) -> Vec<
     let near = |number: usize| near_root(robot, &roots[number % roots.len()], places, &mut random(number));
     let count = if roots.is_empty() { 0 } else { NEAR_GRIPS * problem.pieces() };
     let near: Vec<_> = (0..count).into_par_iter().filter_map(near).collect();
-    eprintln!("DBG near {}", near.len());
     let drawn = |number: usize| {
         let mut random = random(count + number);
         let Some((place, x_wo)) = places.drawn(&mut random) else { return Vec::new() };
@@ -122,14 +121,6 @@ fn selected(problem: &TaskProblem<'_>, grips: Vec<Grip>, places: &Places) -> Vec
     };
     let served: Vec<_> = grips.par_iter().map_init(StabilityWorkspace::new, served).collect();
     let counts: Vec<_> = served.iter().map(|pieces| pieces.iter().filter(|served| **served).count()).collect();
-    eprintln!(
-        "DBG all grips {} served pieces histogram {:?}",
-        grips.len(),
-        counts.iter().fold([0; 17], |mut a: [usize; 17], n| {
-            a[(*n).min(16)] += 1;
-            a
-        })
-    );
     let mut kept: Vec<bool> = grips.iter().map(|grip| grip.is_of_root).collect();
     for piece in 0..pieces {
         let mut of_piece: Vec<_> = (0..grips.len()).filter(|&grip| served[grip][piece]).collect();

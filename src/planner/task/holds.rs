@@ -43,38 +43,21 @@ pub struct Holds {
     pub holds: Vec<Hold>,
     pub arcs: Vec<Vec<Arc>>,
     pub places: Places,
-    /// By hold and piece: what the piece costs, from below; infinite where the hold does not resist its load.
+    /// By hold and piece: what the piece costs; infinite where the hold does not resist its load, or the person in the posture of
+    /// the board alone would touch the robot or not see the work.
     pub serving: Vec<Vec<f64>>,
+    /// The same from below for another posture of the person nearby.
+    pub serving_nearby: Vec<Vec<f64>>,
 }
 
 impl Holds {
     /// The holds that follow from the best holds of single pieces; the last piece of a closed path is beside the first one.
     pub fn new(problem: &TaskProblem<'_>, roots: &[Root], closed: bool) -> Self {
-        let t0 = std::time::Instant::now();
         let of_first = problem.of_piece(0);
         // Force and person are the same at all pieces, seen from the tool.
         let map = posture_map(of_first.scenario, &of_first.human, problem.watch);
-        eprintln!("DBG map {:?}", t0.elapsed());
         let places = Places::new(problem, &map, roots, closed);
-        eprintln!("DBG places {} {:?}", places.count(), t0.elapsed());
         let grips = grips(problem, roots, &places);
-        eprintln!(
-            "DBG grips {} {:?} {:?}",
-            grips.len(),
-            t0.elapsed(),
-            grips
-                .iter()
-                .map(|g| {
-                    let mut v: Vec<_> = g.at.keys().map(|&p| places.piece(p)).collect();
-                    v.sort();
-                    v.dedup();
-                    v.len()
-                })
-                .fold([0; 9], |mut a: [usize; 9], n| {
-                    a[n.min(8)] += 1;
-                    a
-                })
-        );
         let of_grip = |(grip, Grip { at, .. }): (usize, &Grip)| {
             at.iter().map(move |(&place, grasp)| Hold { grasp: grasp.clone(), place, grip }).collect::<Vec<_>>()
         };
@@ -87,20 +70,18 @@ impl Holds {
                     *cost = f64::INFINITY;
                 }
             }
-            costs
+            let nearby = costs.clone();
+            for (piece, cost) in costs.iter_mut().enumerate().filter(|(_, cost)| cost.is_finite()) {
+                let posture = places.posture(hold.place, piece);
+                if !posture.is_some_and(|posture| problem.is_free(piece, &hold.grasp, &posture)) {
+                    *cost = f64::INFINITY;
+                }
+            }
+            (costs, nearby)
         };
-        let serving = holds.par_iter().map_init(StabilityWorkspace::new, serving).collect();
-        eprintln!("DBG pieces served by a hold {:?}", {
-            let s: &Vec<Vec<f64>> = &serving;
-            s.iter().map(|c| c.iter().filter(|c| c.is_finite()).count()).fold([0; 12], |mut a: [usize; 12], n| {
-                a[n.min(11)] += 1;
-                a
-            })
-        });
-        eprintln!("DBG serving {:?}", t0.elapsed());
+        let (serving, serving_nearby) = holds.par_iter().map_init(StabilityWorkspace::new, serving).unzip();
         let arcs = arcs(&holds, &grips, &places);
-        eprintln!("DBG arcs {:?}", t0.elapsed());
-        Self { holds, arcs, places, serving }
+        Self { holds, arcs, places, serving, serving_nearby }
     }
 }
 

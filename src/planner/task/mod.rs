@@ -95,6 +95,7 @@ fn evenly(count: usize, most: usize) -> Vec<usize> {
 
 /// What a search is given.
 pub struct TaskSearch<'a> {
+    /// The task.
     pub task: &'a Task,
     /// The scenario of the task; its operation is that of the first piece.
     pub scenario: &'a Scenario,
@@ -102,7 +103,9 @@ pub struct TaskSearch<'a> {
     pub pieces: &'a [Scenario],
     /// The best plans of pieces by themselves.
     pub separate: &'a [Option<Plan>],
+    /// The robot, prepared for the board.
     pub robot: &'a GraspingRobot,
+    /// Is told of the search, and may stop it.
     pub watch: &'a dyn Watch,
 }
 
@@ -118,25 +121,21 @@ impl TaskSearch<'_> {
         begin(watch, Phase::Task);
         let holds = Holds::new(&problem, &roots, self.is_closed());
         let costs = Costs { per_move: task.move_cost, per_regrasp: task.regrasp_cost };
-        eprintln!(
-            "DBG holds {} places {} arcs {} served {:?}",
-            holds.holds.len(),
-            holds.places.count(),
-            holds.arcs.iter().map(Vec::len).sum::<usize>(),
-            (0..problem.pieces())
-                .map(|k| holds.serving.iter().filter(|s| s[k].is_finite()).count())
-                .collect::<Vec<_>>()
-        );
-        let graph = Graph { arcs: holds.arcs.clone(), serving: holds.serving.clone(), costs };
         let mut transitions = Transitions::new(&mut problem, &holds);
+        let mut graph = Graph { arcs: holds.arcs.clone(), serving: holds.serving.clone(), costs };
+        // Postures beside the robot are searched for only if those beside the board alone are too few.
+        let mut is_wide = false;
         loop {
             go_on(watch)?;
-            let t0 = std::time::Instant::now();
             let found = graph.cheapest(&mut transitions);
-            eprintln!("DBG cheapest {:?} {}", t0.elapsed(), transitions.counts());
             let Some(found) = found else { return Err(PlanError::Stopped) };
             let way = match found {
                 Found::Way(way) => way,
+                Found::Nothing { .. } if !is_wide => {
+                    graph.serving.clone_from(&holds.serving_nearby);
+                    is_wide = true;
+                    continue;
+                }
                 Found::Nothing { served } => return Ok(Err(self.infeasible(served))),
             };
             // A way whose plans are all accepted ends the loop; each other round excludes at least one hold for one piece.

@@ -22,7 +22,7 @@ use crate::{
         plan::{ArmHold, Plan},
         scenario::Limits,
     },
-    statics::{ContactModel, HandModel, StabilityWorkspace},
+    statics::{ContactModel, HandModel, ResponseOutcome, StabilityWorkspace},
 };
 
 /// Computes what is exact, each figure once.
@@ -52,20 +52,6 @@ impl<'p, 'a> Transitions<'p, 'a> {
     /// The person's posture at a piece that a hold serves.
     pub fn posture(&self, hold: usize, piece: usize) -> Option<Posture> {
         self.served.get(&(hold, piece)).copied().flatten()
-    }
-
-    pub fn counts(&self) -> String {
-        format!(
-            "served {}/{} moves {}/{} regrasps {}/{} carried {}/{}",
-            self.served.values().flatten().count(),
-            self.served.len(),
-            self.moves.values().filter(|m| **m).count(),
-            self.moves.len(),
-            self.regrasps.values().flatten().count(),
-            self.regrasps.len(),
-            self.carried.values().filter(|m| **m).count(),
-            self.carried.len()
-        )
     }
 
     /// The changes of grasps between two holds, if they are possible.
@@ -200,7 +186,7 @@ impl Exact for Transitions<'_, '_> {
         let objective = self.problem.comfort(piece, &grasp.x_wo, &posture, &points_w).objective;
         let cost = self.problem.cost(piece, objective)?;
         // A posture that was found beside the robot may be better than the one beside the board alone.
-        Some(cost.max(self.holds.serving[hold][piece]))
+        Some(cost.max(self.holds.serving_nearby[hold][piece]))
     }
 
     fn exists(&mut self, from: usize, arc: &Arc) -> bool {
@@ -250,9 +236,12 @@ fn carries(
         return false;
     }
     let model = ContactModel::from_hands(hands, &object, &scenario.operation);
-    // The weight once more as the load, at the board's centre of mass.
-    let model = ContactModel { load: model.weight, p_ot: nalgebra::Vector3::zeros(), ..model };
+    // A share of the weight once more as the load; displacements are those of the board's centre.
+    let load = model.weight.scaled(CARRIED_RESERVE);
+    let model = ContactModel { load, p_ot: nalgebra::Vector3::zeros(), ..model };
     let limits = Limits { deflection_mm: scenario.limits.sag_mm, ..of_piece.stability_limits() };
-    let factor = workspace.compliant_load_factor(&model, &limits);
-    factor.is_ok_and(|found| found.load_factor >= CARRIED_RESERVE)
+    match workspace.response(&model, 1.0) {
+        Ok(ResponseOutcome::Found(response)) => response.utilisation(&model, &limits) <= 1.0,
+        _ => false,
+    }
 }

@@ -332,12 +332,11 @@ impl Builder<'_, '_> {
         let alone_nm = self.carried.board_nm(before, Some(arm));
         let then_nm = self.carried.board_nm(after, None);
         let x_wo = vec![before.x_wo];
-        let mut with_grip =
-            |builder: &mut Self, holding: &Holding, duration_s: f64, torques: [&[Vec<f64>]; 2], grip| {
-                let mut arms = builder.resting(holding, duration_s, torques[0], torques[1]);
-                arms[arm].grip = grip;
-                builder.push(stage, Phase::Regrasp, duration_s, arms, x_wo.clone());
-            };
+        let with_grip = |builder: &mut Self, holding: &Holding, duration_s: f64, torques: [&[Vec<f64>]; 2], grip| {
+            let mut arms = builder.resting(holding, duration_s, torques[0], torques[1]);
+            arms[arm].grip = grip;
+            builder.push(stage, Phase::Regrasp, duration_s, arms, x_wo.clone());
+        };
         with_grip(self, before, SHIFT_S, [&shared_nm, &alone_nm], [1.0; 2]);
         with_grip(self, before, OPEN_S, [&alone_nm, &alone_nm], [OPEN_SHARE; 2]);
         let duration_s = regrasp.time_s.last().copied().unwrap_or(0.0);

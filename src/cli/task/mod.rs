@@ -1,0 +1,153 @@
+//! `benchdog task`: plans, simulates and judges a whole task; and the judgement of staged plans for `benchdog simulate`.
+
+mod pipeline;
+
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+use super::{
+    args::SimulateArgs,
+    cache,
+    exit::{CliError, Exit},
+    format::Format,
+    inputs, interrupt, output,
+    progress::Progress,
+    task_args::TaskArgs,
+};
+use crate::{
+    check::StagedStates,
+    model::{
+        plan::PlannerRecord,
+        scenario::{ResponseKind, Scenario},
+        staged_plan::StagedPlan,
+        verdict::VerdictKind,
+    },
+    planner::task::{TaskInfeasible, TaskPlan},
+    report,
+    robot::Robot,
+    scenario::{self, LoadedStagedPlan},
+};
+use pipeline::{StagedRun, run_staged};
+
+/// The files of a task.
+struct TaskFiles {
+    plan: PathBuf,
+    verdict: PathBuf,
+    stages: PathBuf,
+    path: PathBuf,
+    page: PathBuf,
+}
+
+impl TaskFiles {
+    fn new(out: &Path, name: &str) -> Self {
+        let file = |file: &str| out.join(name).join(file);
+        Self {
+            plan: file("plan.json"),
+            verdict: file("verdict.json"),
+            stages: file("stages.csv"),
+            path: file("path.csv"),
+            page: file("report.html"),
+        }
+    }
+
+    /// Those that `task` writes; `simulate` leaves the plan as it is.
+    fn all(&self) -> [PathBuf; 5] {
+        [&self.plan, &self.verdict, &self.stages, &self.path, &self.page].map(Clone::clone)
+    }
+}
+
+/// Plans a task, simulates and judges it, and writes plan, verdict, tables and report.
+pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
+    let progress = Progress::begin("reading the task", "nothing is written")?;
+    let (mut loaded, task) = scenario::load_task(&args.task)?;
+    args.search.apply(&mut loaded.scenario.planner);
+    // Holds are compared by the person's best response: the mean response would take minutes per grasp.
+    loaded.scenario.comfort.person = ResponseKind::Best;
+    let files = TaskFiles::new(&args.out, &loaded.scenario.name);
+    inputs::protect(&loaded.inputs, files.all())?;
+    report::file::check_folder(&args.out)?;
+    let planner = cache::planner(&loaded.robot, args.cache);
+    let start = Instant::now();
+    planner.search(&loaded.scenario).watch(&*progress).prepare()?;
+    let map_ms = start.elapsed().as_secs_f64() * 1e3;
+    let start = Instant::now();
+    let found = planner.search(&loaded.scenario).watch(&*progress).task(&task)?;
+    let wall_ms = start.elapsed().as_secs_f64() * 1e3;
+    let TaskPlan { mut staged, separate } = match found {
+        Ok(found) => found,
+        Err(why) => {
+            progress.finish();
+            return Ok(infeasible(&loaded.scenario, &why));
+        }
+    };
+    staged.planner =
+        staged.planner.map(|record| PlannerRecord { wall_ms: Some(wall_ms), map_ms: Some(map_ms), ..record });
+    output::message(&format!(
+        "{}: planned in {:.2} s (maps {:.1} s): {} holds, {} motions, {} regrasps",
+        staged.name,
+        wall_ms / 1e3,
+        map_ms / 1e3,
+        staged.stages.len() - staged.moves() - staged.regrasps(),
+        staged.moves(),
+        staged.regrasps(),
+    ));
+    let best: Vec<_> = separate.iter().map(|plan| Some(plan.as_ref()?.comfort?.objective)).collect();
+    report::file::write_whole(&files.plan, report::json::pretty(&staged).as_bytes())?;
+    report::file::write_whole(&files.path, report::task::path_csv(&staged, &best).as_bytes())?;
+    if args.plan_only {
+        progress.finish();
+        return Ok(Exit::Met);
+    }
+    let robot = loaded.robot.at_gap(staged.object.size_m[2]);
+    let states = StagedStates::new(&robot, &staged)?;
+    judged(&loaded.scenario, &robot, &staged, &states, (&files, args.format), &progress)
+}
+
+/// Simulates and judges a staged plan of any planner.
+pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
+    let progress = Progress::begin("reading the plan", "")?;
+    let LoadedStagedPlan { plan, states, robot, scenario, inputs, .. } = scenario::load_staged(&args.plan)?;
+    let files = TaskFiles::new(&args.report.out, &plan.name);
+    inputs::protect(&inputs, files.all().into_iter().skip(1))?;
+    report::file::check_folder(&args.report.out)?;
+    report::file::write_whole(&files.path, report::task::path_csv(&plan, &[]).as_bytes())?;
+    judged(&scenario, &robot, &plan, &states, (&files, args.report.format), &progress)
+}
+
+/// Simulates and judges a plan, writes verdict, table and report, and prints the table.
+fn judged(
+    scenario: &Scenario,
+    robot: &Robot,
+    plan: &StagedPlan,
+    states: &StagedStates,
+    (files, format): (&TaskFiles, Format),
+    progress: &Progress,
+) -> Result<Exit, CliError> {
+    report::file::remove(&files.verdict)?;
+    let StagedRun { verdict, simulated } = run_staged(scenario, robot, plan, states, progress)?;
+    progress.finish();
+    let writing = interrupt::writing();
+    report::file::write_whole(&files.stages, report::task::stages_csv(&verdict).as_bytes())?;
+    let page = report::task::page(plan, &verdict, simulated.as_ref().map(|(trace, _)| trace));
+    report::file::write_whole(&files.page, page.as_bytes())?;
+    report::file::write_whole(&files.verdict, report::json::pretty(&verdict).as_bytes())?;
+    drop(writing);
+    match format {
+        Format::Human => output::print(&report::task::table(&verdict))?,
+        Format::Json => output::print(&report::json::pretty(&verdict))?,
+    }
+    Ok(match (verdict.met, verdict.verdict) {
+        (true, _) => Exit::Met,
+        (false, VerdictKind::Infeasible) => Exit::Infeasible,
+        (false, _) => Exit::NotMet,
+    })
+}
+
+/// Prints why no plan was found.
+fn infeasible(scenario: &Scenario, why: &TaskInfeasible) -> Exit {
+    output::message(&format!("{}: no feasible plan: {why}", scenario.name));
+    let is_expected = scenario.expect.verdict == VerdictKind::Infeasible;
+    if is_expected { Exit::Met } else { Exit::Infeasible }
+}

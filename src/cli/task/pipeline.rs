@@ -1,0 +1,179 @@
+//! The main path for a staged plan: check, simulate, judge.
+
+use super::super::{exit::CliError, progress::Progress, versions::versions};
+use crate::{
+    check::{CheckedPlan, StagedStates},
+    judge::{StageJudgement, fingerprint, judge_staged},
+    model::{
+        plan::Plan,
+        scenario::Scenario,
+        staged_plan::{STAGED_FORMAT, StagedPlan, WorkedPiece},
+        staged_trace::StagedTrace,
+        staged_verdict::{FailedStage, PersonOverTask, StageVerdict, StagedVerdict},
+        task::Task,
+        verdict::{Failure, VerdictKind},
+    },
+    robot::Robot,
+    sim::{self, Conditions},
+};
+
+/// A staged plan with its verdict.
+pub struct StagedRun {
+    /// The verdict.
+    pub verdict: StagedVerdict,
+    /// Trace and judgements; `None` if nothing was simulated.
+    pub simulated: Option<(StagedTrace, Vec<StageJudgement>)>,
+}
+
+/// Simulates and judges a staged plan. A plan whose bodies meet at a piece, or whose person would not stand or see so, is not
+/// simulated.
+///
+/// # Errors
+/// If the simulation cannot be set up from the plan, and after a stop.
+pub fn run_staged(
+    scenario: &Scenario,
+    robot: &Robot,
+    plan: &StagedPlan,
+    states: &StagedStates,
+    progress: &Progress,
+) -> Result<StagedRun, CliError> {
+    let pieces = states
+        .pieces
+        .iter()
+        .map(|piece| StagedStates::checked(robot, piece, &scenario.human, &scenario.tool))
+        .collect::<Result<Vec<_>, _>>()?;
+    let empty = empty_verdict(scenario, plan);
+    for (piece, checked) in states.pieces.iter().zip(&pieces) {
+        if let Some((verdict, reason)) = refused(checked, scenario) {
+            let reason = format!("piece {} of the hold: {reason}", piece.number + 1);
+            let failed = FailedStage { stage: piece.stage + 1, kind: "hold".into(), first_failure: None, reason };
+            return Ok(StagedRun { verdict: with_failure(empty, verdict, failed), simulated: None });
+        }
+    }
+    progress.does("simulating");
+    // The board as it is held at the start; a plan of a piece for its operation alone.
+    let first = states.pieces.first().map(|piece| &piece.plan);
+    let first = first.ok_or(CliError::Simulation(sim::SimError::Engine))?;
+    let object = crate::model::plan::PlacedObject { x_wo: plan.object.x_wo, ..first.object.clone() };
+    let initial = Plan { object, arms: plan.arms.clone(), human: None, ..first.clone() };
+    let initial = CheckedPlan::new(robot, &initial, &scenario.human, &scenario.tool)?;
+    let conditions = Conditions::of(scenario);
+    let trace =
+        sim::simulate_staged(plan, states, &initial, &pieces, &conditions, progress).map_err(CliError::Simulation)?;
+    let judgements = judge_staged(&trace, plan, &scenario.limits);
+    let verdict = verdict(empty, plan, &trace, &judgements);
+    Ok(StagedRun { verdict, simulated: Some((trace, judgements)) })
+}
+
+/// Why a piece is not simulated.
+fn refused(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Option<(VerdictKind, String)> {
+    let contact = checked.first_contact(0.0).map(|contact| (contact.verdict, contact.reason));
+    contact.or_else(|| Some((VerdictKind::Infeasible, checked.why_not_so(&scenario.limits)?)))
+}
+
+fn empty_verdict(scenario: &Scenario, plan: &StagedPlan) -> StagedVerdict {
+    StagedVerdict {
+        format: STAGED_FORMAT,
+        name: plan.name.clone(),
+        verdict: VerdictKind::NoVerdict,
+        expected: scenario.expect.verdict,
+        met: false,
+        failed: None,
+        stages: Vec::new(),
+        regrasps: plan.regrasps(),
+        moves: plan.moves(),
+        duration_s: 0.0,
+        person: person_over_task(plan, scenario),
+        versions: versions(),
+        seed: plan.planner.map_or(scenario.planner.seed, |record| record.seed),
+        fingerprint: String::new(),
+    }
+}
+
+fn with_failure(verdict: StagedVerdict, kind: VerdictKind, failed: FailedStage) -> StagedVerdict {
+    let met = kind == verdict.expected && kind != VerdictKind::NoVerdict;
+    StagedVerdict { verdict: kind, met, failed: Some(failed), ..verdict }
+}
+
+fn verdict(
+    empty: StagedVerdict,
+    plan: &StagedPlan,
+    trace: &StagedTrace,
+    judgements: &[StageJudgement],
+) -> StagedVerdict {
+    let samples = &trace.trace.samples;
+    let time_s = |sample: usize| samples.get(sample).map_or(0.0, |sample| sample.time_s);
+    let kind = |stage: usize| plan.stages[stage].name().to_owned();
+    let stages = judgements.iter().map(|StageJudgement { span, judgement }| StageVerdict {
+        stage: span.stage + 1,
+        kind: kind(span.stage),
+        from_s: time_s(span.first),
+        to_s: time_s(span.last),
+        verdict: judgement.verdict,
+        checks: judgement.checks.clone(),
+        self_checks: judgement.self_checks.clone(),
+    });
+    let whole = StagedVerdict {
+        stages: stages.collect(),
+        duration_s: samples.last().map_or(0.0, |sample| sample.time_s),
+        fingerprint: fingerprint(&trace.trace),
+        ..empty
+    };
+    let complete = judgements.len() == plan.stages.len();
+    match judgements.last() {
+        Some(last) if last.judgement.verdict != VerdictKind::Holds || !complete => {
+            let StageJudgement { span, judgement } = last;
+            let reason = reason(judgement.first_failure.as_ref(), judgement);
+            let first_failure = judgement.first_failure.clone();
+            let failed = FailedStage { stage: span.stage + 1, kind: kind(span.stage), first_failure, reason };
+            let found = if complete || judgement.verdict != VerdictKind::Holds {
+                judgement.verdict
+            } else {
+                VerdictKind::NoVerdict
+            };
+            with_failure(whole, found, failed)
+        }
+        Some(_) => StagedVerdict { met: whole.expected == VerdictKind::Holds, verdict: VerdictKind::Holds, ..whole },
+        None => whole,
+    }
+}
+
+/// The first failure of a stage in words.
+fn reason(failure: Option<&Failure>, judgement: &crate::judge::Judgement) -> String {
+    let crossed = failure.and_then(|failure| {
+        let is_it = |kind| kind == crate::model::measures::EventKind::LimitCrossed(failure.check);
+        judgement.events.iter().find(|event| is_it(event.kind)).map(|event| event.text.clone())
+    });
+    crossed.or_else(|| judgement.reason.clone()).unwrap_or_else(|| "the simulation ended early".into())
+}
+
+/// The person over the pieces of a plan; `None` unless all of them have comfort and muscles.
+fn person_over_task(plan: &StagedPlan, scenario: &Scenario) -> Option<PersonOverTask> {
+    let worked: Vec<&WorkedPiece> = plan.worked_pieces().map(|(_, worked)| worked).collect();
+    let weight = |worked: &WorkedPiece| if worked.piece.length_m() > 0.0 { worked.piece.length_m() } else { 1.0 };
+    let all: f64 = worked.iter().map(|worked| weight(worked)).sum();
+    let (mut objective, mut least, mut effort, mut accumulated_s) = (0.0, f64::INFINITY, 0.0, 0.0);
+    for worked in &worked {
+        let (comfort, muscles) = (worked.comfort.as_ref()?, worked.muscles.as_ref()?);
+        objective += weight(worked) * comfort.objective / all;
+        effort += weight(worked) * muscles.effort / all;
+        least = least.min(comfort.objective);
+        accumulated_s += muscles.effort * work_s(&plan.task, worked, scenario);
+    }
+    let places: Option<Vec<_>> = worked.iter().map(|worked| Some(worked.human?.x_wb.translation.vector)).collect();
+    let steps = places?.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect::<Vec<_>>();
+    Some(PersonOverTask {
+        mean_objective: objective,
+        least_objective: least,
+        mean_effort: effort,
+        accumulated_effort_s: accumulated_s,
+        largest_step_m: steps.iter().copied().fold(0.0, f64::max),
+        steps_m: steps.iter().sum(),
+    })
+}
+
+/// How long the tool works on a piece, s.
+fn work_s(task: &Task, worked: &WorkedPiece, scenario: &Scenario) -> f64 {
+    let length_m = worked.piece.length_m();
+    if length_m > 0.0 { length_m / task.speed_m_s } else { scenario.simulation.hold_s }
+}

@@ -1,0 +1,48 @@
+//! The command line of `task` and `circle`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{args::SearchArgs, cache::CacheArgs, format::Format, help};
+
+/// `benchdog task`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::TASK)]
+pub struct TaskArgs {
+    /// Task file: a scenario with [task] in place of [operation]
+    #[arg(value_name = "TASK")]
+    pub task: PathBuf,
+    /// Folder for the plan, the verdict, the tables and the report
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Plan only
+    #[arg(long)]
+    pub plan_only: bool,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+    /// Budget and seed of the search.
+    #[command(flatten)]
+    pub search: SearchArgs,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
+}
+
+/// `benchdog circle`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::CIRCLE)]
+pub struct CircleArgs {
+    /// Scenario of a cut; the circle about the board's centre goes through its point
+    pub scenario: PathBuf,
+    /// Folder for `circle.csv`, `motion.csv` and the plans
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Budget and seed of each search.
+    #[command(flatten)]
+    pub search: SearchArgs,
+    /// Maps between runs.
+    #[command(flatten)]
+    pub cache: CacheArgs,
+}
