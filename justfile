@@ -27,7 +27,7 @@ scenarios:
 
 # Write the JSON Schemas again after a change of the file formats
 schemas:
-    for of in scenario plan verdict sweep replan-request replan-answer; do cargo run --release -- schema $of > schemas/$of.schema.json; done
+    for of in scenario plan verdict staged-plan staged-verdict sweep replan-request replan-answer; do cargo run --release -- schema $of > schemas/$of.schema.json; done
 
 # Write the expected messages under tests/snapshots again after a change that is meant
 snapshots:

@@ -565,6 +565,10 @@ pub enum SchemaOf {
     Plan,
     /// Verdict files (JSON)
     Verdict,
+    /// Plans of tasks (JSON)
+    StagedPlan,
+    /// Verdicts on plans of tasks (JSON)
+    StagedVerdict,
     /// What a sweep leaves: `sweep.json`
     Sweep,
     /// Requests to `benchdog replan` (a line of JSON each)

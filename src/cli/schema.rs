@@ -9,7 +9,7 @@ use super::{
     replan::Answer,
 };
 use crate::{
-    model::verdict::Verdict,
+    model::{staged_plan::StagedPlan, staged_verdict::StagedVerdict, verdict::Verdict},
     scenario::{ReplanRequest, file::ScenarioFile, plan_input::PlanFile},
     sweep::summary::SweepSummary,
 };
@@ -26,6 +26,8 @@ fn schema_text(of: SchemaOf) -> String {
         SchemaOf::Scenario => schema_for!(ScenarioFile),
         SchemaOf::Plan => schema_for!(PlanFile),
         SchemaOf::Verdict => schema_for!(Verdict),
+        SchemaOf::StagedPlan => schema_for!(StagedPlan),
+        SchemaOf::StagedVerdict => schema_for!(StagedVerdict),
         SchemaOf::Sweep => schema_for!(SweepSummary),
         SchemaOf::ReplanRequest => schema_for!(ReplanRequest),
         SchemaOf::ReplanAnswer => schema_for!(Answer),

@@ -494,7 +494,7 @@ pub mod task {
     pub const DISTINCT_TOOL_RAD: f64 = 0.35;
     /// Person, tool and board are moved together, which the muscles do not feel and which lets the arms reach other grasps: positions
     /// of a lattice along x_W, along y_W and of a turn about the vertical,
-    pub const SHIFTS: usize = 3;
+    pub const SHIFTS: usize = 5;
     /// its step, m,
     pub const SHIFT_M: f64 = 0.08;
     /// and that of the turn, rad.

@@ -27,3 +27,4 @@ mod scenarios;
 mod schemas;
 mod sweep;
 mod sweep_sections;
+mod task;

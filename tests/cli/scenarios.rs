@@ -13,7 +13,9 @@ use crate::{
 fn every_scenario_meets_its_expectation() {
     let out = tempfile::tempdir().unwrap();
     let files = std::fs::read_dir(root().join("scenarios")).unwrap().map(|entry| entry.unwrap().path());
-    let scenarios = files.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).count();
+    let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    // `run` leaves tasks out.
+    let scenarios = files.filter(|path| !benchdog::scenario::is_task(path)).count();
     let arguments = ["run", "scenarios", "--format", "json", "--record", "never", "--out", argument(out.path())];
     let output = benchdog(root(), &arguments);
     let verdicts = printed_json(&output);

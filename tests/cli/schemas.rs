@@ -24,7 +24,9 @@ fn validate(of: &str, instance: &Value) -> Result<(), String> {
 
 #[test]
 fn committed_schemas_are_up_to_date() {
-    for of in ["scenario", "plan", "verdict", "sweep", "replan-request", "replan-answer"] {
+    for of in
+        ["scenario", "plan", "verdict", "staged-plan", "staged-verdict", "sweep", "replan-request", "replan-answer"]
+    {
         let printed = String::from_utf8(benchdog(root(), &["schema", of]).stdout).unwrap();
         assert_eq!(printed, committed(of), "run `just schemas`");
     }

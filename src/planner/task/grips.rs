@@ -31,7 +31,10 @@ pub fn grips(problem: &TaskProblem<'_>, roots: &[Root], places: &Places) -> Vec<
     let robot = problem.robot;
     let random =
         |number: usize| Pcg64::new(u128::from(problem.of_piece(0).scenario.planner.seed), GRIP_STREAM + number as u128);
-    let of_roots = roots.iter().filter_map(|root| Some((of_root(robot, root, places)?, true)));
+    let of_roots = roots.iter().enumerate().filter_map(|(number, root)| {
+        let place = places.of_root(number);
+        Some(((place, followed(robot, &root.grasp, places, place)?), true))
+    });
     let near = |number: usize| near_root(robot, &roots[number % roots.len()], places, &mut random(number));
     let count = if roots.is_empty() { 0 } else { NEAR_GRIPS * problem.pieces() };
     let near: Vec<_> = (0..count).into_par_iter().filter_map(near).collect();
@@ -62,11 +65,6 @@ fn near_root(robot: &GraspingRobot, root: &Root, places: &Places, random: &mut P
         }
     }
     Some((place, followed(robot, &from, places, place)?))
-}
-
-/// The grip of a best hold at the board pose of its piece; `None` if the arms do not reach it there.
-fn of_root(robot: &GraspingRobot, root: &Root, places: &Places) -> Option<(usize, BoardGrasp)> {
-    places.central(root.piece).find_map(|place| Some((place, followed(robot, &root.grasp, places, place)?)))
 }
 
 /// The same grip at another board pose, if the arms follow the board there without a collision.

@@ -85,6 +85,15 @@ impl Holds {
     }
 }
 
+impl Holds {
+    /// The number of pieces from the first on each of which some hold serves.
+    pub fn served_by_some(&self) -> usize {
+        let pieces = self.serving_nearby.first().map_or(0, Vec::len);
+        let is_served = |piece: usize| self.serving_nearby.iter().any(|costs| costs[piece].is_finite());
+        (0..pieces).position(|piece| !is_served(piece)).unwrap_or(0)
+    }
+}
+
 /// The arms whose grasps differ.
 pub fn changed_arms(from: &BoardGrasp, to: &BoardGrasp) -> Vec<usize> {
     let pairs = from.arms.iter().zip(&to.arms).enumerate();

@@ -136,7 +136,7 @@ impl TaskSearch<'_> {
                     is_wide = true;
                     continue;
                 }
-                Found::Nothing { served } => return Ok(Err(self.infeasible(served))),
+                Found::Nothing { served } => return Ok(Err(self.infeasible(served.max(holds.served_by_some())))),
             };
             // A way whose plans are all accepted ends the loop; each other round excludes at least one hold for one piece.
             if let Some(staged) = stages::staged(self, &mut transitions, &holds, &way.steps) {

@@ -33,10 +33,14 @@ struct Beside {
     body_w: [Point3<f64>; BODY_POINTS],
 }
 
-/// All board poses: for every pose of the tool a lattice of shifts, and for each shift all pieces.
+/// All board poses: for every pose of the tool a lattice of shifts, and for each shift all pieces; then those of the best holds.
 pub struct Places {
     /// `None` outside the search domain.
     places: Vec<Option<Place>>,
+    /// The number of those of the lattices.
+    lattices: usize,
+    /// The pieces of the best holds, whose board poses follow the lattices.
+    of_roots: Vec<usize>,
     pieces: usize,
     closed: bool,
 }
@@ -46,6 +50,14 @@ pub struct Places {
 struct ToolPose {
     x_wt: Pose,
     posture: Posture,
+}
+
+impl ToolPose {
+    /// That of a best hold.
+    fn of(problem: &TaskProblem<'_>, Root { piece, grasp, posture, .. }: &Root) -> Self {
+        let x_wt = grasp.x_wo * problem.operation(*piece, posture.roll_rad).x_ot;
+        Self { x_wt, posture: *posture }
+    }
 }
 
 /// Shifts of a tool's pose.
@@ -64,8 +76,16 @@ impl Places {
             let shift_w = planar(shift, &tools[tool].x_wt.translation.vector);
             place(problem, &tools[tool], &shift_w, piece, &postures[tool * pieces + piece])
         };
-        let places = (0..tools.len() * LATTICE * pieces).into_par_iter().map(of_place).collect();
-        Self { places, pieces, closed }
+        let lattices = tools.len() * LATTICE * pieces;
+        let of_root = |root: &Root| {
+            let tool = ToolPose::of(problem, root);
+            let postures = self::postures(problem, map, &tool, root.piece);
+            place(problem, &tool, &Pose::identity(), root.piece, &postures)
+        };
+        let in_lattices: Vec<_> = (0..lattices).into_par_iter().map(of_place).collect();
+        let of_their_own: Vec<_> = roots.par_iter().map(of_root).collect();
+        let places = in_lattices.into_iter().chain(of_their_own).collect();
+        Self { places, lattices, of_roots: roots.iter().map(|root| root.piece).collect(), pieces, closed }
     }
 
     pub fn count(&self) -> usize {
@@ -79,12 +99,17 @@ impl Places {
 
     /// The piece that is at the tool.
     pub fn piece(&self, place: usize) -> usize {
-        place % self.pieces
+        place.checked_sub(self.lattices).map_or(place % self.pieces, |root| self.of_roots[root])
     }
 
-    /// The unshifted places of a piece.
-    pub fn central(&self, piece: usize) -> impl Iterator<Item = usize> {
-        let (pieces, tools) = (self.pieces, self.places.len() / (LATTICE * self.pieces));
+    /// The place of a best hold.
+    pub fn of_root(&self, root: usize) -> usize {
+        self.lattices + root
+    }
+
+    /// The unshifted places of a piece in the lattices.
+    fn central(&self, piece: usize) -> impl Iterator<Item = usize> + use<> {
+        let (pieces, tools) = (self.pieces, self.lattices / (LATTICE * self.pieces));
         (0..tools).map(move |tool| (tool * LATTICE + LATTICE / 2) * pieces + piece)
     }
 
@@ -97,13 +122,16 @@ impl Places {
 
     /// A random place with the board's pose; `None` if it is outside the search domain.
     pub fn drawn(&self, random: &mut Pcg64) -> Option<(usize, Pose)> {
-        let count = self.places.len();
+        let count = self.lattices;
         let place = (uniform(random, 0.0, count as f64) as usize).min(count.checked_sub(1)?);
         Some((place, self.x_wo(place)?))
     }
 
     /// The places beside one: the piece before or after at the tool, or one step of the lattice away.
     pub fn beside(&self, place: usize) -> Vec<usize> {
+        if place >= self.lattices {
+            return self.central(self.piece(place)).collect();
+        }
         let (piece, rest) = (place % self.pieces, place / self.pieces);
         let (shift, tool) = (rest % LATTICE, rest / LATTICE);
         let mut beside = Vec::with_capacity(8);
@@ -119,6 +147,10 @@ impl Places {
             let along = shift / axis % SHIFTS;
             let others = [(along > 0).then(|| shift - axis), (along + 1 < SHIFTS).then_some(shift + axis)];
             beside.extend(others.into_iter().flatten().map(|shift| (tool * LATTICE + shift) * self.pieces + piece));
+        }
+        if shift == LATTICE / 2 {
+            let roots = self.of_roots.iter().enumerate().filter(|(_, of)| **of == piece);
+            beside.extend(roots.map(|(root, _)| self.lattices + root));
         }
         beside
     }
@@ -148,14 +180,14 @@ fn distinct_tools(problem: &TaskProblem<'_>, roots: &[Root]) -> Vec<ToolPose> {
     let mut order: Vec<_> = roots.iter().collect();
     order.sort_by(|a, b| b.objective.total_cmp(&a.objective));
     let mut tools: Vec<ToolPose> = Vec::new();
-    for Root { piece, grasp, posture, .. } in order {
-        let x_wt = grasp.x_wo * problem.operation(*piece, posture.roll_rad).x_ot;
+    for root in order {
+        let own = ToolPose::of(problem, root);
         let is_same = |tool: &ToolPose| {
-            (tool.x_wt.translation.vector - x_wt.translation.vector).norm() < DISTINCT_TOOL_M
-                && tool.x_wt.rotation.angle_to(&x_wt.rotation) < DISTINCT_TOOL_RAD
+            (tool.x_wt.translation.vector - own.x_wt.translation.vector).norm() < DISTINCT_TOOL_M
+                && tool.x_wt.rotation.angle_to(&own.x_wt.rotation) < DISTINCT_TOOL_RAD
         };
         if tools.len() < TOOL_POSES && !tools.iter().any(is_same) {
-            tools.push(ToolPose { x_wt, posture: *posture });
+            tools.push(own);
         }
     }
     tools

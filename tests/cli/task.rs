@@ -1,0 +1,223 @@
+//! Tasks: planned, simulated and judged stage by stage; staged plans that fail, each in its stage; bad paths.
+
+use std::{fs, path::Path, sync::LazyLock};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::{
+    common::root,
+    process::{argument, benchdog, command, folder, json, stderr},
+};
+
+/// The folder in which `task` has planned and judged the whole circle.
+fn circle() -> &'static Path {
+    static OUT: LazyLock<TempDir> = LazyLock::new(|| {
+        let out = tempfile::tempdir().unwrap();
+        let output = benchdog(root(), &["task", "scenarios/whole-circle.toml", "--out", argument(out.path())]);
+        assert_eq!(output.status.code(), Some(0), "{}{}", String::from_utf8_lossy(&output.stdout), stderr(&output));
+        out
+    });
+    OUT.path()
+}
+
+fn circle_plan() -> Value {
+    json(&circle().join("whole-circle/plan.json"))
+}
+
+/// The verdict of `simulate` on a staged plan, and the exit code.
+fn simulated(plan: &Value) -> (Value, Option<i32>) {
+    let folder = folder(&[("plan.json", &plan.to_string())]);
+    let out = argument(folder.path()).to_owned();
+    let output = benchdog(folder.path(), &["simulate", "plan.json", "--out", &out]);
+    assert!(output.status.code().is_some_and(|code| code < 2), "{}", stderr(&output));
+    (json(&folder.path().join(plan["name"].as_str().unwrap()).join("verdict.json")), output.status.code())
+}
+
+/// The numbers, from 1, of the stages of a kind.
+fn stages_of(plan: &Value, kind: &str) -> Vec<usize> {
+    let stages = plan["stages"].as_array().unwrap();
+    (0..stages.len()).filter(|&number| stages[number].get(kind).is_some()).map(|number| number + 1).collect()
+}
+
+#[test]
+fn all_pieces_of_the_circle_are_served_and_every_stage_holds() {
+    let (plan, verdict) = (circle_plan(), json(&circle().join("whole-circle/verdict.json")));
+    assert_eq!((&verdict["verdict"], &verdict["met"]), (&Value::from("holds"), &Value::from(true)));
+    let worked: usize = plan["stages"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|stage| stage["hold"]["pieces"].as_array())
+        .map(Vec::len)
+        .sum();
+    assert_eq!(worked, 16);
+    assert_eq!(verdict["stages"].as_array().unwrap().len(), plan["stages"].as_array().unwrap().len());
+    // No piece has less than the least comfort that the task asks for.
+    let path = fs::read_to_string(circle().join("whole-circle/path.csv")).unwrap();
+    let mut rows = csv::Reader::from_reader(path.as_bytes());
+    let kept: Vec<f64> = rows.records().map(|row| row.unwrap()[6].parse().unwrap()).collect();
+    assert!(kept.len() == 16 && kept.iter().all(|kept| (0.5..1.2).contains(kept)), "{kept:?}");
+}
+
+#[test]
+fn a_staged_plan_from_a_file_has_the_verdict_of_the_task() {
+    let (verdict, code) = simulated(&circle_plan());
+    let first = json(&circle().join("whole-circle/verdict.json"));
+    assert_eq!((verdict["fingerprint"].clone(), code), (first["fingerprint"].clone(), Some(0)));
+}
+
+#[test]
+fn one_thread_plans_the_same_bytes_as_two() {
+    let plan = |threads: &str| {
+        let out = tempfile::tempdir().unwrap();
+        let arguments = ["task", "scenarios/whole-circle.toml", "--plan-only", "--out", argument(out.path())];
+        let output = command(root(), &arguments).env("RAYON_NUM_THREADS", threads).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let mut plan = json(&out.path().join("whole-circle/plan.json"));
+        plan["planner"] = Value::Null;
+        plan.to_string()
+    };
+    assert!(plan("1") == plan("2"));
+}
+
+/// A motion that is twenty times as fast, with the inertia of arms and board in its way.
+#[test]
+fn a_motion_that_is_too_fast_fails_in_its_stage() {
+    let mut plan = circle_plan();
+    let stage = stages_of(&plan, "move")[0];
+    for time_s in plan["stages"][stage - 1]["move"]["time_s"].as_array_mut().unwrap() {
+        *time_s = (time_s.as_f64().unwrap() / 20.0).into();
+    }
+    let (verdict, code) = simulated(&plan);
+    assert_eq!((&verdict["failed"]["stage"], &verdict["failed"]["kind"]), (&stage.into(), &"move".into()));
+    assert!(["slips", "pivots", "saturates", "deflects", "opens"].contains(&verdict["verdict"].as_str().unwrap()));
+    assert_eq!(code, Some(1));
+}
+
+/// The grip of a new grasp is so weak that the hand slides under the next load.
+#[test]
+fn a_weak_new_grip_fails_after_its_regrasp() {
+    let mut plan = circle_plan();
+    let regrasp = stages_of(&plan, "regrasp")[0];
+    plan["stages"][regrasp - 1]["regrasp"]["grip_force_n"] = 2.0.into();
+    let (verdict, code) = simulated(&plan);
+    let failed = verdict["failed"]["stage"].as_u64().unwrap() as usize;
+    assert!(failed > regrasp, "{} in stage {failed}", verdict["verdict"]);
+    assert_eq!(code, Some(1));
+}
+
+/// A board that two hands hold and one does not.
+#[test]
+fn a_board_that_is_too_heavy_for_one_hand_fails_in_the_first_regrasp() {
+    let mut plan = circle_plan();
+    let regrasp = stages_of(&plan, "regrasp")[0];
+    plan["object"]["mass_kg"] = 2.0.into();
+    plan["scenario"]["object"]["density_kg_m3"] = (2.0 / (0.5 * 0.4 * 0.03)).into();
+    let (verdict, code) = simulated(&plan);
+    assert_eq!(verdict["failed"]["stage"].as_u64().unwrap() as usize, regrasp, "{}", verdict["failed"]);
+    assert!(["slips", "pivots", "deflects", "opens", "drops"].contains(&verdict["verdict"].as_str().unwrap()));
+    assert_eq!(code, Some(1));
+}
+
+/// Asserts that `simulate` refuses the circle's plan after a change.
+#[track_caller]
+fn assert_plan_refused(change: impl Fn(&mut Value), message: &str) {
+    let mut plan = circle_plan();
+    change(&mut plan);
+    let folder = folder(&[("plan.json", &plan.to_string())]);
+    let output = benchdog(folder.path(), &["simulate", "plan.json"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("plan.json:") && said.contains(message), "{said}");
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn staged_plans_that_do_not_fit_are_refused() {
+    let first_move = stages_of(&circle_plan(), "move")[0] - 1;
+    let first_regrasp = stages_of(&circle_plan(), "regrasp")[0] - 1;
+    assert_plan_refused(
+        |plan| plan["stages"][first_move]["move"]["arms"][0]["q_rad"][0][0] = 0.9.into(),
+        &format!("stages[{first_move}].move.arms[0].q_rad[0]: found "),
+    );
+    assert_plan_refused(
+        |plan| plan["stages"][first_move]["move"]["time_s"][1] = 0.0.into(),
+        &format!("stages[{first_move}].move.time_s[1]: found 0, expected a time after 0"),
+    );
+    assert_plan_refused(
+        |plan| plan["stages"][first_regrasp]["regrasp"]["arm"]["name"] = "middle".into(),
+        &format!("stages[{first_regrasp}].regrasp.arm.name: found \"middle\", expected left or right"),
+    );
+    assert_plan_refused(
+        |plan| {
+            plan["stages"].as_array_mut().unwrap().pop();
+        },
+        "stages: found pieces up to ",
+    );
+    assert_plan_refused(|plan| plan["stages"][0]["hold"]["pieces"] = Value::Array(Vec::new()), "found none");
+    assert_plan_refused(|plan| plan["surplus"] = 1.into(), "unknown field `surplus`");
+}
+
+/// Asserts that a task file with this path is refused.
+#[track_caller]
+fn assert_path_refused(path: &str, message: &str) {
+    let text = format!("format = 1\nname = \"bad\"\n\n[task]\nkind = \"cut\"\nforce_n = 30.0\n{path}\n");
+    let folder = folder(&[("bad.toml", &text)]);
+    let output = benchdog(folder.path(), &["task", "bad.toml"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains(message), "{said}");
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn bad_paths_are_refused_with_line_and_key() {
+    assert_path_refused("circle = { radius_m = 0.3 }", "bad.toml:7: task.circle: found ");
+    assert_path_refused("lines_m = [[[0.0, 0.0], [0.3, 0.0]]]", "bad.toml:7: task.lines_m[0]: found ");
+    assert_path_refused(
+        "lines_m = [[[0.0, 0.0]]]",
+        "bad.toml:7: task.lines_m[0]: found 1 points, expected a line of at least two points",
+    );
+    assert_path_refused("lines_m = [[[0.0, nan], [0.1, 0.0]]]", "bad.toml:7: task.lines_m[0][0]: found ");
+    assert_path_refused(
+        "lines_m = [[[0.0, 0.0], [0.0, 0.0]]]",
+        "bad.toml:7: task.lines_m[0][1]: found the point before, expected a point that differs from the one before",
+    );
+    let eight = "lines_m = [[[0.0, 0.0], [0.1, 0.1], [0.1, 0.0], [0.0, 0.1]]]";
+    assert_path_refused(eight, "bad.toml:7: task.lines_m: found strokes 1 and 1 that meet at [0.0500, 0.0500]");
+    assert_path_refused("lines_m = []", "task.lines_m: found an empty path");
+    assert_path_refused("holes_m = [[0.0, 0.0]]", "bad.toml:7: task.holes_m: found a value, expected none");
+    assert_path_refused("", "task: found 0 paths, expected one of circle, lines_m, holes_m and file");
+    assert_path_refused("file = \"none.csv\"", "none.csv");
+    assert_path_refused("circle = { radius_m = 0.1 }\nspeed_m_s = 0.0", "bad.toml:8: task.speed_m_s: found 0");
+}
+
+#[test]
+fn a_path_from_a_file_names_its_line() {
+    let task = "format = 1\nname = \"bad\"\n\n[task]\nkind = \"cut\"\nforce_n = 30.0\nfile = \"path.csv\"\n";
+    for (rows, message) in [
+        ("stroke,x_m,y_m\n1,0.0,0.0\n1,0.1,inf\n", "path.csv:3: y_m: found \"inf\", expected a finite number"),
+        ("stroke,x_m,y_m\n1,0.0\n", "path.csv:2: found 2 cells, expected 3, one a column"),
+        ("x_m,y_m\n0.0,0.0\n", "path.csv:1: found \"x_m, y_m\", expected the columns stroke, x_m, y_m"),
+    ] {
+        let folder = folder(&[("bad.toml", task), ("path.csv", rows)]);
+        let output = benchdog(folder.path(), &["task", "bad.toml"]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(message), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_task_is_no_scenario_and_a_scenario_no_task() {
+    let output = benchdog(root(), &["plan", "scenarios/whole-circle.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("task: found [task], expected [operation] with one operation"),
+        "{}",
+        stderr(&output)
+    );
+    let output = benchdog(root(), &["task", "scenarios/cut-rim.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("operation: found [operation], expected [task]"), "{}", stderr(&output));
+}
