@@ -8,13 +8,14 @@ use super::{
     cache::{CacheArgs, CacheCommand},
     format::Format,
     help,
+    search_args::SearchArgs,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
     task_args::{CircleArgs, TaskArgs},
     versions,
 };
 use crate::model::{
     frames::{Pose, PoseRecord, RpyRecord},
-    scenario::{Budget, PlannerKind, PlannerSettings},
+    scenario::{PlannerKind, PlannerSettings},
 };
 
 /// Plans how a two-armed robot holds a board that a person drills or cuts, and verifies the plan in simulation.
@@ -217,21 +218,6 @@ pub struct PlannerArgs {
     pub search: SearchArgs,
 }
 
-/// Options that override a scenario's budget and seed.
-#[derive(Clone, Copy, Debug, Args)]
-#[command(next_help_heading = "Search")]
-pub struct SearchArgs {
-    /// Search budget; overrides the scenario's
-    #[arg(long, value_enum, value_name = "BUDGET")]
-    pub budget: Option<BudgetChoice>,
-    /// Largest number of candidates that a search evaluates; overrides the scenario's
-    #[arg(long, value_name = "N")]
-    pub evaluations: Option<NonZero<u64>>,
-    /// Seed of the planner; overrides the scenario's
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-}
-
 /// A probability from a half to almost one.
 fn probability(text: &str) -> Result<f64, String> {
     let found = text.parse().ok().filter(|found| (0.5..=0.999).contains(found));
@@ -243,15 +229,6 @@ impl PlannerArgs {
     pub fn apply(&self, settings: &mut PlannerSettings) {
         settings.kind = self.planner.map_or(settings.kind, PlannerKind::from);
         self.search.apply(settings);
-    }
-}
-
-impl SearchArgs {
-    /// Overrides a scenario's settings.
-    pub fn apply(&self, settings: &mut PlannerSettings) {
-        settings.budget = self.budget.map_or(settings.budget, Budget::from);
-        settings.evaluations = self.evaluations.map(NonZero::get).or(settings.evaluations);
-        settings.seed = self.seed.unwrap_or(settings.seed);
     }
 }
 
@@ -520,27 +497,6 @@ impl From<PlannerChoice> for PlannerKind {
             PlannerChoice::Muscular => Self::Muscular,
             PlannerChoice::Peripersonal => Self::Peripersonal,
             PlannerChoice::Random => Self::Random,
-        }
-    }
-}
-
-/// A search budget.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BudgetChoice {
-    /// For replanning while the person moves
-    Fast,
-    /// For one plan
-    Default,
-    /// A hundred times the default
-    Exhaustive,
-}
-
-impl From<BudgetChoice> for Budget {
-    fn from(choice: BudgetChoice) -> Self {
-        match choice {
-            BudgetChoice::Fast => Self::Fast,
-            BudgetChoice::Default => Self::Default,
-            BudgetChoice::Exhaustive => Self::Exhaustive,
         }
     }
 }

@@ -39,6 +39,7 @@ mod robot_check;
 mod robust;
 mod run;
 mod schema;
+mod search_args;
 mod select;
 mod simulate;
 mod sweep;

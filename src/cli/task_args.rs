@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{args::SearchArgs, cache::CacheArgs, format::Format, help};
+use super::{cache::CacheArgs, format::Format, help, search_args::SearchArgs};
 
 /// `benchdog task`.
 #[derive(Clone, Debug, Args)]

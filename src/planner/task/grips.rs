@@ -11,9 +11,9 @@ use super::{
         library::{ArmGrasp, BoardGrasp, GraspingRobot, grasps_of_board, largest_joint_difference_rad},
         params::task::{DRAWN_BOARDS, GRIP_STREAM, GRIPS_PER_PIECE, MOST_FOLLOWED_RAD, NEAR_GRASP, NEAR_GRIPS},
     },
-    holds::Root,
     places::Places,
     problem::TaskProblem,
+    root::Root,
 };
 use crate::statics::StabilityWorkspace;
 
@@ -110,9 +110,9 @@ fn selected(problem: &TaskProblem<'_>, grips: Vec<Grip>, places: &Places) -> Vec
             if std::mem::replace(&mut tested[places.piece(place)], true) {
                 continue;
             }
-            for piece in (0..pieces).filter(|&piece| !served[piece]).collect::<Vec<_>>() {
+            for (piece, served) in served.iter_mut().enumerate().filter(|(_, served)| !**served) {
                 let posture = places.posture(place, piece);
-                served[piece] = posture.is_some_and(|of| problem.resists(workspace, piece, grasp, of.roll_rad));
+                *served = posture.is_some_and(|of| problem.resists(workspace, piece, grasp, of.roll_rad));
             }
         }
         served
@@ -120,10 +120,14 @@ fn selected(problem: &TaskProblem<'_>, grips: Vec<Grip>, places: &Places) -> Vec
     let served: Vec<_> = grips.par_iter().map_init(StabilityWorkspace::new, served).collect();
     let counts: Vec<_> = served.iter().map(|pieces| pieces.iter().filter(|served| **served).count()).collect();
     let mut kept: Vec<bool> = grips.iter().map(|grip| grip.is_of_root).collect();
-    for piece in 0..pieces {
+    let best_of = |piece: usize| {
         let mut of_piece: Vec<_> = (0..grips.len()).filter(|&grip| served[grip][piece]).collect();
         of_piece.sort_by_key(|&grip| std::cmp::Reverse((counts[grip], grips[grip].at.len())));
-        of_piece.into_iter().take(GRIPS_PER_PIECE).for_each(|grip| kept[grip] = true);
+        of_piece.truncate(GRIPS_PER_PIECE);
+        of_piece
+    };
+    for grip in (0..pieces).flat_map(best_of) {
+        kept[grip] = true;
     }
     grips.into_iter().zip(kept).filter(|(_, kept)| *kept).map(|(grip, _)| grip).collect()
 }

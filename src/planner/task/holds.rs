@@ -17,17 +17,10 @@ use super::{
     graph::{Arc, ArcKind},
     grips::{Grip, grips},
     places::Places,
-    problem::{Posture, TaskProblem},
+    problem::TaskProblem,
+    root::Root,
 };
 use crate::statics::StabilityWorkspace;
-
-/// The best hold of one piece alone.
-pub struct Root {
-    pub piece: usize,
-    pub grasp: BoardGrasp,
-    pub posture: Posture,
-    pub objective: f64,
-}
 
 /// A grasp of the board at a pose.
 pub struct Hold {

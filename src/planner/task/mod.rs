@@ -9,26 +9,31 @@ mod free_motion;
 mod graph;
 mod grips;
 mod holds;
+mod inputs;
 mod motion;
 mod places;
 mod problem;
 mod regrasp;
+mod root;
 mod stages;
 mod timing;
 mod transitions;
 
+pub use inputs::TaskSearch;
+
 use self::{
     graph::{Costs, Found, Graph},
-    holds::{Holds, Root},
+    holds::Holds,
     problem::{Posture, TaskProblem},
+    root::Root,
     transitions::Transitions,
 };
 use super::{
     candidate::Candidate,
-    library::{BoardGrasp, GraspingRobot},
+    library::BoardGrasp,
     outcome::{Infeasible, PlanError},
     params::task::{PLANNED_PIECES, ROOTS},
-    watch::{Event, Phase, Watch, begin, go_on},
+    watch::{Event, Phase, begin, go_on},
 };
 use crate::model::{
     plan::Plan,
@@ -91,22 +96,6 @@ pub fn planned_by_themselves(count: usize) -> Vec<usize> {
 fn evenly(count: usize, most: usize) -> Vec<usize> {
     let chosen = count.min(most);
     (0..chosen).map(|number| number * count / chosen).collect()
-}
-
-/// What a search is given.
-pub struct TaskSearch<'a> {
-    /// The task.
-    pub task: &'a Task,
-    /// The scenario of the task; its operation is that of the first piece.
-    pub scenario: &'a Scenario,
-    /// The scenarios of the pieces.
-    pub pieces: &'a [Scenario],
-    /// The best plans of pieces by themselves.
-    pub separate: &'a [Option<Plan>],
-    /// The robot, prepared for the board.
-    pub robot: &'a GraspingRobot,
-    /// Is told of the search, and may stop it.
-    pub watch: &'a dyn Watch,
 }
 
 impl TaskSearch<'_> {

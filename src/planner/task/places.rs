@@ -11,8 +11,8 @@ use super::{
         params::task::{DISTINCT_TOOL_M, DISTINCT_TOOL_RAD, MAPPED_STARTS, SHIFT_M, SHIFT_RAD, SHIFTS, TOOL_POSES},
         screen::standing_pose,
     },
-    holds::Root,
     problem::{Posture, TaskProblem},
+    root::Root,
 };
 use crate::{
     human::{BODY_POINTS, Standing, peripersonal_m},

@@ -4,11 +4,13 @@
 //! ([`profile`]). The joints stop where the path turns sharply or where a spline would leave the polyline of the
 //! waypoints.
 
+mod limits;
 mod profile;
 mod spline;
 #[cfg(test)]
 mod tests;
 
+pub use limits::MotionLimits;
 use profile::Profile;
 use spline::{Spline, corner_rad, distinct};
 
@@ -22,15 +24,6 @@ const CORNER_RAD: f64 = 20.0 * std::f64::consts::PI / 180.0;
 const DEVIATION: f64 = 0.5 * std::f64::consts::PI / 180.0;
 /// Points in each interval at which the deviation is measured; it has at most two extrema there.
 const DEVIATION_POINTS: usize = 7;
-
-/// Limits of the joints' motion, one entry for each joint, all positive.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MotionLimits {
-    /// Largest velocity, rad/s or m/s.
-    pub velocity: Vec<f64>,
-    /// Largest acceleration, rad/s² or m/s².
-    pub acceleration: Vec<f64>,
-}
 
 /// A path with its timing: at rest at both ends, continuous in position and velocity.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::timeline::{ArmSegment, Knot};
+use super::segment::{ArmSegment, Knot};
 use crate::{
     check::Holding,
     model::{

@@ -2,6 +2,7 @@
 //! (docs/method.md#114-simulation-of-stages).
 
 mod arms;
+mod segment;
 mod timeline;
 
 use nalgebra::Vector3;
@@ -18,7 +19,7 @@ use crate::{
     },
 };
 use arms::CarriedBy;
-pub(super) use timeline::ArmCommand;
+pub(super) use segment::ArmCommand;
 use timeline::{Command, Timeline};
 
 /// Simulates a staged plan from its first stage to the end of its last. `initial` is a checked plan of the board as it is held at the

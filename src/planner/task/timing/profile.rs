@@ -6,7 +6,7 @@
 //! imposed at both ends of each interval (the paper's interpolation scheme), those on velocity at the grid points.
 
 use super::{
-    MotionLimits,
+    limits::MotionLimits,
     spline::{Spline, SplinePoint},
 };
 
