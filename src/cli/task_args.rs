@@ -16,6 +16,9 @@ pub struct TaskArgs {
     /// Folder for the plan, the verdict, the tables and the report
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    /// Write no recording
+    #[arg(long)]
+    pub no_recording: bool,
     /// Plan only
     #[arg(long)]
     pub plan_only: bool,

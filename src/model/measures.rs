@@ -25,7 +25,7 @@ pub struct Measures {
 }
 
 /// Motion of one hand relative to the board since the hand-over.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct HandMeasures {
     /// The arm's name.
     pub name: String,

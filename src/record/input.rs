@@ -34,6 +34,8 @@ pub struct RecordingInput<'a> {
     pub verdict: &'a Verdict,
     /// The person in the planned posture; `None` if the plan has no person.
     pub person: Option<&'a PersonShape>,
+    /// The person over the stages of a task, each from a time on, s; empty for a plan of one hold.
+    pub people: &'a [(f64, PersonShape)],
 }
 
 /// The person as drawn in the scene. The person does not move.

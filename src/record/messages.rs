@@ -43,12 +43,28 @@ impl Messages {
             // The viewer reads blueprints on this timeline.
             StoreKind::Blueprint => TimePoint::default().with(Timeline::new_sequence("blueprint"), TimeInt::ZERO),
         };
+        self.log_row(entity, time, what)
+    }
+
+    fn log_row(&mut self, entity: &EntityPath, time: TimePoint, what: &dyn AsComponents) -> Result<(), RecordError> {
         let id = self.next_id();
         let chunk = Chunk::builder_with_id(ChunkId::from_tuid(id), entity.clone())
             .with_serialized_batches(RowId::from_tuid(id.next()), time, what.as_serialized_batches())
             .build()
             .map_err(RecordError::encode)?;
         self.push(&chunk)
+    }
+
+    /// Logs data at a time, s; without time if it is `None`.
+    pub fn log(
+        &mut self,
+        entity: &EntityPath,
+        time_s: Option<f64>,
+        what: &dyn AsComponents,
+    ) -> Result<(), RecordError> {
+        let Some(time_s) = time_s else { return self.log_static(entity, what) };
+        let time = TimeInt::new_temporal((time_s * 1e9).round() as i64);
+        self.log_row(entity, TimePoint::default().with(Timeline::new_duration(TIMELINE), time), what)
     }
 
     /// Logs data over time: one row for each time, s.

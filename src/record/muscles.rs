@@ -26,8 +26,12 @@ const BAR_RADIUS: f32 = 1.8;
 /// Number of pieces of the coloured axis.
 const AXIS_PIECES: usize = 50;
 
-/// Logs the spindles of the regions; the busiest one carries the name of its muscle.
-pub(super) fn log_bellies(messages: &mut Messages, bellies: &[MuscleBelly]) -> Result<(), RecordError> {
+/// Logs the spindles of the regions, from a time on, s, or without time; the busiest one carries the name of its muscle.
+pub(super) fn log_bellies(
+    messages: &mut Messages,
+    bellies: &[MuscleBelly],
+    from_s: Option<f64>,
+) -> Result<(), RecordError> {
     let busiest = bellies.iter().map(|belly| belly.busiest.activation).fold(0.0, f64::max);
     for belly in bellies {
         let [from_w, to_w] = &belly.ends_w;
@@ -41,7 +45,7 @@ pub(super) fn log_bellies(messages: &mut Messages, bellies: &[MuscleBelly]) -> R
             .with_labels([belly.busiest.to_string()])
             .with_show_labels(belly.busiest.activation == busiest)
             .with_fill_mode(FillMode::Solid);
-        messages.log_static(&entity(&["scene", "person", "muscles", &belly.region]), &shape)?;
+        messages.log(&entity(&["scene", "person", "muscles", &belly.region]), from_s, &shape)?;
     }
     Ok(())
 }

@@ -19,21 +19,21 @@ const EYE_RADIUS_M: f64 = 0.014;
 /// Radius of the lines of the person's sight and sector, m; chosen for visibility.
 const LINE_RADIUS_M: f32 = 0.003;
 
-/// Logs the person and the tool.
-pub(super) fn log(messages: &mut Messages, person: &PersonShape) -> Result<(), RecordError> {
-    messages.log_static(&entity(&["scene", "person"]), &capsules(&person.capsules))?;
+/// Logs the person and the tool, from a time on, s, or without time.
+pub(super) fn log(messages: &mut Messages, person: &PersonShape, from_s: Option<f64>) -> Result<(), RecordError> {
+    messages.log(&entity(&["scene", "person"]), from_s, &capsules(&person.capsules))?;
     let eyes = Ellipsoids3D::from_half_sizes([[EYE_RADIUS_M as f32; 3]; 2])
         .with_centers(points(&person.eyes_w))
         .with_colors([palette::eyes()])
         .with_fill_mode(FillMode::Solid);
-    messages.log_static(&entity(&["scene", "person", "eyes"]), &eyes)?;
-    messages
-        .log_static(&entity(&["scene", "person", "line_of_sight"]), &line(&person.line_of_sight_w, palette::sight()))?;
+    messages.log(&entity(&["scene", "person", "eyes"]), from_s, &eyes)?;
+    let sight = line(&person.line_of_sight_w, palette::sight());
+    messages.log(&entity(&["scene", "person", "line_of_sight"]), from_s, &sight)?;
     if !person.sector_w.is_empty() {
-        messages.log_static(&entity(&["scene", "person", "sector"]), &line(&person.sector_w, palette::sight()))?;
+        messages.log(&entity(&["scene", "person", "sector"]), from_s, &line(&person.sector_w, palette::sight()))?;
     }
-    muscles::log_bellies(messages, &person.muscles)?;
-    messages.log_static(&entity(&["scene", "tool"]), &mesh(&person.tool))
+    muscles::log_bellies(messages, &person.muscles, from_s)?;
+    messages.log(&entity(&["scene", "tool"]), from_s, &mesh(&person.tool))
 }
 
 fn points(points_w: &[Point3<f64>]) -> Vec<[f32; 3]> {

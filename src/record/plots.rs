@@ -176,9 +176,9 @@ fn log_failure(
 
 fn log_phases(messages: &mut Messages, samples: &[Sample]) -> Result<(), RecordError> {
     let path = entity(&["phases"]);
-    let phases = [Phase::Grip, Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release];
+    let phases = [Phase::Grip, Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Move, Phase::Regrasp];
     // Greys, because the colours have other meanings.
-    let greys = [60, 90, 130, 170, 90].map(|v| rerun::Color::from_rgb(v, v, v));
+    let greys = [60, 90, 130, 170, 90, 110, 75].map(|v| rerun::Color::from_rgb(v, v, v));
     let style = StateConfiguration::new().with_values(phases.map(Phase::name)).with_colors(greys);
     messages.log_static(&path, &style)?;
     let starts = (0..samples.len()).filter(|&i| i == 0 || samples[i].phase != samples[i - 1].phase);

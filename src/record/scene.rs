@@ -40,8 +40,11 @@ pub(super) fn log(messages: &mut Messages, input: &RecordingInput) -> Result<(),
     let frames = frames(input, &arms);
     robot::log(messages, input.robot, &frames)?;
     log_board(messages, input, &frames)?;
-    if let Some(person) = input.person {
-        person::log(messages, person)?;
+    if let Some(person) = input.person.filter(|_| input.people.is_empty()) {
+        person::log(messages, person, None)?;
+    }
+    for (from_s, person) in input.people {
+        person::log(messages, person, Some(*from_s))?;
     }
     log_points(messages, input, &frames)?;
     crossings::log_mark(messages, input, &arms)?;

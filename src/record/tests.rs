@@ -59,6 +59,7 @@ impl Example {
             events: &self.events,
             verdict: &self.verdict,
             person: Some(&self.person),
+            people: &[],
         }
     }
 }

@@ -111,7 +111,7 @@ use distance_monitor::DistanceMonitor;
 pub use error::SimError;
 pub use mjcf::mjcf;
 pub use scene::{SimScene, blank_sample};
-pub use staged::simulate_staged;
+pub use staged::{simulate_staged, step_back_w};
 use tool_load::ToolLoad;
 
 use crate::{

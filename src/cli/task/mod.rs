@@ -8,12 +8,13 @@ use std::{
 };
 
 use super::{
-    args::SimulateArgs,
+    args::{RecordChoice, SimulateArgs},
     cache,
     exit::{CliError, Exit},
     format::Format,
     inputs, interrupt, output,
     progress::Progress,
+    recording::{self, TaskRecording},
     task_args::TaskArgs,
 };
 use crate::{
@@ -38,6 +39,7 @@ struct TaskFiles {
     stages: PathBuf,
     path: PathBuf,
     page: PathBuf,
+    recording: PathBuf,
 }
 
 impl TaskFiles {
@@ -49,12 +51,13 @@ impl TaskFiles {
             stages: file("stages.csv"),
             path: file("path.csv"),
             page: file("report.html"),
+            recording: file("recording.rrd"),
         }
     }
 
     /// Those that `task` writes; `simulate` leaves the plan as it is.
-    fn all(&self) -> [PathBuf; 5] {
-        [&self.plan, &self.verdict, &self.stages, &self.path, &self.page].map(Clone::clone)
+    fn all(&self) -> [PathBuf; 6] {
+        [&self.plan, &self.verdict, &self.stages, &self.path, &self.page, &self.recording].map(Clone::clone)
     }
 }
 
@@ -102,7 +105,7 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     }
     let robot = loaded.robot.at_gap(staged.object.size_m[2]);
     let states = StagedStates::new(&robot, &staged)?;
-    judged(&loaded.scenario, &robot, &staged, &states, (&files, args.format), &progress)
+    judged(&loaded.scenario, &robot, &staged, &states, (&files, args.format, !args.no_recording), &progress)
 }
 
 /// Simulates and judges a staged plan of any planner.
@@ -113,7 +116,14 @@ pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
     inputs::protect(&inputs, files.all().into_iter().skip(1))?;
     report::file::check_folder(&args.report.out)?;
     report::file::write_whole(&files.path, report::task::path_csv(&plan, &[]).as_bytes())?;
-    judged(&scenario, &robot, &plan, &states, (&files, args.report.format), &progress)
+    judged(
+        &scenario,
+        &robot,
+        &plan,
+        &states,
+        (&files, args.report.format, args.report.record != RecordChoice::Never),
+        &progress,
+    )
 }
 
 /// Simulates and judges a plan, writes verdict, table and report, and prints the table.
@@ -122,13 +132,25 @@ fn judged(
     robot: &Robot,
     plan: &StagedPlan,
     states: &StagedStates,
-    (files, format): (&TaskFiles, Format),
+    (files, format, record): (&TaskFiles, Format, bool),
     progress: &Progress,
 ) -> Result<Exit, CliError> {
     report::file::remove(&files.verdict)?;
+    report::file::remove(&files.recording)?;
     let StagedRun { verdict, simulated } = run_staged(scenario, robot, plan, states, progress)?;
     progress.finish();
+    let recording = match &simulated {
+        Some((trace, judgements)) if record => {
+            let pieces = &states.pieces[..];
+            let verdict = &verdict;
+            recording::encode_task(&TaskRecording { scenario, robot, plan, pieces, verdict, trace, judgements })?
+        }
+        _ => None,
+    };
     let writing = interrupt::writing();
+    if let Some(bytes) = recording {
+        report::file::write_whole(&files.recording, &bytes)?;
+    }
     report::file::write_whole(&files.stages, report::task::stages_csv(&verdict).as_bytes())?;
     let page = report::task::page(plan, &verdict, simulated.as_ref().map(|(trace, _)| trace));
     report::file::write_whole(&files.page, page.as_bytes())?;

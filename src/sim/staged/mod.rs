@@ -119,7 +119,7 @@ impl<'a> Distances<'a> {
         let now = (piece, during == PersonDuring::StepsBack);
         if self.now != Some(now) {
             let parts = self.people.get(piece).map_or(&[][..], Vec::as_slice);
-            let back_w = if now.1 { back_w(parts) * STEP_BACK_M } else { Vector3::zeros() };
+            let back_w = if now.1 { step_back_w(parts) } else { Vector3::zeros() };
             let parts: Vec<_> = parts.iter().map(|part| part.moved(&back_w)).collect();
             self.monitor.replace_person(&parts, trace);
             self.now = Some(now);
@@ -133,9 +133,11 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// The horizontal direction from the work to the person: from the tool's tip, the last part, to the head, the first.
-fn back_w(parts: &[PersonPart]) -> Vector3<f64> {
+/// How a person steps back, W, m: by [`STEP_BACK_M`] in the horizontal direction from the work to the person, from the tool's tip, the
+/// last part, to the head, the first.
+#[must_use]
+pub fn step_back_w(parts: &[PersonPart]) -> Vector3<f64> {
     let (Some(head), Some(tool)) = (parts.first(), parts.last()) else { return Vector3::zeros() };
     let away = head.p0_w - tool.p1_w;
-    Vector3::new(away.x, away.y, 0.0).try_normalize(1e-6).unwrap_or_default()
+    Vector3::new(away.x, away.y, 0.0).try_normalize(1e-6).unwrap_or_default() * STEP_BACK_M
 }
