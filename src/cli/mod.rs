@@ -46,6 +46,7 @@ mod sweep;
 mod sweep_args;
 mod task;
 mod task_args;
+mod task_recording;
 mod threads;
 mod versions;
 #[cfg(feature = "recording")]

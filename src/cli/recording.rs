@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{exit::CliError, pipeline::Run};
+use super::{exit::CliError, pipeline::Run, task_recording::TaskRecording};
 use crate::{
-    check::{CheckedPerson, CheckedPlan, PiecePlan},
+    check::{CheckedPerson, CheckedPlan},
     human::BodyPart,
     judge::{Judgement, StageJudgement, fingerprint},
     model::{
@@ -13,8 +13,7 @@ use crate::{
         muscle_work::MuscleBelly,
         operation::OperationKind,
         scenario::Scenario,
-        staged_plan::{PersonDuring, Stage, StagedPlan},
-        staged_trace::StagedTrace,
+        staged_plan::{PersonDuring, Stage},
         staged_verdict::StagedVerdict,
         trace::Trace,
         verdict::{Check, Verdict},
@@ -44,24 +43,6 @@ pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Ve
         people: &[],
     };
     Ok(Some(record::encode(&input)?))
-}
-
-/// What a recording of a task is made from.
-pub struct TaskRecording<'a> {
-    /// The scenario.
-    pub scenario: &'a Scenario,
-    /// The robot.
-    pub robot: &'a Robot,
-    /// The plan.
-    pub plan: &'a StagedPlan,
-    /// The plans of its pieces.
-    pub pieces: &'a [PiecePlan],
-    /// The verdict.
-    pub verdict: &'a StagedVerdict,
-    /// The trace.
-    pub trace: &'a StagedTrace,
-    /// The judgements of its stages.
-    pub judgements: &'a [StageJudgement],
 }
 
 /// Time between two samples of a task's recording, s.

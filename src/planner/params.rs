@@ -290,13 +290,6 @@ pub mod path {
     pub const COVERED: f64 = 1e6;
     /// Cost per rad of the joint that moves most: breaks ties in favour of less motion.
     pub const COST_PER_RAD: f64 = 0.01;
-
-    /// Largest step of a motion test in any joint or in the board's rotation, rad: 2 degrees.
-    pub const STEP_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
-    /// Largest step of a motion test in the board's centre, m.
-    pub const STEP_M: f64 = 0.01;
-    /// Largest joint step after projection onto the grasps, rad: anything longer is a jump to another configuration.
-    pub const JUMP_RAD: f64 = 3.0 * STEP_RAD;
 }
 
 /// How much work a search may do.

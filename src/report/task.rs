@@ -12,6 +12,7 @@ use crate::model::{
     staged_plan::StagedPlan,
     staged_trace::StagedTrace,
     staged_verdict::{PersonOverTask, StageVerdict, StagedVerdict},
+    trace::Sample,
     verdict::CheckKind,
 };
 
@@ -181,7 +182,7 @@ fn path(plan: &StagedPlan) -> Markup {
     let top = objectives.iter().filter_map(|(_, objective)| *objective).fold(1e-9, f64::max);
     let width = WIDTH_PX / objectives.len().max(1) as f64;
     html! {
-        svg.path viewBox={ "0 0 " (WIDTH_PX) " 150" } role="img" aria-label="objective along the path" {
+        svg.path viewBox={ "0 0 " (WIDTH_PX) " 156" } role="img" aria-label="objective along the path" {
             @for (number, (stage, objective)) in objectives.iter().enumerate() {
                 @let height = 110.0 * objective.unwrap_or(0.0) / top;
                 rect x=(format!("{:.1}", number as f64 * width)) y=(format!("{:.1}", 120.0 - height))
@@ -200,14 +201,19 @@ fn plots(trace: &StagedTrace) -> Markup {
     let samples: Vec<_> = trace.trace.samples.iter().step_by(PLOTTED_EVERY).collect();
     let time_s: Vec<f64> = samples.iter().map(|sample| sample.time_s).collect();
     let load: Vec<f64> = samples.iter().map(|sample| sample.load_factor).collect();
-    let person: Option<Vec<f64>> = samples.iter().map(|sample| sample.person_distance_m.map(|m| 1e3 * m)).collect();
+    // Nothing is measured before the first step.
+    let distance_mm = |sample: &&Sample| sample.person_distance_m.map(|distance_m| 1e3 * distance_m);
+    let person: Option<Vec<f64>> = samples.iter().skip(1).map(distance_mm).collect();
     let plot = |title: &str, values: &[f64]| {
         let lines = vec![Line { name: "", class: "hand-0", values }];
-        Plot { title, time_s: &time_s, judged: time_s.len(), lines, limit: None, failed_s: None }.svg()
+        let time_s = &time_s[time_s.len() - values.len()..];
+        Plot { title, time_s, judged: time_s.len(), lines, limit: None, failed_s: None }.svg()
     };
     html! {
-        (PreEscaped(plot("load factor", &load)))
-        @if let Some(person) = person { (PreEscaped(plot("distance from the person, mm", &person))) }
+        div.plots {
+            (PreEscaped(plot("load factor", &load)))
+            @if let Some(person) = person { (PreEscaped(plot("distance from the person, mm", &person))) }
+        }
     }
 }
 

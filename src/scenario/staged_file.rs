@@ -37,7 +37,7 @@ pub struct LoadedStagedPlan {
     pub inputs: Vec<PathBuf>,
 }
 
-/// True if a file is a staged plan by its `format`. A file that cannot be read is none.
+/// True if a file is a staged plan by its `format`. False of a file that cannot be read.
 #[must_use]
 pub fn is_staged_plan(path: &Path) -> bool {
     let probe = std::fs::read_to_string(path).ok().and_then(|text| serde_json::from_str::<FormatProbe>(&text).ok());

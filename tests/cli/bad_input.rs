@@ -263,8 +263,8 @@ fn a_plan_for_an_unknown_robot() {
 fn a_plan_of_a_format_from_the_future() {
     assert_plan_refused(
         "\"format\": 1,",
-        "\"format\": 2, \"colour\": \"blue\",",
-        "bad.json:2: format: found 2, expected 1, the only format that benchdog 0.1.0 reads",
+        "\"format\": 3, \"colour\": \"blue\",",
+        "bad.json:2: format: found 3, expected 1, the only format that benchdog 0.1.0 reads",
     );
 }
 

@@ -14,8 +14,9 @@ use super::{
     format::Format,
     inputs, interrupt, output,
     progress::Progress,
-    recording::{self, TaskRecording},
+    recording,
     task_args::TaskArgs,
+    task_recording::TaskRecording,
 };
 use crate::{
     check::StagedStates,

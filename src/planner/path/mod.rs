@@ -16,7 +16,7 @@ mod motion;
 mod sequence;
 mod single_grasp;
 
-pub use super::params::path::STEP_RAD;
+pub use super::params::task::STEP_RAD;
 pub use motion::MotionStep;
 
 use coverage::PathProblem;

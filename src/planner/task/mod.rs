@@ -10,7 +10,7 @@ mod graph;
 mod grips;
 mod holds;
 mod inputs;
-mod motion;
+pub(super) mod motion;
 mod places;
 mod problem;
 mod regrasp;
