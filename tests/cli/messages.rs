@@ -82,6 +82,7 @@ fn the_help_of_every_command() {
         "replan",
         "front",
         "circle",
+        "task",
         "simulate",
         "sweep",
         "merge",
