@@ -1,9 +1,9 @@
 //! Plans for whole tasks: holds, motions of the board and regrasps for a path that is cut or drilled
 //! (docs/method.md#11-tasks).
 //!
-//! The way of the data: a plan for each piece by itself (the caller) → [`holds`]: all combinations of these plans' grasps, with
-//! the board where each piece is at a comfortable pose of the tool → [`graph`]: the cheapest way through the pieces, whose steps
-//! [`transitions`] checks → [`stages`]: the staged plan, with timed motions.
+//! The way of the data: a plan for each piece by itself (the caller) → `holds`: all grips that serve pieces, with the board where
+//! each piece is at a comfortable pose of the tool → `graph`: the cheapest way through the pieces, whose steps `transitions` checks →
+//! `stages`: the staged plan, with timed motions.
 
 mod free_motion;
 mod graph;
