@@ -458,6 +458,20 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Makes the maps that the plan of a task needs, unless they are kept already.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn prepare_task(self, task: &Task) -> Result<(), PlanError> {
+        let Self { planner, scenario, watch } = self;
+        let maps = planner.maps(scenario);
+        let pieces = task::pieces(scenario, task);
+        for piece in task::planned_by_themselves(pieces.len()) {
+            planner.warm_starts(&maps, &pieces[piece], watch)?;
+        }
+        Ok(())
+    }
+
     /// The staged plan of a task with the person's best response, beside the best plans for its pieces by themselves.
     ///
     /// # Errors

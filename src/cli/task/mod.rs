@@ -74,7 +74,7 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     report::file::check_folder(&args.out)?;
     let planner = cache::planner(&loaded.robot, args.cache);
     let start = Instant::now();
-    planner.search(&loaded.scenario).watch(&*progress).prepare()?;
+    planner.search(&loaded.scenario).watch(&*progress).prepare_task(&task)?;
     let map_ms = start.elapsed().as_secs_f64() * 1e3;
     let start = Instant::now();
     let found = planner.search(&loaded.scenario).watch(&*progress).task(&task)?;
