@@ -80,7 +80,7 @@ Examples:
   benchdog task scenarios/whole-circle.toml --plan-only
   benchdog simulate out/whole-circle/plan.json  judge the staged plan again, or that of another planner
 
-The folder of the task has plan.json, verdict.json, stages.csv, path.csv and report.html.";
+The folder of the task has plan.json, verdict.json, stages.csv, path.csv, report.html and recording.rrd.";
 
 /// `benchdog sweep --help`.
 pub const SWEEP: &str = "\
