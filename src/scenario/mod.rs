@@ -5,6 +5,7 @@
 
 mod arrays;
 mod check;
+mod crossings;
 pub mod error;
 pub mod file;
 mod fill_in;
@@ -21,6 +22,7 @@ mod resolve;
 mod robot_file;
 mod staged_file;
 mod sweep_section;
+mod task_path;
 mod task_section;
 mod uncertainty_section;
 

@@ -7,6 +7,7 @@ mod process;
 
 mod bad_input;
 mod bad_plates;
+mod bad_tasks;
 mod bounds;
 mod commands;
 mod compare;
