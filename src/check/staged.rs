@@ -1,18 +1,15 @@
 //! A staged plan that fits its robot: how the board is held before each stage, and a plan for each worked piece.
 
-use super::{
-    checked_plan::CheckedPlan,
-    flaw::Flaws,
-    tolerances::{GIVEN, LIMIT_RAD},
-};
+use super::tolerances::{GIVEN, LIMIT_RAD};
 use crate::{
     model::{
         FORMAT,
         frames::Pose,
-        plan::{ArmHold, Plan},
-        scenario::{Person, Tool},
+        operation::Operation,
+        plan::{ArmHold, PlacedObject, Plan},
         staged_plan::{ArmPath, HoldStage, MoveStage, RegraspStage, Stage, StagedPlan, WorkedPiece},
         task::Task,
+        tool_path::Stroke,
     },
     robot::{Chain, Robot},
 };
@@ -65,6 +62,13 @@ fn flaw<T>(key: impl Into<String>, found: impl ToString, expected: impl ToString
     Err(StagedFlaw { key: key.into(), found: found.to_string(), expected: expected.to_string() })
 }
 
+/// The hold at the start as a plan for where the path begins, without a person; `None` if the task has no path.
+#[must_use]
+pub fn initial_plan(plan: &StagedPlan) -> Option<Plan> {
+    let operation = plan.task.operation_at(0, 0.0, plan.object.size_m[2])?;
+    Some(of_holding(plan, &Holding { x_wo: plan.object.x_wo, arms: plan.arms.clone() }, operation))
+}
+
 impl StagedStates {
     /// The states of a plan: the arms end a motion where its path ends, and the board goes with the first arm's hand.
     ///
@@ -91,19 +95,6 @@ impl StagedStates {
         order.finished(&plan.task)?;
         Ok(Self { holdings, pieces })
     }
-
-    /// The checked plan of a piece.
-    ///
-    /// # Errors
-    /// All flaws of the plan.
-    pub fn checked<'a>(
-        robot: &'a Robot,
-        piece: &'a PiecePlan,
-        rules: &Person,
-        tool: &Tool,
-    ) -> Result<CheckedPlan<'a>, Flaws> {
-        CheckedPlan::new(robot, &piece.plan, rules, tool)
-    }
 }
 
 /// How far the path has been worked on.
@@ -119,7 +110,7 @@ impl PathOrder {
     /// Goes on with a piece.
     fn go_on(&mut self, task: &Task, worked: &WorkedPiece, key: &str) -> Result<(), StagedFlaw> {
         let piece = worked.piece;
-        let length_m = |stroke: usize| task.path.get(stroke).map(crate::model::tool_path::Stroke::length_m);
+        let length_m = |stroke: usize| task.path.get(stroke).map(Stroke::length_m);
         let is_over = self.begun && length_m(self.stroke).is_none_or(|length_m| self.along_m >= length_m - ROUNDING_M);
         if is_over {
             *self = Self { stroke: self.stroke + 1, along_m: 0.0, begun: false };
@@ -143,12 +134,32 @@ impl PathOrder {
     /// Requires that the whole path has been worked on.
     fn finished(&self, task: &Task) -> Result<(), StagedFlaw> {
         let last = task.path.len().saturating_sub(1);
-        let length_m = task.path.last().map_or(0.0, crate::model::tool_path::Stroke::length_m);
+        let length_m = task.path.last().map_or(0.0, Stroke::length_m);
         if self.begun && self.stroke == last && self.along_m >= length_m - ROUNDING_M {
             return Ok(());
         }
         let found = format!("pieces up to {} m of stroke {}", self.along_m, self.stroke);
         flaw("stages", found, format!("pieces up to the end of stroke {last}"))
+    }
+}
+
+/// The plan of a hold for an operation, without a person.
+fn of_holding(plan: &StagedPlan, here: &Holding, operation: Operation) -> Plan {
+    Plan {
+        format: FORMAT,
+        name: plan.name.clone(),
+        robot: plan.robot.clone(),
+        operation,
+        object: PlacedObject { x_wo: here.x_wo, ..plan.object.clone() },
+        arms: here.arms.clone(),
+        human: None,
+        comfort: None,
+        muscles: None,
+        stability: None,
+        clearance: None,
+        planner: plan.planner,
+        scenario: None,
+        benchdog: None,
     }
 }
 
@@ -172,20 +183,12 @@ fn held(
             operation = operation.rolled(roll_rad);
         }
         let of_plan = Plan {
-            format: FORMAT,
             name: format!("{}-stage-{}-piece-{}", plan.name, stage + 1, number + 1),
-            robot: plan.robot.clone(),
-            operation,
-            object: crate::model::plan::PlacedObject { x_wo: here.x_wo, ..plan.object.clone() },
-            arms: here.arms.clone(),
             human: worked.human,
             comfort: worked.comfort,
             muscles: worked.muscles.clone(),
             stability: worked.stability.clone(),
-            clearance: None,
-            planner: plan.planner,
-            scenario: None,
-            benchdog: None,
+            ..of_holding(plan, here, operation)
         };
         Ok(PiecePlan { stage, number, plan: of_plan })
     };

@@ -77,7 +77,6 @@ pub fn main() -> ExitCode {
         Command::Front(args) => front::front(args),
         Command::Circle(args) => circle::circle(args),
         Command::Task(args) => task::task(args),
-        Command::Simulate(args) if crate::scenario::is_staged_plan(&args.plan) => task::simulate(args),
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
         Command::Reproduce(args) => reproduce::reproduce(args),

@@ -28,8 +28,12 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
     let filters = filters.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
     let mut names = BTreeMap::<String, PathBuf>::new();
     let mut selected = Vec::new();
-    for path in without_tasks(files(arguments)?) {
-        let mut loaded = scenario::load(&path)?;
+    let mut tasks = Vec::new();
+    for path in files(arguments)? {
+        let Some(mut loaded) = scenario::load_unless_task(&path)? else {
+            tasks.push(path);
+            continue;
+        };
         planner.apply(&mut loaded.scenario.planner);
         let name = loaded.scenario.name.clone();
         if let Some(other) = names.insert(name.clone(), path.clone()) {
@@ -39,6 +43,7 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
         let wanted = filters.is_empty() || filters.iter().any(|filter| filter.passes(&name));
         selected.push(Selected { loaded, wanted });
     }
+    leave_out(&tasks, selected.is_empty())?;
     if selected.iter().any(|scenario| scenario.wanted) {
         return Ok(selected);
     }
@@ -49,16 +54,15 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
     )))
 }
 
-/// The files without task files, unless there is nothing else: a task among scenarios is left out with a note.
-fn without_tasks(files: Vec<PathBuf>) -> Vec<PathBuf> {
-    let (tasks, scenarios): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| scenario::is_task(path));
-    if scenarios.is_empty() {
-        return tasks;
-    }
+/// Notes that tasks among scenarios are left out. A task alone is an error.
+fn leave_out(tasks: &[PathBuf], alone: bool) -> Result<(), CliError> {
     for path in tasks {
+        if alone {
+            scenario::load(path)?;
+        }
         output::message(&format!("{}: a task, left out: it is run by `benchdog task`", path.display()));
     }
-    scenarios
+    Ok(())
 }
 
 /// The files that the arguments name. An existing path is never a pattern, even if it contains * ? or [.

@@ -8,24 +8,31 @@ use super::{
     finish::{self, FinishedRun, RunSummary},
     interrupt, output, pipeline,
     progress::Progress,
+    task,
 };
 use crate::{
     report::{self, Outcome},
-    scenario::{self, LoadedPlan},
+    scenario::{self, AnyPlan, LoadedPlan},
 };
 
 /// Simulates and judges a plan under the given scenario, the one in the plan, or the defaults for its operation.
 pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
     let progress = Progress::begin("reading the plan", "")?;
-    let LoadedPlan { path, plan, filled_in, robot, scenario, inputs } =
-        scenario::load_plan(&args.plan, args.scenario.as_deref())?;
+    match scenario::load_any_plan(&args.plan, args.scenario.as_deref())? {
+        AnyPlan::OneHold(plan) => one_hold(args, *plan, &progress),
+        AnyPlan::Staged(plan) => task::simulate(args, &plan, &progress),
+    }
+}
+
+fn one_hold(args: &SimulateArgs, plan: LoadedPlan, progress: &Progress) -> Result<Exit, CliError> {
+    let LoadedPlan { path, plan, filled_in, robot, scenario, inputs } = plan;
     finish::protect(&args.report, &plan.name, Some(&path), &inputs)?;
     finish::keep_other_plan(&args.report, &plan)?;
     report::file::check_folder(&args.report.out)?;
     let start = Instant::now();
     let mut writing = None;
     let mut finished = FinishedRun::catch(&plan.name.clone(), || {
-        let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, &progress)?;
+        let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, progress)?;
         writing = Some(interrupt::writing());
         finish::write_run(run, &scenario, &robot, Some(&path), &args.report)
     })?;

@@ -66,6 +66,12 @@ impl<'a> Checker<'a> {
         self.error(key, InputErrorKind::Robot(error))
     }
 
+    /// An error of a part that is checked by itself, at the part's key.
+    pub fn moved(&self, error: InputError, part: &str) -> InputError {
+        let key = error.key.map_or_else(|| part.to_owned(), |key| format!("{part}.{key}"));
+        self.error(&key, error.kind)
+    }
+
     /// Requires `ok`.
     pub fn that(&self, ok: bool, key: &str, found: impl Into<String>, expected: &str) -> Result<(), InputError> {
         if ok { Ok(()) } else { Err(self.value(key, found, expected)) }

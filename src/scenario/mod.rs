@@ -33,11 +33,11 @@ use plan_file::ReadPlan;
 pub use plan_file::read_plan;
 pub use replan_request::{ReplanRequest, read_replan_request};
 pub use robot_file::robot_parameters;
-pub use staged_file::{LoadedStagedPlan, is_staged_plan, load_staged};
+pub use staged_file::LoadedStagedPlan;
 pub use sweep_section::usual_sweep;
 
 use crate::{
-    model::{plan::Plan, scenario::Scenario, task::Task},
+    model::{plan::Plan, scenario::Scenario, staged_plan::STAGED_FORMAT, task::Task},
     robot::Robot,
 };
 use resolve::Resolved;
@@ -95,11 +95,19 @@ pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
     load_text(path, &error::read_text(path)?)
 }
 
-/// True if a file has the section `[task]`. One that cannot be read has none.
+/// As [`load`], but `None` for a task file.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_unless_task(path: &Path) -> Result<Option<LoadedScenario>, InputError> {
+    let text = error::read_text(path)?;
+    if is_task(&text) { Ok(None) } else { load_text(path, &text).map(Some) }
+}
+
+/// True if the text of a file is TOML with the section `[task]`.
 #[must_use]
-pub fn is_task(path: &Path) -> bool {
-    let file = std::fs::read_to_string(path).ok().and_then(|text| text.parse::<toml::Table>().ok());
-    file.is_some_and(|file| file.contains_key("task"))
+pub fn is_task(text: &str) -> bool {
+    text.parse::<toml::Table>().is_ok_and(|file| file.contains_key("task"))
 }
 
 /// Reads, checks and completes a task file.
@@ -169,8 +177,38 @@ fn folder_of(file: &Path) -> &Path {
 /// # Errors
 /// As [`read_plan`] and [`load`], and if the scenario is for another robot, board, operation or grip force.
 pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
+    load_plan_text(path, &error::read_text(path)?, scenario)
+}
+
+/// A plan of one hold or of a task.
+#[derive(Clone, Debug)]
+pub enum AnyPlan {
+    /// Format 1.
+    OneHold(Box<LoadedPlan>),
+    /// Format 2.
+    Staged(Box<LoadedStagedPlan>),
+}
+
+/// Reads a plan file of any format. A staged plan is judged by its own scenario.
+///
+/// # Errors
+/// As [`load_plan`]; if a staged plan is not one or does not fit the robot; and for a `scenario` beside a staged plan.
+pub fn load_any_plan(path: &Path, scenario: Option<&Path>) -> Result<AnyPlan, InputError> {
+    let text = error::read_text(path)?;
+    if plan_file::format_of(&text) != Some(STAGED_FORMAT) {
+        return load_plan_text(path, &text, scenario).map(|plan| AnyPlan::OneHold(Box::new(plan)));
+    }
+    if scenario.is_some() {
+        let expected = "1, a plan of one hold, beside a scenario file: a staged plan is judged by the scenario in it";
+        return Err(check::Checker::json(path, &text).value("format", STAGED_FORMAT.to_string(), expected));
+    }
+    staged_file::from_text(path, &text).map(|plan| AnyPlan::Staged(Box::new(plan)))
+}
+
+fn load_plan_text(path: &Path, text: &str, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
     let loaded = scenario.map(load).transpose()?;
-    let ReadPlan { plan, robot, filled_in } = plan_file::read(path, None, loaded.as_ref().map(|l| &l.scenario))?;
+    let of_file = loaded.as_ref().map(|loaded| &loaded.scenario);
+    let ReadPlan { plan, robot, filled_in } = plan_file::from_text(path, text, None, of_file)?;
     let mut inputs = vec![path.to_owned()];
     inputs.extend(robot.files.iter().cloned());
     let mut scenario = match (loaded, &plan.scenario) {

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
+
 use super::{
     InputError, InputErrorKind,
     arrays::too_long,
@@ -45,18 +47,27 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
 
 /// As [`read_plan`], for a plan that is judged by `scenario`; by default by its own.
 pub fn read(path: &Path, robot: Option<&Robot>, scenario: Option<&Scenario>) -> Result<ReadPlan, InputError> {
-    let text = read_text(path)?;
-    let check = Checker::json(path, &text);
-    if let Ok(probe) = serde_json::from_str::<FormatProbe>(&text) {
-        check.format(probe.format)?;
+    from_text(path, &read_text(path)?, robot, scenario)
+}
+
+/// As [`read`], from the text of the file.
+pub fn from_text(
+    path: &Path,
+    text: &str,
+    robot: Option<&Robot>,
+    scenario: Option<&Scenario>,
+) -> Result<ReadPlan, InputError> {
+    let check = Checker::json(path, text);
+    if let Some(format) = format_of(text) {
+        check.format(format)?;
     }
-    let file = match parse(path, &text) {
+    let file = match parse::<PlanFile>(path, text) {
         Ok(file) => file,
         Err(error) => {
-            if let Some(hint) = other_format(path, &text) {
+            if let Some(hint) = other_format(path, text) {
                 return Err(InputError::file(path, InputErrorKind::Syntax(hint.into())));
             }
-            let too_long = serde_json::from_str(&text).ok().and_then(|values| too_long::<PlanFile>(&values));
+            let too_long = serde_json::from_str(text).ok().and_then(|values| too_long::<PlanFile>(&values));
             return Err(too_long.map_or(error, |array| check.value(&array.key, array.found, array.expected)));
         }
     };
@@ -73,18 +84,28 @@ pub fn read(path: &Path, robot: Option<&Robot>, scenario: Option<&Scenario>) -> 
     let FilledPlan { mut plan, notes, angle_keys } = fill_in(&check, file, &robot, scenario)?;
     plan.robot.clone_from(&robot.description);
     check_plan(&check, &plan, &robot, &angle_keys)?;
-    if let Some(scenario) = &plan.scenario {
-        let check = check.under("scenario.");
-        check.format(scenario.format)?;
-        if let Some(flaw) = check_plate(scenario.object.plate.as_ref()) {
-            return Err(check.value(&flaw.key(), flaw.found(), flaw.expected()));
-        }
-        resolve::check_values(&check, scenario, &robot)?;
-    }
+    check_scenario(&check, plan.scenario.as_ref(), &robot)?;
     Ok(ReadPlan { plan, robot, filled_in: notes })
 }
 
-fn parse(path: &Path, text: &str) -> Result<PlanFile, InputError> {
+/// The format of a plan, whatever its other keys are; `None` if it states none.
+pub fn format_of(text: &str) -> Option<u32> {
+    serde_json::from_str::<FormatProbe>(text).ok().map(|probe| probe.format)
+}
+
+/// Checks the scenario in a plan.
+pub fn check_scenario(check: &Checker<'_>, scenario: Option<&Scenario>, robot: &Robot) -> Result<(), InputError> {
+    let Some(scenario) = scenario else { return Ok(()) };
+    let check = check.under("scenario.");
+    check.format(scenario.format)?;
+    if let Some(flaw) = check_plate(scenario.object.plate.as_ref()) {
+        return Err(check.value(&flaw.key(), flaw.found(), flaw.expected()));
+    }
+    resolve::check_values(&check, scenario, robot)
+}
+
+/// The values of a JSON file; an error has the line and the key.
+pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, InputError> {
     let mut json = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut json).map_err(|error| {
         let key = error.path().to_string();

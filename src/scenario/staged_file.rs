@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    InputError, InputErrorKind,
-    check::{Checker, FormatProbe},
-    error::read_text,
+    InputError,
+    check::Checker,
+    plan_file::{check_scenario, parse},
     resolve,
     robot_file::{load_robot, options_of},
 };
 use crate::{
-    check::{Flaws, StagedStates, check_plate},
+    check::{CheckedPlan, Flaws, StagedStates, initial_plan},
     human::default_tool,
     model::{
-        scenario::{Person, Scenario},
+        scenario::{Person, Scenario, Tool},
         staged_plan::{STAGED_FORMAT, StagedPlan},
     },
     robot::Robot,
@@ -37,29 +37,13 @@ pub struct LoadedStagedPlan {
     pub inputs: Vec<PathBuf>,
 }
 
-/// True if a file is a staged plan by its `format`. False of a file that cannot be read.
-#[must_use]
-pub fn is_staged_plan(path: &Path) -> bool {
-    let probe = std::fs::read_to_string(path).ok().and_then(|text| serde_json::from_str::<FormatProbe>(&text).ok());
-    probe.is_some_and(|probe| probe.format == STAGED_FORMAT)
-}
-
-/// Reads and checks a staged plan.
+/// Checks the text of a staged plan.
 ///
 /// # Errors
-/// If the file cannot be read, is not a staged plan, or does not fit the robot.
-pub fn load_staged(path: &Path) -> Result<LoadedStagedPlan, InputError> {
-    let text = read_text(path)?;
-    let check = Checker::json(path, &text);
-    let mut json = serde_json::Deserializer::from_str(&text);
-    let mut plan: StagedPlan = serde_path_to_error::deserialize(&mut json).map_err(|error| {
-        let key = error.path().to_string();
-        let inner = error.into_inner();
-        let message = inner.to_string();
-        let message = message.split(" at line ").next().unwrap_or(&message).to_owned();
-        let kind = InputErrorKind::Syntax(message);
-        InputError { file: path.to_owned(), line: Some(inner.line()), key: (key != ".").then_some(key), kind }
-    })?;
+/// If it is not a staged plan, or does not fit the robot.
+pub fn from_text(path: &Path, text: &str) -> Result<LoadedStagedPlan, InputError> {
+    let check = Checker::json(path, text);
+    let mut plan: StagedPlan = parse(path, text)?;
     check.that(plan.format == STAGED_FORMAT, "format", plan.format.to_string(), "2")?;
     check.name(&plan.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -67,21 +51,18 @@ pub fn load_staged(path: &Path) -> Result<LoadedStagedPlan, InputError> {
     let robot = load_robot(&plan.robot, folder, &options, plan.object.size_m[2])
         .map_err(|error| check.robot("robot", error))?;
     plan.robot.clone_from(&robot.description);
-    if let Some(scenario) = &plan.scenario {
-        let check = check.under("scenario.");
-        check.format(scenario.format)?;
-        if let Some(flaw) = check_plate(scenario.object.plate.as_ref()) {
-            return Err(check.value(&flaw.key(), flaw.found(), flaw.expected()));
-        }
-        resolve::check_values(&check, scenario, &robot)?;
-    }
+    check_scenario(&check, plan.scenario.as_ref(), &robot)?;
+    let initial = check.present("task.path", initial_plan(&plan), "at least one stroke")?;
+    let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.task.kind), |scenario| scenario.tool);
+    let judged_by = plan.scenario.clone().unwrap_or_else(|| resolve::default_for_plan(&initial, &robot));
+    let scenario = Scenario { name: plan.name.clone(), ..judged_by };
+    CheckedPlan::new(&robot, &initial, &scenario.human, &tool).map_err(|flaws| {
+        let flaw = flaws.first();
+        check.value(&flaw.key(), flaw.found(), flaw.expected())
+    })?;
     let states = StagedStates::new(&robot, &plan)
         .map_err(|flaw| check.value(&flaw.key, flaw.found.clone(), flaw.expected.clone()))?;
-    let first = states.pieces.first().map(|piece| &piece.plan);
-    let first = check.present("stages", first, "a stage with a piece of the path")?;
-    let scenario = plan.scenario.clone().unwrap_or_else(|| resolve::default_for_plan(first, &robot));
-    let scenario = Scenario { name: plan.name.clone(), ..scenario };
-    check_pieces(&check, &plan, &states, &robot, &scenario)?;
+    check_pieces(&check, &states, &robot, &scenario, &tool)?;
     let mut inputs = vec![path.to_owned()];
     inputs.extend(robot.files.iter().cloned());
     Ok(LoadedStagedPlan { path: path.to_owned(), plan, states, robot, scenario, inputs })
@@ -90,22 +71,26 @@ pub fn load_staged(path: &Path) -> Result<LoadedStagedPlan, InputError> {
 /// Requires that every piece is a plan that fits the robot and the person.
 fn check_pieces(
     check: &Checker<'_>,
-    plan: &StagedPlan,
     states: &StagedStates,
     robot: &Robot,
     scenario: &Scenario,
+    tool: &Tool,
 ) -> Result<(), InputError> {
-    let tool = plan.scenario.as_ref().map_or_else(|| default_tool(plan.task.kind), |scenario| scenario.tool);
     for piece in &states.pieces {
         let key = format!("stages[{}].hold.pieces[{}]", piece.stage, piece.number);
         if let Some(posture) = &piece.plan.human {
-            resolve::check_person(&check.under("stages.human."), &posture.person(&Person::default()))?;
+            resolve::check_person(check, &posture.person(&Person::default()))
+                .map_err(|error| check.moved(error, &key))?;
         }
         let refused = |flaws: Flaws| {
-            let flaw = flaws.first();
-            check.value(&format!("{key}: {}", flaw.key()), flaw.found(), flaw.expected())
+            let (flaw, of_plan) = (flaws.first(), flaws.first().key());
+            match of_plan.starts_with("human") {
+                true => check.value(&format!("{key}.{of_plan}"), flaw.found(), flaw.expected()),
+                // Arms and board are not values of the piece: they follow from the stages before.
+                false => check.value(&key, format!("{of_plan}: {}", flaw.found()), flaw.expected()),
+            }
         };
-        StagedStates::checked(robot, piece, &scenario.human, &tool).map_err(refused)?;
+        CheckedPlan::new(robot, &piece.plan, &scenario.human, tool).map_err(refused)?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! No command overwrites or removes one of its input files.
+//! No command overwrites or removes one of its input files, and those from a pipe are read once.
 
 use std::fs;
 
@@ -149,4 +149,27 @@ fn a_plan_from_elsewhere_can_be_edited_and_simulated_again() {
     let output = simulate();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(fs::read_to_string(folder.path().join("out/cut-rim/plan.json")).unwrap().contains("29"));
+}
+
+/// Runs a command whose input file `/dev/stdin` is a pipe with this text: `benchdog run <(generate)` in a shell.
+#[cfg(unix)]
+fn piped(arguments: &[&str], text: &str) -> std::process::Output {
+    use std::{io::Write as _, process::Stdio};
+    let mut command = crate::process::command(crate::common::root(), arguments);
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the binary runs");
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_scenario_and_a_plan_from_a_pipe_are_read_once() {
+    let out = tempfile::tempdir().unwrap();
+    let out = crate::process::argument(out.path());
+    let output = piped(&["simulate", "/dev/stdin", "--record", "never", "--out", out], PLAN);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let scenario = include_str!("../../scenarios/fails-out-of-reach.toml");
+    let output = piped(&["run", "/dev/stdin", "--record", "never", "--out", out], scenario);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }

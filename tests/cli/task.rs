@@ -157,6 +157,37 @@ fn staged_plans_that_do_not_fit_are_refused() {
     );
     assert_plan_refused(|plan| plan["stages"][0]["hold"]["pieces"] = Value::Array(Vec::new()), "found none");
     assert_plan_refused(|plan| plan["surplus"] = 1.into(), "unknown field `surplus`");
+    assert_plan_refused(
+        |plan| plan["stages"][0]["hold"]["pieces"][0]["human"]["height_m"] = 9.0.into(),
+        "stages[0].hold.pieces[0].human.height_m: found 9, expected a number from 1.2 to 2.3 (m)",
+    );
+    assert_plan_refused(
+        |plan| plan["stages"][0]["hold"]["pieces"][0]["human"]["q_rad"][3] = 9.0.into(),
+        "stages[0].hold.pieces[0].human.q_rad[3]: found ",
+    );
+    assert_plan_refused(|plan| plan["arms"][0]["q_rad"][2] = 9.0.into(), "arms[0].q_rad[2]: found 9");
+}
+
+/// The errors of a person name the line of the value, not that of the file's beginning.
+#[test]
+fn an_error_of_a_piece_names_its_line() {
+    let mut plan = circle_plan();
+    plan["stages"][0]["hold"]["pieces"][0]["human"]["height_m"] = 9.0.into();
+    let text = serde_json::to_string_pretty(&plan).unwrap();
+    let line = text.lines().position(|line| line.contains("\"height_m\": 9.0")).unwrap() + 1;
+    let folder = folder(&[("plan.json", &text)]);
+    let output = benchdog(folder.path(), &["simulate", "plan.json"]);
+    assert!(stderr(&output).contains(&format!("plan.json:{line}: ")), "{}", stderr(&output));
+}
+
+#[test]
+fn a_staged_plan_is_not_judged_by_a_scenario_file() {
+    let folder = folder(&[("plan.json", &circle_plan().to_string())]);
+    let scenario = root().join("scenarios/cut-rim.toml");
+    let output = benchdog(folder.path(), &["simulate", "plan.json", "--scenario", argument(&scenario)]);
+    assert_eq!(output.status.code(), Some(2));
+    let expected = "format: found 2, expected 1, a plan of one hold, beside a scenario file";
+    assert!(stderr(&output).contains(expected), "{}", stderr(&output));
 }
 
 /// Asserts that a task file with this path is refused.

@@ -110,21 +110,14 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
 }
 
 /// Simulates and judges a staged plan of any planner.
-pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
-    let progress = Progress::begin("reading the plan", "")?;
-    let LoadedStagedPlan { plan, states, robot, scenario, inputs, .. } = scenario::load_staged(&args.plan)?;
+pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progress) -> Result<Exit, CliError> {
+    let LoadedStagedPlan { plan, states, robot, scenario, inputs, .. } = loaded;
     let files = TaskFiles::new(&args.report.out, &plan.name);
-    inputs::protect(&inputs, files.all().into_iter().skip(1))?;
+    inputs::protect(inputs, files.all().into_iter().skip(1))?;
     report::file::check_folder(&args.report.out)?;
-    report::file::write_whole(&files.path, report::task::path_csv(&plan, &[]).as_bytes())?;
-    judged(
-        &scenario,
-        &robot,
-        &plan,
-        &states,
-        (&files, args.report.format, args.report.record != RecordChoice::Never),
-        &progress,
-    )
+    report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
+    let is_recorded = args.report.record != RecordChoice::Never;
+    judged(scenario, robot, plan, states, (&files, args.report.format, is_recorded), progress)
 }
 
 /// Simulates and judges a plan, writes verdict, table and report, and prints the table.

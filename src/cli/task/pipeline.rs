@@ -2,10 +2,9 @@
 
 use super::super::{exit::CliError, progress::Progress, versions::versions};
 use crate::{
-    check::{CheckedPlan, StagedStates},
+    check::{CheckedPlan, StagedStates, initial_plan},
     judge::{StageJudgement, fingerprint, judge_staged},
     model::{
-        plan::Plan,
         scenario::Scenario,
         staged_plan::{STAGED_FORMAT, StagedPlan, WorkedPiece},
         staged_trace::StagedTrace,
@@ -40,7 +39,7 @@ pub fn run_staged(
     let pieces = states
         .pieces
         .iter()
-        .map(|piece| StagedStates::checked(robot, piece, &scenario.human, &scenario.tool))
+        .map(|piece| CheckedPlan::new(robot, &piece.plan, &scenario.human, &scenario.tool))
         .collect::<Result<Vec<_>, _>>()?;
     let empty = empty_verdict(scenario, plan);
     for (piece, checked) in states.pieces.iter().zip(&pieces) {
@@ -52,10 +51,7 @@ pub fn run_staged(
     }
     progress.does("simulating");
     // The board as it is held at the start; a plan of a piece for its operation alone.
-    let first = states.pieces.first().map(|piece| &piece.plan);
-    let first = first.ok_or(CliError::Simulation(sim::SimError::Engine))?;
-    let object = crate::model::plan::PlacedObject { x_wo: plan.object.x_wo, ..first.object.clone() };
-    let initial = Plan { object, arms: plan.arms.clone(), human: None, ..first.clone() };
+    let initial = initial_plan(plan).ok_or(CliError::Simulation(sim::SimError::Engine))?;
     let initial = CheckedPlan::new(robot, &initial, &scenario.human, &scenario.tool)?;
     let conditions = Conditions::of(scenario);
     let trace =
