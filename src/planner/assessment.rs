@@ -3,12 +3,18 @@
 use rayon::prelude::*;
 
 use super::{
-    candidate::Candidate, contact::load_cases, library::BoardGrasp, load_shift::LoadShift, outcome::Rejection,
+    candidate::Candidate,
+    contact::load_cases,
+    library::{ArmGrasp, BoardGrasp},
+    load_shift::LoadShift,
+    outcome::Rejection,
     problem::Problem,
 };
 use crate::{
     model::{frames::Pose, scenario::StabilityKind},
-    statics::{CaseAssessment, ContactModel, ContactModelError, LoadCases, ResponseOutcome, StabilityWorkspace},
+    statics::{
+        AtRest, CaseAssessment, ContactModel, ContactModelError, LoadCases, ResponseOutcome, StabilityWorkspace,
+    },
 };
 
 /// How a grasp resists its loads, by the worst of their cases.
@@ -30,18 +36,21 @@ pub fn assess(
     candidate: &Candidate,
     x_wo: &Pose,
 ) -> Assessment {
-    assess_cases(problem, workspace, load_cases(problem, candidate, x_wo))
+    assess_cases(problem, workspace, load_cases(problem, candidate, x_wo), &mut None)
 }
 
-/// How a grasp resists these loads.
+/// How a grasp resists these loads; `at_rest` is what its other loads have in common with them.
 pub fn assess_cases(
     problem: &Problem<'_>,
     workspace: &mut StabilityWorkspace,
     cases: Result<LoadCases, ContactModelError>,
+    at_rest: &mut Option<AtRest>,
 ) -> Assessment {
     let keeps_clear = problem.scenario.limits.clearance_mm > 0.0;
     cases
-        .and_then(|cases| workspace.assess(&cases, &problem.stability_limits(), problem.scenario.planner.stability))
+        .and_then(|cases| {
+            workspace.assess_from(&cases, &problem.stability_limits(), problem.scenario.planner.stability, at_rest)
+        })
         .map(|CaseAssessment { utilisation, response, case }| {
             let shift = response.filter(|_| keeps_clear).map(|response| LoadShift::of(&response));
             Assessment { utilisation, shift, case }
@@ -75,7 +84,7 @@ pub fn load_shift(workspace: &mut StabilityWorkspace, model: &ContactModel, kind
 /// Tests that a grasp resists the load, and that the robot keeps its clearance under it.
 pub fn test_stability(
     problem: &Problem<'_>,
-    candidate: &Candidate,
+    arms: &[ArmGrasp],
     x_wo: &Pose,
     stability: &Assessment,
 ) -> Result<(), Rejection> {
@@ -83,7 +92,7 @@ pub fn test_stability(
         return Err(Rejection::Stability);
     }
     let Some(shift) = &stability.shift else { return Ok(()) };
-    let link_poses = problem.robot.link_poses(&shift.arms(&candidate.arms));
+    let link_poses = problem.robot.link_poses(&shift.arms(arms));
     let scene = problem.robot.scene(&link_poses, shift.board(x_wo));
     let violation = problem.robot.collision.first_violation(&scene);
     if violation.is_none() { Ok(()) } else { Err(Rejection::LoadedCollision) }

@@ -1,6 +1,10 @@
 //! A candidate's grasp as a plan and the statics have it.
 
-use super::{candidate::Candidate, problem::Problem};
+use super::{
+    candidate::Candidate,
+    library::{GraspingArm, GraspingRobot},
+    problem::Problem,
+};
 use crate::{
     model::{
         frames::Pose,
@@ -29,6 +33,22 @@ pub fn placed_object(scenario: &Scenario, x_wo: Pose) -> PlacedObject {
     scenario.object.placed(x_wo)
 }
 
+/// The contact models of the hands that hold a board.
+///
+/// # Errors
+/// If a pad is off the board.
+pub fn hand_models(
+    robot: &GraspingRobot,
+    arms: &[ArmHold],
+    object: &PlacedObject,
+    friction: f64,
+) -> Result<Vec<HandModel>, ContactModelError> {
+    let hand = |(own, arm): (&ArmHold, &GraspingArm)| {
+        HandModel::new(&robot.robot.arms[arm.index], &arm.chain, own, object, friction)
+    };
+    arms.iter().zip(&robot.arms).map(hand).collect()
+}
+
 /// The loads of a candidate's grasp with its contact model.
 pub fn load_cases(problem: &Problem<'_>, candidate: &Candidate, x_wo: &Pose) -> Result<LoadCases, ContactModelError> {
     load_cases_with(problem, candidate, x_wo, &problem.scenario.grip)
@@ -42,16 +62,12 @@ pub fn load_cases_with(
     grip: &Grip,
 ) -> Result<LoadCases, ContactModelError> {
     let object = placed_object(problem.scenario, *x_wo);
-    let hands: Result<Vec<_>, _> = plan_arms(problem, candidate)
-        .into_iter()
-        .zip(&problem.robot.arms)
-        .map(|(own, arm)| {
-            let of_robot = &problem.robot.robot.arms[arm.index];
-            let own = ArmHold { grip_force_n: of_robot.gripper.grip_force_n(grip.force_n), ..own };
-            HandModel::new(of_robot, &arm.chain, &own, &object, grip.friction)
-        })
-        .collect();
+    let mut arms = plan_arms(problem, candidate);
+    for (own, arm) in arms.iter_mut().zip(&problem.robot.arms) {
+        own.grip_force_n = problem.robot.robot.arms[arm.index].gripper.grip_force_n(grip.force_n);
+    }
+    let hands = hand_models(problem.robot, &arms, &object, grip.friction)?;
     let operation = problem.scenario.operation.rolled(candidate.work.roll_rad);
-    let model = ContactModel::from_hands(hands?, &object, &operation);
+    let model = ContactModel::from_hands(hands, &object, &operation);
     Ok(LoadCases::new(model, &operation, &problem.scenario.load))
 }

@@ -5,8 +5,8 @@ use nalgebra::Point3;
 use super::{
     assessment::{self, Assessment, load_shift, test_stability},
     candidate::{Candidate, Placement},
-    contact::load_cases,
-    library::{GraspingArm, posture_muscular, within_strength},
+    contact::{hand_models, load_cases},
+    library::{posture_muscular, within_strength},
     load_shift::Held,
     near_miss::NearMisses,
     outcome::Rejection,
@@ -23,7 +23,7 @@ use crate::{
         plan::{ArmHold, Clearance, Comfort, MeanComfort, PlacedObject, PostureConstraint, Stability},
         scenario::{ResponseKind, StabilityKind},
     },
-    statics::{ContactModel, HandModel, LoadCases, LocalEquilibrium, Prediction, StabilityWorkspace},
+    statics::{ContactModel, LoadCases, LocalEquilibrium, Prediction, StabilityWorkspace},
 };
 
 /// Evaluates candidates of one problem and keeps the statistics of the search.
@@ -109,7 +109,7 @@ impl<'a> Evaluator<'a> {
             return Err(Box::new(Rejected { why, candidate, configuration, stability: Assessment::default() }));
         }
         let stability = self.assess(&candidate, &configuration.placement.x_wo);
-        if let Err(why) = test_stability(&self.problem, &candidate, &configuration.placement.x_wo, &stability) {
+        if let Err(why) = test_stability(&self.problem, &candidate.arms, &configuration.placement.x_wo, &stability) {
             if why == Rejection::Stability {
                 self.near_misses.add(stability.utilisation, &candidate, &configuration.placement.x_wo);
             }
@@ -147,7 +147,7 @@ impl<'a> Evaluator<'a> {
     /// Why a grasp is not stable, or too close to itself or the board under the load.
     pub fn test_grasp(&mut self, candidate: &Candidate, x_wo: &Pose) -> Result<(), Rejection> {
         let stability = self.assess(candidate, x_wo);
-        test_stability(&self.problem, candidate, x_wo, &stability)
+        test_stability(&self.problem, &candidate.arms, x_wo, &stability)
     }
 
     /// The objective of a candidate, feasible or not.
@@ -180,10 +180,7 @@ impl<'a> Evaluator<'a> {
         operation: &Operation,
     ) -> Option<(Stability, Option<Clearance>)> {
         let Problem { scenario, robot, .. } = &self.problem;
-        let hand = |(own, arm): (&ArmHold, &GraspingArm)| {
-            HandModel::new(&robot.robot.arms[arm.index], &arm.chain, own, object, scenario.grip.friction)
-        };
-        let hands: Result<Vec<_>, _> = arms.iter().zip(&robot.arms).map(hand).collect();
+        let hands = hand_models(robot, arms, object, scenario.grip.friction);
         let model = ContactModel::from_hands(hands.ok()?, object, operation);
         let cases = LoadCases::new(model, operation, &scenario.load);
         let Prediction { stability, case } = self.stability.predict(&cases, &scenario.limits).ok()??;

@@ -150,7 +150,7 @@ impl Solver<'_> {
     /// grasp nearby may, and the limit that the message is about is that of stability.
     fn is_stable(&mut self, cases: Result<LoadCases, ContactModelError>) -> bool {
         let is_stopped = self.problem.stop.is_stopped();
-        !is_stopped && assess_cases(self.problem, &mut self.stability, cases).utilisation <= 1.0
+        !is_stopped && assess_cases(self.problem, &mut self.stability, cases, &mut None).utilisation <= 1.0
     }
 }
 

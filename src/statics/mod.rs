@@ -97,4 +97,4 @@ pub use sensitivity::{HandSensitivity, Sensitivity};
 pub use solvers::cone_program::MAX_LOAD_FACTOR;
 pub use twist::Twist;
 pub use welded::WeldedStiffness;
-pub use workspace::{EquilibriumSolver, StabilityWorkspace};
+pub use workspace::{AtRest, EquilibriumSolver, StabilityWorkspace};

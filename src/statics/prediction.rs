@@ -44,12 +44,27 @@ impl StabilityWorkspace {
         limits: &Limits,
         kind: StabilityKind,
     ) -> Result<CaseAssessment, ContactModelError> {
+        self.assess_from(cases, limits, kind, &mut None)
+    }
+
+    /// As [`StabilityWorkspace::assess`], with what other loads of the same grasp have in common with these; it is filled in if it
+    /// is `None`. The result is the same but for the solver's last digits.
+    ///
+    /// # Errors
+    /// If the contact model is invalid.
+    pub fn assess_from(
+        &mut self,
+        cases: &LoadCases,
+        limits: &Limits,
+        kind: StabilityKind,
+        at_rest: &mut Option<AtRest>,
+    ) -> Result<CaseAssessment, ContactModelError> {
         let mut worst = CaseAssessment { utilisation: f64::NEG_INFINITY, response: None, case: 0 };
-        let (mut case, mut at_rest) = (0, None);
+        let mut case = 0;
         cases.each(|model| {
             // Nothing is worse.
             if worst.utilisation < f64::INFINITY {
-                let (utilisation, response) = self.assess_case(model, limits, kind, &mut at_rest)?;
+                let (utilisation, response) = self.assess_case(model, limits, kind, at_rest)?;
                 if utilisation > worst.utilisation {
                     worst = CaseAssessment { utilisation, response, case };
                 }

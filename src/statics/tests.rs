@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{
     contact_model::ContactModel,
-    equilibrium::{self, Equilibrium, EquilibriumOutcome},
+    equilibrium::{self, Equilibrium, EquilibriumOutcome, ResponseOutcome},
     solvers::{
         clarabel::ReusedSolver,
         cone_program::ConeProgram,
@@ -15,7 +15,12 @@ use super::{
     },
     workspace::StabilityWorkspace,
 };
-use crate::{check::CheckedPlan, human::default_tool, model::scenario::Person, scenario::read_plan};
+use crate::{
+    check::CheckedPlan,
+    human::default_tool,
+    model::{scenario::Person, wrench::Wrench},
+    scenario::read_plan,
+};
 
 /// Friction of pad and board, docs/method.md#76-robot-figures.
 const FRICTION: f64 = 0.6;
@@ -86,6 +91,34 @@ fn an_equilibrium_does_not_depend_on_earlier_ones() {
 }
 
 /// Where the interior point claims a proof, clarabel has one; and it proves most of what clarabel does.
+/// Loads of one grasp share what does not depend on them, in any order, and each response is that of the load alone.
+#[test]
+fn responses_to_many_loads_are_those_to_each_alone() {
+    let mut found = 0;
+    for model in models() {
+        let (mut shared, mut workspace) = (None, StabilityWorkspace::new());
+        for (turn_rad, factor) in [(0.0, 1.0), (0.7, 0.5), (2.1, 1.0), (4.0, 3.0), (0.0, 0.2)] {
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad);
+            let load = Wrench::new(turn * model.load.force_n, turn * model.load.moment_nm).scaled(factor);
+            let of_load = ContactModel { load, p_ot: turn * model.p_ot, ..model.clone() };
+            let together = workspace.response_from(&of_load, 1.0, &mut shared).unwrap();
+            let alone = StabilityWorkspace::new().response(&of_load, 1.0).unwrap();
+            match (together, alone) {
+                (ResponseOutcome::Found(together), ResponseOutcome::Found(alone)) => {
+                    let (displacement_m, torque_nm) = apart(&together.equilibrium, &alone.equilibrium, &of_load);
+                    let deflection_m = (together.deflection_m - alone.deflection_m).norm();
+                    // Of the equilibrium under the weight alone the solver's last digits depend on the load that it leaves out.
+                    assert!(displacement_m < 1e-12 && torque_nm < 1e-9 && deflection_m < 1e-12);
+                    found += 1;
+                }
+                (together, alone) => assert_eq!(format!("{together:?}"), format!("{alone:?}")),
+            }
+        }
+    }
+    // Both outcomes occur.
+    assert!((20..50).contains(&found), "{found}");
+}
+
 #[test]
 fn the_interior_point_proves_that_there_is_no_equilibrium() {
     let (mut proven, mut infeasible) = (0, 0);

@@ -63,8 +63,8 @@ impl RecentPoints {
     }
 }
 
-/// What of a response does not depend on the load: it is the same for all loads of a grasp.
-pub(super) struct AtRest {
+/// What of a grasp's responses does not depend on the load: it is computed for the first of its loads and serves for all.
+pub struct AtRest {
     welded: Option<WeldedStiffness>,
     /// Computed where the closed form does not do.
     energies: Option<Vec<HandEnergy>>,

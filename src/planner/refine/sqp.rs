@@ -133,7 +133,7 @@ impl Iterate {
         }
         let x_wo = &configuration.placement.x_wo;
         let stability = evaluator.assess(&candidate, x_wo);
-        let learned = match assessment::test_stability(&evaluator.problem, &candidate, x_wo, &stability) {
+        let learned = match assessment::test_stability(&evaluator.problem, &candidate.arms, x_wo, &stability) {
             Ok(()) => {
                 return Trial::Feasible(Box::new(evaluator.feasible(candidate, configuration, comfort, stability)));
             }

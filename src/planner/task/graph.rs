@@ -4,7 +4,8 @@
 //! The graph has a layer for each piece. In a layer the robot moves and regrasps from hold to hold; serving the piece leads to
 //! the next layer. Costs are known from below at first. Exact ones are expensive, so they are computed only for arcs that the
 //! search takes from its queue (lazy weighted A*). Its heuristic is the cost of the cheapest way to the end with the costs that
-//! are known from below, by dynamic programming over the layers: then the first way that reaches the end is the cheapest one.
+//! are known from below, by dynamic programming over the layers: then the first way that reaches the end is the cheapest one. Nearly
+//! all motions exist, so these are tested for whole ways only; if one does not exist, the search is repeated without it.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -36,18 +37,21 @@ pub struct Costs {
 }
 
 /// Holds and pieces with costs that are known from below.
-pub struct Graph {
+#[derive(Clone, Copy)]
+pub struct Graph<'a> {
     /// By hold.
-    pub arcs: Vec<Vec<Arc>>,
+    pub arcs: &'a [Vec<Arc>],
     /// By hold and piece; infinite if the hold cannot serve it.
-    pub serving: Vec<Vec<f64>>,
+    pub serving: &'a [Vec<f64>],
     pub costs: Costs,
 }
 
 /// Computes what is exact. Answers must not change.
 pub trait Exact {
-    /// The cost of serving a piece, at least that in the graph; `None` if the hold cannot.
+    /// The cost of serving a piece, of which the graph has a lower bound; `None` if the hold cannot.
     fn serving(&mut self, hold: usize, piece: usize) -> Option<f64>;
+    /// False if it is known that an arc does not exist; true of an arc that [`Exact::exists`] has not been asked for may be wrong.
+    fn may_exist(&mut self, from: usize, arc: &Arc) -> bool;
     /// True if an arc exists.
     fn exists(&mut self, from: usize, arc: &Arc) -> bool;
     /// True if the search must end.
@@ -63,16 +67,10 @@ pub enum Step {
     Go { from: usize, to: usize, kind: ArcKind },
 }
 
-/// A way through all layers.
-#[derive(Clone, Debug)]
-pub struct Way {
-    pub steps: Vec<Step>,
-}
-
 /// What a search found.
 pub enum Found {
-    /// The cheapest way.
-    Way(Way),
+    /// The steps of the cheapest way.
+    Way(Vec<Step>),
     /// No way exists; the number of pieces that some way serves one after the other from the first.
     Nothing { served: usize },
 }
@@ -121,7 +119,7 @@ impl Ord for Entry {
     }
 }
 
-impl Graph {
+impl<'a> Graph<'a> {
     fn holds(&self) -> usize {
         self.arcs.len()
     }
@@ -187,12 +185,23 @@ impl Graph {
         values
     }
 
-    /// The cheapest way from any hold through all pieces.
+    /// The cheapest way from any hold through all pieces; `None` after a stop.
     pub fn cheapest(&self, exact: &mut impl Exact) -> Option<Found> {
         let to_end = self.costs_to_end();
+        loop {
+            match self.cheapest_that_may_exist(&to_end, exact)? {
+                // A way that does not exist excludes an arc at least.
+                Found::Way(steps) if !self.all_exist(&steps, exact) => {}
+                found => return Some(found),
+            }
+        }
+    }
+
+    /// The cheapest way whose arcs may exist, with these least costs to the end.
+    fn cheapest_that_may_exist(&self, to_end: &[Vec<[f64; 2]>], exact: &mut impl Exact) -> Option<Found> {
         let mut search = Search {
-            graph: self,
-            to_end: &to_end,
+            graph: *self,
+            to_end,
             queue: BinaryHeap::new(),
             reached: vec![None; (self.pieces() + 1) * self.holds() * 2],
             number: 0,
@@ -211,13 +220,27 @@ impl Graph {
         }
         Some(Found::Nothing { served: search.served })
     }
+
+    /// True if all arcs of a way exist; all are tested, so that the next way has none that does not.
+    fn all_exist(&self, steps: &[Step], exact: &mut impl Exact) -> bool {
+        let exists = |step: &Step| match *step {
+            Step::Serve { .. } => true,
+            Step::Go { from, to, kind } => self.arc(from, to, kind).is_some_and(|arc| exact.exists(from, arc)),
+        };
+        // Every step is asked for.
+        steps.iter().map(exists).fold(true, |all, exists| all & exists)
+    }
+
+    fn arc(&self, from: usize, to: usize, kind: ArcKind) -> Option<&'a Arc> {
+        self.arcs[from].iter().find(|arc| arc.to == to && arc.kind == kind)
+    }
 }
 
 /// How a state was reached at its least cost.
 type Reached = Option<Option<(State, Step)>>;
 
 struct Search<'a> {
-    graph: &'a Graph,
+    graph: Graph<'a>,
     to_end: &'a [Vec<[f64; 2]>],
     queue: BinaryHeap<Entry>,
     reached: Vec<Reached>,
@@ -239,7 +262,7 @@ impl Search<'_> {
     }
 
     /// Takes the cheapest entry; the way if it is at the end.
-    fn take(&mut self, entry: Entry, exact: &mut impl Exact) -> Option<Way> {
+    fn take(&mut self, entry: Entry, exact: &mut impl Exact) -> Option<Vec<Step>> {
         let Entry { cost, state, from, exact: is_exact, .. } = entry;
         let index = self.index(state);
         if self.reached[index].is_some() {
@@ -252,7 +275,7 @@ impl Search<'_> {
         self.reached[index] = Some(from.map(|(before, step, _)| (before, step)));
         self.served = self.served.max(state.piece);
         if state.piece == self.graph.pieces() {
-            return Some(Way { steps: self.steps_to(state) });
+            return Some(self.steps_to(state));
         }
         self.expand(state, cost);
         None
@@ -269,10 +292,14 @@ impl Search<'_> {
         exact: &mut impl Exact,
     ) {
         let cost = match step {
-            Step::Serve { hold } => exact.serving(hold, before.piece).map(|found| cost_before + found),
+            Step::Serve { hold } => {
+                // What was found may be better than the bound by rounding, or by a search that began elsewhere.
+                let bound = self.graph.serving[hold][before.piece];
+                exact.serving(hold, before.piece).map(|found| cost_before + found.max(bound))
+            }
             Step::Go { from, to, kind } => {
-                let arc = self.graph.arcs[from].iter().find(|arc| arc.to == to && arc.kind == kind);
-                arc.filter(|arc| exact.exists(from, arc)).map(|_| cost)
+                let arc = self.graph.arc(from, to, kind);
+                arc.filter(|arc| exact.may_exist(from, arc)).map(|_| cost)
             }
         };
         if let Some(cost) = cost {
@@ -317,22 +344,45 @@ mod tests {
 
     /// A graph with its exact costs.
     struct Drawn {
-        graph: Graph,
+        arcs: Vec<Vec<Arc>>,
+        from_below: Vec<Vec<f64>>,
+        costs: Costs,
+        exact: Truth,
+    }
+
+    impl Drawn {
+        fn graph(&self) -> Graph<'_> {
+            Graph { arcs: &self.arcs, serving: &self.from_below, costs: self.costs }
+        }
+
+        fn cheapest(&mut self) -> Found {
+            let Self { arcs, from_below, costs, exact } = self;
+            Graph { arcs, serving: from_below, costs: *costs }.cheapest(exact).unwrap()
+        }
+    }
+
+    /// What is exact.
+    struct Truth {
+        arcs: Vec<Vec<Arc>>,
         serving: Vec<Vec<Option<f64>>>,
         exists: Vec<Vec<bool>>,
         /// Exact costs that were asked for.
         asked: BTreeSet<(bool, usize, usize)>,
     }
 
-    impl Exact for Drawn {
+    impl Exact for Truth {
         fn serving(&mut self, hold: usize, piece: usize) -> Option<f64> {
             self.asked.insert((false, hold, piece));
             self.serving[hold][piece]
         }
 
+        fn may_exist(&mut self, from: usize, arc: &Arc) -> bool {
+            arc.kind == ArcKind::Move && !self.asked.contains(&(true, from, arc.to)) || self.exists(from, arc)
+        }
+
         fn exists(&mut self, from: usize, arc: &Arc) -> bool {
             self.asked.insert((true, from, arc.to));
-            let number = self.graph.arcs[from].iter().position(|other| other.to == arc.to && other.kind == arc.kind);
+            let number = self.arcs[from].iter().position(|other| other.to == arc.to && other.kind == arc.kind);
             self.exists[from][number.unwrap()]
         }
 
@@ -366,48 +416,49 @@ mod tests {
                 }
             }
         }
-        let graph = Graph { arcs, serving: from_below, costs: Costs { per_move: 0.1, per_regrasp } };
-        Drawn { graph, serving, exists, asked: BTreeSet::new() }
+        let exact = Truth { arcs: arcs.clone(), serving, exists, asked: BTreeSet::new() };
+        Drawn { arcs, from_below, costs: Costs { per_move: 0.1, per_regrasp }, exact }
     }
 
     /// The least cost by trying every way with at most `most` arcs before each piece.
     fn exhaustive(drawn: &Drawn, piece: usize, hold: usize, moving: bool, most: usize) -> f64 {
-        if piece == drawn.graph.pieces() {
+        let graph = drawn.graph();
+        if piece == graph.pieces() {
             return 0.0;
         }
-        let served = drawn.serving[hold][piece].map_or(f64::INFINITY, |cost| {
+        let served = drawn.exact.serving[hold][piece].map_or(f64::INFINITY, |cost| {
             // As many arcs as there are holds are never too few: a shortest way visits none twice.
-            cost + exhaustive(drawn, piece + 1, hold, false, drawn.graph.holds())
+            cost + exhaustive(drawn, piece + 1, hold, false, graph.holds())
         });
-        let arcs = drawn.graph.arcs[hold].iter().zip(&drawn.exists[hold]).filter(|(_, exists)| **exists && most > 0);
+        let arcs = drawn.arcs[hold].iter().zip(&drawn.exact.exists[hold]).filter(|(_, exists)| **exists && most > 0);
         let gone = arcs.map(|(arc, _)| {
-            let (cost, moves) = drawn.graph.arc_cost(arc, moving);
+            let (cost, moves) = graph.arc_cost(arc, moving);
             cost + exhaustive(drawn, piece, arc.to, moves, most - 1)
         });
         gone.fold(served, f64::min)
     }
 
     /// Cost, regrasps and whether every step exists.
-    fn judged(drawn: &Drawn, way: &Way) -> (f64, usize, bool) {
+    fn judged(drawn: &Drawn, steps: &[Step]) -> (f64, usize, bool) {
         let (mut cost, mut regrasps, mut piece, mut moving, mut exists) = (0.0, 0, 0, false, true);
         let mut here = None;
-        for step in &way.steps {
+        for step in steps {
             match *step {
                 Step::Serve { hold } => {
                     exists &= here.is_none_or(|here| here == hold);
-                    cost += drawn.serving[hold][piece].unwrap_or(f64::INFINITY);
+                    cost += drawn.exact.serving[hold][piece].unwrap_or(f64::INFINITY);
                     (piece, moving, here) = (piece + 1, false, Some(hold));
                 }
                 Step::Go { from, to, kind } => {
-                    let number = drawn.graph.arcs[from].iter().position(|arc| arc.to == to && arc.kind == kind);
-                    exists &= here.is_none_or(|here| here == from) && drawn.exists[from][number.unwrap()];
-                    let (of_arc, moves) = drawn.graph.arc_cost(&drawn.graph.arcs[from][number.unwrap()], moving);
+                    let number = drawn.arcs[from].iter().position(|arc| arc.to == to && arc.kind == kind);
+                    exists &= here.is_none_or(|here| here == from) && drawn.exact.exists[from][number.unwrap()];
+                    let (of_arc, moves) = drawn.graph().arc_cost(&drawn.arcs[from][number.unwrap()], moving);
                     regrasps += usize::from(kind == ArcKind::Regrasp);
                     (cost, moving, here) = (cost + of_arc, moves, Some(to));
                 }
             }
         }
-        (cost, regrasps, exists && piece == drawn.graph.pieces())
+        (cost, regrasps, exists && piece == drawn.graph().pieces())
     }
 
     #[test]
@@ -416,14 +467,9 @@ mod tests {
         for seed in 0..400 {
             let mut drawn = drawn(seed, 4, 3, 1.0);
             let least = (0..4).map(|hold| exhaustive(&drawn, 0, hold, false, 4)).fold(f64::INFINITY, f64::min);
-            let graph = std::mem::replace(
-                &mut drawn.graph,
-                Graph { arcs: Vec::new(), serving: Vec::new(), costs: Costs { per_move: 0.0, per_regrasp: 0.0 } },
-            );
-            drawn.graph = Graph { arcs: graph.arcs.clone(), serving: graph.serving.clone(), costs: graph.costs };
-            match graph.cheapest(&mut drawn).unwrap() {
-                Found::Way(way) => {
-                    let (cost, _, exists) = judged(&drawn, &way);
+            match drawn.cheapest() {
+                Found::Way(steps) => {
+                    let (cost, _, exists) = judged(&drawn, &steps);
                     assert!(exists);
                     // Sums of the same numbers in another order.
                     assert!((cost - least).abs() < 1e-12, "{seed}: {cost} {least}");
@@ -440,23 +486,22 @@ mod tests {
     #[test]
     fn no_way_has_fewer_regrasps_if_they_are_expensive() {
         let fewest = |drawn: &Drawn, hold: usize| {
-            let free = Costs { per_move: 0.0, per_regrasp: 1.0 };
-            let graph = Graph { arcs: drawn.graph.arcs.clone(), serving: drawn.graph.serving.clone(), costs: free };
             let zero = |cost: &Option<f64>| cost.map(|_| 0.0);
-            let serving = drawn.serving.iter().map(|costs| costs.iter().map(zero).collect()).collect();
-            let counted = Drawn { graph, serving, exists: drawn.exists.clone(), asked: BTreeSet::new() };
+            let exact = Truth {
+                arcs: Vec::new(),
+                serving: drawn.exact.serving.iter().map(|costs| costs.iter().map(zero).collect()).collect(),
+                exists: drawn.exact.exists.clone(),
+                asked: BTreeSet::new(),
+            };
+            let costs = Costs { per_move: 0.0, per_regrasp: 1.0 };
+            let counted = Drawn { arcs: drawn.arcs.clone(), from_below: drawn.from_below.clone(), costs, exact };
             exhaustive(&counted, 0, hold, false, 4)
         };
         for seed in 0..400 {
             let mut drawn = drawn(seed, 4, 3, 100.0);
             let least = (0..4).map(|hold| fewest(&drawn, hold)).fold(f64::INFINITY, f64::min);
-            let graph = Graph {
-                arcs: drawn.graph.arcs.clone(),
-                serving: drawn.graph.serving.clone(),
-                costs: drawn.graph.costs,
-            };
-            if let Some(Found::Way(way)) = graph.cheapest(&mut drawn) {
-                assert_eq!(judged(&drawn, &way).1 as f64, least, "{seed}");
+            if let Found::Way(steps) = drawn.cheapest() {
+                assert_eq!(judged(&drawn, &steps).1 as f64, least, "{seed}");
             } else {
                 assert!(least.is_infinite());
             }
@@ -466,10 +511,8 @@ mod tests {
     #[test]
     fn most_exact_costs_of_a_large_graph_are_not_computed() {
         let mut drawn = drawn(7, 60, 12, 1.0);
-        let graph =
-            Graph { arcs: drawn.graph.arcs.clone(), serving: drawn.graph.serving.clone(), costs: drawn.graph.costs };
-        assert!(matches!(graph.cheapest(&mut drawn), Some(Found::Way(_))));
-        let all = 60 * 12 + graph.arcs.iter().map(Vec::len).sum::<usize>();
-        assert!(drawn.asked.len() < all / 2, "{} of {all}", drawn.asked.len());
+        assert!(matches!(drawn.cheapest(), Found::Way(_)));
+        let all = 60 * 12 + drawn.arcs.iter().map(Vec::len).sum::<usize>();
+        assert!(drawn.exact.asked.len() < all / 2, "{} of {all}", drawn.exact.asked.len());
     }
 }

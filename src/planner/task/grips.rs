@@ -8,14 +8,18 @@ use rayon::prelude::*;
 use super::{
     super::{
         domain::{ANGLE_RAD, uniform},
-        library::{ArmGrasp, BoardGrasp, GraspingRobot, grasps_of_board, largest_joint_difference_rad},
+        library::{BoardGrasp, GraspingRobot, grasps_of_board, largest_joint_difference_rad},
         params::task::{DRAWN_BOARDS, GRIP_STREAM, GRIPS_PER_PIECE, MOST_FOLLOWED_RAD, NEAR_GRASP, NEAR_GRIPS},
     },
+    grasp_loads::GraspLoads,
     places::Places,
     problem::TaskProblem,
     root::Root,
 };
 use crate::statics::StabilityWorkspace;
+
+/// A grasp of the board at a board pose.
+type Source = (usize, BoardGrasp);
 
 /// A grip: a grasp of every arm, and the arms' configurations at board poses that they reach from one another.
 pub struct Grip {
@@ -46,13 +50,20 @@ pub fn grips(problem: &TaskProblem<'_>, roots: &[Root], places: &Places) -> Vec<
     };
     let drawn: Vec<_> = (0..DRAWN_BOARDS * problem.pieces()).into_par_iter().flat_map_iter(drawn).collect();
     let sources: Vec<_> = of_roots.chain(near.into_iter().chain(drawn).map(|source| (source, false))).collect();
+    // Most grips that resist nothing where they were drawn resist nothing elsewhere.
+    let is_useful = |workspace: &mut StabilityWorkspace, ((place, grasp), of_root): &(Source, bool)| {
+        let mut loads = GraspLoads::new(problem, grasp);
+        *of_root || (0..problem.pieces()).any(|piece| resists(problem, places, workspace, &mut loads, *place, piece))
+    };
+    let useful: Vec<_> = sources.par_iter().map_init(StabilityWorkspace::new, is_useful).collect();
+    let sources: Vec<_> = sources.into_iter().zip(useful).filter(|(_, useful)| *useful).map(|(of, _)| of).collect();
     let grips: Vec<_> = sources.into_par_iter().map(|(source, of)| grown(robot, places, source, of)).collect();
     selected(problem, grips, places)
 }
 
 /// A grip near that of a best hold, drawn at random, at one of the board poses of its piece; `None` if it does not fit or the arms do
 /// not reach it there.
-fn near_root(robot: &GraspingRobot, root: &Root, places: &Places, random: &mut Pcg64) -> Option<(usize, BoardGrasp)> {
+fn near_root(robot: &GraspingRobot, root: &Root, places: &Places, random: &mut Pcg64) -> Option<Source> {
     let place = places.drawn_of(root.piece, random)?;
     let mut from = root.grasp.clone();
     for (arm, own) in robot.arms.iter().zip(&mut from.arms) {
@@ -69,18 +80,15 @@ fn near_root(robot: &GraspingRobot, root: &Root, places: &Places, random: &mut P
 
 /// The same grip at another board pose, if the arms follow the board there without a collision.
 fn followed(robot: &GraspingRobot, from: &BoardGrasp, places: &Places, place: usize) -> Option<BoardGrasp> {
-    let x_wo = places.x_wo(place)?;
-    let arms = robot.arms.iter().zip(&from.arms).map(|(arm, own)| {
-        let q_rad = arm.inverse.local(&(x_wo * own.grasp.x_og(&robot.board)), &own.q_rad).found()?;
-        Some(ArmGrasp { grasp: own.grasp, q_rad })
-    });
-    let there = BoardGrasp { x_wo, arms: arms.collect::<Option<_>>()? };
-    let near = largest_joint_difference_rad(&from.arms, &there.arms) < MOST_FOLLOWED_RAD;
-    (near && robot.is_clear(&there)).then_some(there)
+    let mut there = BoardGrasp { x_wo: places.x_wo(place)?, arms: from.arms.clone() };
+    let reached = robot.follow(&mut there.arms, &there.x_wo)
+        && largest_joint_difference_rad(&from.arms, &there.arms) < MOST_FOLLOWED_RAD
+        && robot.is_clear(&there);
+    reached.then_some(there)
 }
 
 /// A grip with all board poses that it reaches over neighbouring ones.
-fn grown(robot: &GraspingRobot, places: &Places, (place, grasp): (usize, BoardGrasp), is_of_root: bool) -> Grip {
+fn grown(robot: &GraspingRobot, places: &Places, (place, grasp): Source, is_of_root: bool) -> Grip {
     let mut at = BTreeMap::from([(place, grasp)]);
     let mut tried = vec![false; places.count()];
     tried[place] = true;
@@ -99,6 +107,18 @@ fn grown(robot: &GraspingRobot, places: &Places, (place, grasp): (usize, BoardGr
     Grip { at, is_of_root }
 }
 
+/// True if the person has a posture for a piece with the board at a place, and a grasp there resists its load.
+fn resists(
+    problem: &TaskProblem<'_>,
+    places: &Places,
+    workspace: &mut StabilityWorkspace,
+    loads: &mut GraspLoads<'_>,
+    place: usize,
+    piece: usize,
+) -> bool {
+    places.posture(place, piece).is_some_and(|posture| loads.resists(problem, workspace, piece, posture.roll_rad))
+}
+
 /// Of each piece the grips that serve it and most other pieces, and all those of best holds. Each is tested at one board pose for
 /// each piece at the tool: a shift hardly changes what hands resist.
 fn selected(problem: &TaskProblem<'_>, grips: Vec<Grip>, places: &Places) -> Vec<Grip> {
@@ -110,9 +130,9 @@ fn selected(problem: &TaskProblem<'_>, grips: Vec<Grip>, places: &Places) -> Vec
             if std::mem::replace(&mut tested[places.piece(place)], true) {
                 continue;
             }
+            let mut loads = GraspLoads::new(problem, grasp);
             for (piece, served) in served.iter_mut().enumerate().filter(|(_, served)| !**served) {
-                let posture = places.posture(place, piece);
-                *served = posture.is_some_and(|of| problem.resists(workspace, piece, grasp, of.roll_rad));
+                *served = resists(problem, places, workspace, &mut loads, place, piece);
             }
         }
         served

@@ -20,8 +20,6 @@ use super::{
     problem::TaskProblem,
     root::Root,
 };
-use crate::statics::StabilityWorkspace;
-
 /// A grasp of the board at a pose.
 pub struct Hold {
     pub grasp: BoardGrasp,
@@ -36,8 +34,8 @@ pub struct Holds {
     pub holds: Vec<Hold>,
     pub arcs: Vec<Vec<Arc>>,
     pub places: Places,
-    /// By hold and piece: what the piece costs; infinite where the hold does not resist its load, or the person in the posture of
-    /// the board alone would touch the robot or not see the work.
+    /// By hold and piece: what the piece costs if the hold resists its load; infinite where the person in the posture of the board
+    /// alone would touch the robot or not see the work.
     pub serving: Vec<Vec<f64>>,
     /// The same from below for another posture of the person nearby.
     pub serving_nearby: Vec<Vec<f64>>,
@@ -48,38 +46,37 @@ impl Holds {
     pub fn new(problem: &TaskProblem<'_>, roots: &[Root], closed: bool) -> Self {
         let of_first = problem.of_piece(0);
         // Force and person are the same at all pieces, seen from the tool.
+
         let map = posture_map(of_first.scenario, &of_first.human, problem.watch);
+
         let places = Places::new(problem, &map, roots, closed);
+
         let grips = grips(problem, roots, &places);
+
         let of_grip = |(grip, Grip { at, .. }): (usize, &Grip)| {
             at.iter().map(move |(&place, grasp)| Hold { grasp: grasp.clone(), place, grip }).collect::<Vec<_>>()
         };
         let holds: Vec<_> = grips.iter().enumerate().flat_map(of_grip).collect();
-        let serving = |workspace: &mut StabilityWorkspace, hold: &Hold| {
-            let mut costs = places.costs(problem, hold.place, &hold.grasp);
-            for (piece, cost) in costs.iter_mut().enumerate().filter(|(_, cost)| cost.is_finite()) {
-                let posture = places.posture(hold.place, piece);
-                if !posture.is_some_and(|of| problem.resists(workspace, piece, &hold.grasp, of.roll_rad)) {
-                    *cost = f64::INFINITY;
-                }
-            }
-            let nearby = costs.clone();
-            for (piece, cost) in costs.iter_mut().enumerate().filter(|(_, cost)| cost.is_finite()) {
-                let posture = places.posture(hold.place, piece);
-                if !posture.is_some_and(|posture| problem.is_free(piece, &hold.grasp, &posture)) {
-                    *cost = f64::INFINITY;
-                }
-            }
-            (costs, nearby)
+        let serving = |hold: &Hold| {
+            let nearby = places.costs(problem, hold.place, &hold.grasp);
+            let is_free = |piece: usize| {
+                places.posture(hold.place, piece).is_some_and(|posture| problem.is_free(piece, &hold.grasp, &posture))
+            };
+            let if_free = |(piece, &cost): (usize, &f64)| {
+                if cost.is_finite() && is_free(piece) { cost } else { f64::INFINITY }
+            };
+            (nearby.iter().enumerate().map(if_free).collect(), nearby)
         };
-        let (serving, serving_nearby) = holds.par_iter().map_init(StabilityWorkspace::new, serving).unzip();
+        let (serving, serving_nearby) = holds.par_iter().map(serving).unzip();
+
         let arcs = arcs(&holds, &grips, &places);
+
         Self { holds, arcs, places, serving, serving_nearby }
     }
 }
 
 impl Holds {
-    /// The number of pieces from the first on each of which some hold serves.
+    /// The number of pieces from the first on each of which some hold may serve.
     pub fn served_by_some(&self) -> usize {
         let pieces = self.serving_nearby.first().map_or(0, Vec::len);
         let is_served = |piece: usize| self.serving_nearby.iter().any(|costs| costs[piece].is_finite());

@@ -7,6 +7,7 @@
 
 mod free_motion;
 mod graph;
+mod grasp_loads;
 mod grips;
 mod holds;
 mod inputs;
@@ -111,24 +112,23 @@ impl TaskSearch<'_> {
         let holds = Holds::new(&problem, &roots, self.is_closed());
         let costs = Costs { per_move: task.move_cost, per_regrasp: task.regrasp_cost };
         let mut transitions = Transitions::new(&mut problem, &holds);
-        let mut graph = Graph { arcs: holds.arcs.clone(), serving: holds.serving.clone(), costs };
         // Postures beside the robot are searched for only if those beside the board alone are too few.
         let mut is_wide = false;
         loop {
             go_on(watch)?;
-            let found = graph.cheapest(&mut transitions);
-            let Some(found) = found else { return Err(PlanError::Stopped) };
-            let way = match found {
-                Found::Way(way) => way,
+            let serving = if is_wide { &holds.serving_nearby } else { &holds.serving };
+            let graph = Graph { arcs: &holds.arcs, serving, costs };
+            let Some(found) = graph.cheapest(&mut transitions) else { return Err(PlanError::Stopped) };
+            let steps = match found {
+                Found::Way(steps) => steps,
                 Found::Nothing { .. } if !is_wide => {
-                    graph.serving.clone_from(&holds.serving_nearby);
                     is_wide = true;
                     continue;
                 }
                 Found::Nothing { served } => return Ok(Err(self.infeasible(served.max(holds.served_by_some())))),
             };
             // A way whose plans are all accepted ends the loop; each other round excludes at least one hold for one piece.
-            if let Some(staged) = stages::staged(self, &mut transitions, &holds, &way.steps) {
+            if let Some(staged) = stages::staged(self, &mut transitions, &holds, &steps) {
                 watch.tell(&Event::Found);
                 return Ok(Ok(staged));
             }

@@ -4,7 +4,6 @@ use nalgebra::Point3;
 
 use super::super::{
     assemble::{accepted, assemble_placed},
-    assessment::{assess, test_stability},
     candidate::{Candidate, Placement, WorkPose},
     evaluate::{self, Configuration, Evaluator},
     library::{BoardGrasp, GraspingRobot},
@@ -23,7 +22,6 @@ use crate::{
         scenario::Scenario,
         task::Task,
     },
-    statics::StabilityWorkspace,
 };
 
 /// The person at a piece.
@@ -123,15 +121,6 @@ impl<'a> TaskProblem<'a> {
         comfort::response_near(&query, &from.x_wb, &from.q_h_rad).map(|found| Posture::of(&found, from.roll_rad))
     }
 
-    /// True if a grasp resists the load at a piece.
-    pub fn resists(&self, workspace: &mut StabilityWorkspace, piece: usize, grasp: &BoardGrasp, roll_rad: f64) -> bool {
-        let mut candidate = Candidate::without_person(grasp);
-        candidate.work.roll_rad = roll_rad;
-        let problem = self.of_piece(piece);
-        let stability = assess(problem, workspace, &candidate, &grasp.x_wo);
-        test_stability(problem, &candidate, &grasp.x_wo, &stability).is_ok()
-    }
-
     /// True if a person in this posture, who keeps all limits of a posture by itself, may stand there, touches nothing and sees
     /// the work.
     pub fn is_free(&self, piece: usize, grasp: &BoardGrasp, posture: &Posture) -> bool {
@@ -151,12 +140,9 @@ impl<'a> TaskProblem<'a> {
     pub fn plan(&mut self, piece: usize, grasp: &BoardGrasp, posture: &Posture) -> Option<Plan> {
         let link_poses = self.robot.link_poses(&grasp.arms);
         let points_w = self.robot_points_w(&link_poses);
+        let comfort = self.comfort(piece, &grasp.x_wo, posture, &points_w);
+        let placement = Placement { x_wo: grasp.x_wo, x_wb: posture.x_wb };
         let evaluator = &mut self.evaluators[piece];
-        let Problem { scenario, human, objective, .. } = &evaluator.problem;
-        let Posture { x_wb, q_h_rad, roll_rad } = posture;
-        let wrench_w = scenario.operation.rolled(*roll_rad).wrench_w(&grasp.x_wo);
-        let comfort = comfort::posture_comfort(human, objective, &points_w, x_wb, q_h_rad, &wrench_w);
-        let placement = Placement { x_wo: grasp.x_wo, x_wb: *x_wb };
         let plan = assemble_placed(evaluator, &candidate(grasp, posture), &placement, &comfort, 0)?;
         accepted(evaluator, plan)
     }

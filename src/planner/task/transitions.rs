@@ -5,31 +5,23 @@ use std::collections::BTreeMap;
 use rand_pcg::Pcg64;
 
 use super::{
-    super::{
-        candidate::Candidate,
-        contact::{placed_object, plan_arms},
-        library::BoardGrasp,
-        params::task::{CARRIED_RESERVE, SEED_STREAM},
-    },
+    super::{library::BoardGrasp, params::task::SEED_STREAM},
     graph::{Arc, ArcKind, Exact},
+    grasp_loads::GraspLoads,
     holds::{Holds, changed_arms},
     motion,
     problem::{Posture, TaskProblem},
     regrasp,
 };
-use crate::{
-    model::{
-        plan::{ArmHold, Plan},
-        scenario::Limits,
-    },
-    statics::{ContactModel, HandModel, ResponseOutcome, StabilityWorkspace},
-};
+use crate::{model::plan::Plan, statics::StabilityWorkspace};
 
 /// Computes what is exact, each figure once.
 pub struct Transitions<'p, 'a> {
     pub problem: &'p mut TaskProblem<'a>,
     holds: &'p Holds,
     workspace: StabilityWorkspace,
+    /// By hold.
+    loads: BTreeMap<usize, GraspLoads<'p>>,
     served: BTreeMap<(usize, usize), Option<Posture>>,
     moves: BTreeMap<(usize, usize), bool>,
     regrasps: BTreeMap<(usize, usize), Option<Vec<HandChange>>>,
@@ -42,6 +34,7 @@ impl<'p, 'a> Transitions<'p, 'a> {
             problem,
             holds,
             workspace: StabilityWorkspace::new(),
+            loads: BTreeMap::new(),
             served: BTreeMap::new(),
             moves: BTreeMap::new(),
             regrasps: BTreeMap::new(),
@@ -59,13 +52,17 @@ impl<'p, 'a> Transitions<'p, 'a> {
         self.regrasps.get(&(from, to))?.as_deref()
     }
 
-    /// The person's posture at a piece, if the person is free (that the hold resists the load is known): that beside the board alone or,
-    /// if it touches the robot or cannot see, the best near it.
-    fn serve(&mut self, hold: usize, piece: usize) -> Option<Posture> {
+    /// The person's posture at a piece if the hold resists its load: that beside the board alone or, if it touches the robot or
+    /// cannot see, the best near it.
+    fn serve(&mut self, number: usize, piece: usize) -> Option<Posture> {
         let holds = self.holds;
-        let hold = &holds.holds[hold];
+        let hold = &holds.holds[number];
         let posture = holds.places.posture(hold.place, piece)?;
-        if self.problem.is_free(piece, &hold.grasp, &posture) {
+        let loads = self.loads.entry(number).or_insert_with(|| GraspLoads::new(self.problem, &hold.grasp));
+        if !loads.resists(self.problem, &mut self.workspace, piece, posture.roll_rad) {
+            return None;
+        }
+        if holds.serving[number][piece].is_finite() {
             return Some(posture);
         }
         let link_poses = self.problem.robot.link_poses(&hold.grasp.arms);
@@ -99,9 +96,13 @@ impl<'p, 'a> Transitions<'p, 'a> {
         if let Some(&known) = self.carried.get(&(hold, without)) {
             return known;
         }
-        let carries = carries(self.problem, &mut self.workspace, &self.holds.holds[hold].grasp, without);
+        let carries = self.grasp_carries(&self.holds.holds[hold].grasp, without);
         self.carried.insert((hold, without), carries);
         carries
+    }
+
+    fn grasp_carries(&mut self, grasp: &BoardGrasp, without: Option<usize>) -> bool {
+        GraspLoads::new(self.problem, grasp).carries(self.problem, &mut self.workspace, without)
     }
 
     fn moves(&mut self, from: usize, to: usize) -> bool {
@@ -128,11 +129,14 @@ impl<'p, 'a> Transitions<'p, 'a> {
         let robot = self.problem.robot;
         let mut here = before.clone();
         let mut changes = Vec::with_capacity(order.len());
-        for &arm in order {
+        for (number, &arm) in order.iter().enumerate() {
             let mut next = here.clone();
             next.arms[arm] = after.arms[arm].clone();
-            let is_held = carries(self.problem, &mut self.workspace, &here, Some(arm));
-            if !is_held || !robot.is_clear(&next) || !carries(self.problem, &mut self.workspace, &next, None) {
+            let is_held =
+                if number == 0 { self.carries(from, Some(arm)) } else { self.grasp_carries(&here, Some(arm)) };
+            // The last one is the hold that is reached, which is clear and carries the board.
+            let is_last = number + 1 == order.len();
+            if !is_held || !(is_last || robot.is_clear(&next) && self.grasp_carries(&next, None)) {
                 return None;
             }
             let ends = regrasp::ends(robot, &here, &next.arms[arm], arm)?;
@@ -181,12 +185,21 @@ impl Exact for Transitions<'_, '_> {
             self.served.insert((hold, piece), posture);
         }
         let posture = self.posture(hold, piece)?;
+        let known = self.holds.serving[hold][piece];
+        if known.is_finite() {
+            return Some(known);
+        }
         let grasp = &self.holds.holds[hold].grasp;
         let points_w = self.problem.robot_points_w(&self.problem.robot.link_poses(&grasp.arms));
         let objective = self.problem.comfort(piece, &grasp.x_wo, &posture, &points_w).objective;
-        let cost = self.problem.cost(piece, objective)?;
-        // A posture that was found beside the robot may be better than the one beside the board alone.
-        Some(cost.max(self.holds.serving_nearby[hold][piece]))
+        self.problem.cost(piece, objective)
+    }
+
+    fn may_exist(&mut self, from: usize, arc: &Arc) -> bool {
+        match arc.kind {
+            ArcKind::Move => self.moves.get(&(from, arc.to)) != Some(&false),
+            ArcKind::Regrasp => self.exists(from, arc),
+        }
     }
 
     fn exists(&mut self, from: usize, arc: &Arc) -> bool {
@@ -211,37 +224,5 @@ impl Exact for Transitions<'_, '_> {
 
     fn is_stopped(&self) -> bool {
         self.problem.watch.is_stopped()
-    }
-}
-
-/// True if the arms but `without` carry the board, and [`CARRIED_RESERVE`] of its weight more, within the limits of torque.
-fn carries(
-    problem: &TaskProblem<'_>,
-    workspace: &mut StabilityWorkspace,
-    grasp: &BoardGrasp,
-    without: Option<usize>,
-) -> bool {
-    let of_piece = problem.of_piece(0);
-    let scenario = of_piece.scenario;
-    let object = placed_object(scenario, grasp.x_wo);
-    let arms = plan_arms(of_piece, &Candidate::without_person(grasp));
-    let hand = |(number, hold): (usize, ArmHold)| {
-        let arm = &problem.robot.arms[number];
-        let of_robot = &problem.robot.robot.arms[arm.index];
-        HandModel::new(of_robot, &arm.chain, &hold, &object, scenario.grip.friction)
-    };
-    let hands = arms.into_iter().enumerate().filter(|(number, _)| Some(*number) != without).map(hand);
-    let Ok(hands) = hands.collect::<Result<Vec<_>, _>>() else { return false };
-    if hands.is_empty() {
-        return false;
-    }
-    let model = ContactModel::from_hands(hands, &object, &scenario.operation);
-    // A share of the weight once more as the load; displacements are those of the board's centre.
-    let load = model.weight.scaled(CARRIED_RESERVE);
-    let model = ContactModel { load, p_ot: nalgebra::Vector3::zeros(), ..model };
-    let limits = Limits { deflection_mm: scenario.limits.sag_mm, ..of_piece.stability_limits() };
-    match workspace.response(&model, 1.0) {
-        Ok(ResponseOutcome::Found(response)) => response.utilisation(&model, &limits) <= 1.0,
-        _ => false,
     }
 }
