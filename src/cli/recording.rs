@@ -13,7 +13,7 @@ use crate::{
         muscle_work::MuscleBelly,
         operation::OperationKind,
         scenario::Scenario,
-        staged_plan::{PersonDuring, Stage},
+        staged_plan::PersonDuring,
         staged_verdict::StagedVerdict,
         trace::Trace,
         verdict::{Check, Verdict},
@@ -123,13 +123,9 @@ fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, CliError>
     let mut people = Vec::new();
     let mut now = None;
     for span in &trace.spans {
-        let steps_back = match &plan.stages[span.stage] {
-            Stage::Hold(_) => false,
-            Stage::Move(motion) => motion.person == PersonDuring::StepsBack,
-            Stage::Regrasp(regrasp) => regrasp.person == PersonDuring::StepsBack,
-        };
+        let during = plan.stages[span.stage].person();
         for sample in span.first..=span.last {
-            let next = Some((trace.pieces[sample], steps_back));
+            let next = Some((trace.pieces[sample], during));
             if now == next {
                 continue;
             }
@@ -138,11 +134,12 @@ fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, CliError>
             let checked = CheckedPlan::new(robot, &piece.plan, &scenario.human, &scenario.tool)?;
             let Some(person) = checked.person() else { continue };
             let mut posture = *person.posture;
-            let muscles = if steps_back {
-                posture.x_wb.translation.vector += step_back_w(&checked.person_parts());
-                Vec::new()
-            } else {
-                checked.muscle_bellies_w()
+            let muscles = match during {
+                PersonDuring::Stays => checked.muscle_bellies_w(),
+                PersonDuring::StepsBack => {
+                    posture.x_wb.translation.vector += step_back_w(&checked.person_parts());
+                    Vec::new()
+                }
             };
             let moved = CheckedPerson { posture: &posture, human: person.human.clone() };
             let shape = person_shape(&moved, piece.plan.operation.kind, muscles);

@@ -27,8 +27,7 @@ pub struct StageJudgement {
 pub fn judge_staged(trace: &StagedTrace, plan: &StagedPlan, limits: &Limits) -> Vec<StageJudgement> {
     let mut judged = Vec::with_capacity(trace.spans.len());
     for span in &trace.spans {
-        let is_last = span == &trace.spans[trace.spans.len() - 1];
-        let judgement = judge(&stage_trace(trace, plan, *span, is_last), limits);
+        let judgement = judge(&stage_trace(trace, plan, *span), limits);
         let holds = judgement.verdict == VerdictKind::Holds;
         judged.push(StageJudgement { span: *span, judgement });
         if !holds {
@@ -39,7 +38,8 @@ pub fn judge_staged(trace: &StagedTrace, plan: &StagedPlan, limits: &Limits) -> 
 }
 
 /// The trace of one stage.
-fn stage_trace(staged: &StagedTrace, plan: &StagedPlan, span: StageSpan, is_last: bool) -> Trace {
+fn stage_trace(staged: &StagedTrace, plan: &StagedPlan, span: StageSpan) -> Trace {
+    let is_last = staged.spans.last() == Some(&span);
     let StageSpan { stage, first, last } = span;
     let trace = &staged.trace;
     let start = staged.x_wo_planned[first];

@@ -14,8 +14,9 @@ use crate::{
     check::Holding,
     model::{
         frames::Pose,
+        plan::ArmHold,
         scenario::SimulationSettings,
-        staged_plan::{HoldStage, Stage, StagedPlan},
+        staged_plan::{HoldStage, MoveStage, RegraspStage, Stage, StagedPlan},
         task::Task,
         tool_path::Piece,
         trace::Phase,
@@ -88,10 +89,8 @@ pub struct Timeline<'a> {
     thickness_m: f64,
     rolls_rad: Vec<f64>,
     segments: Vec<Segment>,
-    /// The first step of every segment, counted from 1, and the number of steps.
-    first: Vec<usize>,
-    steps: usize,
-    timestep_s: f64,
+    /// The number of steps of every segment.
+    steps: Vec<usize>,
 }
 
 impl<'a> Timeline<'a> {
@@ -112,53 +111,44 @@ impl<'a> Timeline<'a> {
             }
             match stage {
                 Stage::Hold(hold) => builder.hold(number, holding, hold),
-                Stage::Move(motion) => {
-                    let paths: Vec<_> = motion.arms.iter().map(|path| &path.q_rad[..]).collect();
-                    builder.motion(number, holding, &motion.time_s, &paths);
-                }
+                Stage::Move(motion) => builder.motion(number, holding, motion),
                 Stage::Regrasp(regrasp) => builder.regrasp(number, [holding, &holdings[number + 1]], regrasp),
             }
         }
         let segments = builder.segments;
-        let timestep_s = settings.timestep_s;
-        let mut first = Vec::with_capacity(segments.len());
-        let mut steps = 0;
-        for segment in &segments {
-            first.push(steps + 1);
-            steps += ((segment.duration_s / timestep_s).round() as usize).max(1);
-        }
+        let steps = |segment: &Segment| ((segment.duration_s / settings.timestep_s).round() as usize).max(1);
+        let steps = segments.iter().map(steps).collect();
         let rolls_rad = plan.worked_pieces().map(|(_, worked)| worked.roll_rad.unwrap_or(0.0)).collect();
-        Self { task: &plan.task, thickness_m: plan.object.size_m[2], rolls_rad, segments, first, steps, timestep_s }
+        Self { task: &plan.task, thickness_m: plan.object.size_m[2], rolls_rad, segments, steps }
     }
 
     /// The number of steps.
     pub fn steps(&self) -> usize {
-        self.steps
+        self.steps.iter().sum()
     }
 
-    /// What happens in a step, from 1.
-    pub fn at(&self, step: usize) -> Option<Command> {
-        let number = self.first.partition_point(|&first| first <= step).checked_sub(1)?;
-        let segment = self.segments.get(number)?;
-        let end = self.first.get(number + 1).copied().unwrap_or(self.steps + 1);
-        let done = step + 1 - self.first[number];
-        let share = done as f64 / (end - self.first[number]) as f64;
-        let time_s = share * segment.duration_s;
-        let arms = segment.arms.iter().map(|arm| arm.at(time_s, share)).collect();
-        Some(Command {
-            stage: segment.stage,
-            piece: segment.piece,
-            phase: segment.phase,
-            arms,
-            tool: self.tool(segment, share),
-            x_wo: board_at(segment, time_s),
-            regrips: segment.regrips.filter(|_| done == 1),
+    /// What happens in each step.
+    pub fn commands(&self) -> impl Iterator<Item = Command> {
+        self.segments.iter().zip(&self.steps).flat_map(move |(segment, &steps)| {
+            (1..=steps).map(move |step| Command {
+                regrips: segment.regrips.filter(|_| step == 1),
+                ..self.command(segment, step as f64 / steps as f64)
+            })
         })
     }
 
-    /// The time of the first step, s.
-    pub fn timestep_s(&self) -> f64 {
-        self.timestep_s
+    /// What happens after a share of a segment.
+    fn command(&self, segment: &Segment, share: f64) -> Command {
+        let time_s = share * segment.duration_s;
+        Command {
+            stage: segment.stage,
+            piece: segment.piece,
+            phase: segment.phase,
+            arms: segment.arms.iter().map(|arm| arm.at(time_s, share)).collect(),
+            tool: self.tool(segment, share),
+            x_wo: board_at(segment, time_s),
+            regrips: None,
+        }
     }
 
     fn tool(&self, segment: &Segment, share: f64) -> ToolState {
@@ -200,7 +190,7 @@ struct Builder<'b, 'a> {
 impl Builder<'_, '_> {
     /// All arms as they hold the board, for a time; torques go from one distribution to another.
     fn resting(&self, holding: &Holding, duration_s: f64, from: &[Vec<f64>], to: &[Vec<f64>]) -> Vec<ArmSegment> {
-        let arm = |(number, hold): (usize, &crate::model::plan::ArmHold)| {
+        let arm = |(number, hold): (usize, &ArmHold)| {
             let arm_nm = self.carried.arm_nm(number, &hold.q_rad);
             let knot = |time_s: f64, board_nm: &Vec<f64>| Knot {
                 time_s,
@@ -268,18 +258,13 @@ impl Builder<'_, '_> {
         self.piece = first_piece + pieces.len();
     }
 
-    fn motion(&mut self, stage: usize, holding: &Holding, time_s: &[f64], paths: &[&[Vec<f64>]]) {
-        let (arms, x_wo) = self.carried.along(holding, time_s, paths);
-        let duration_s = time_s.last().copied().unwrap_or(0.0);
+    fn motion(&mut self, stage: usize, holding: &Holding, motion: &MoveStage) {
+        let (arms, x_wo) = self.carried.along(holding, motion);
+        let duration_s = motion.time_s.last().copied().unwrap_or(0.0);
         self.push(stage, Phase::Move, duration_s, arms, x_wo);
     }
 
-    fn regrasp(
-        &mut self,
-        stage: usize,
-        [before, after]: [&Holding; 2],
-        regrasp: &crate::model::staged_plan::RegraspStage,
-    ) {
+    fn regrasp(&mut self, stage: usize, [before, after]: [&Holding; 2], regrasp: &RegraspStage) {
         let Some(arm) = before.arms.iter().position(|hold| hold.name == regrasp.arm.name) else { return };
         let shared_nm = self.carried.board_nm(before, None);
         let alone_nm = self.carried.board_nm(before, Some(arm));
