@@ -13,7 +13,7 @@ use crate::model::{
     staged_trace::StagedTrace,
     staged_verdict::{PersonOverTask, StageVerdict, StagedVerdict},
     trace::Sample,
-    verdict::CheckKind,
+    verdict::{CheckKind, VerdictKind},
 };
 
 /// The checks in tables of stages.
@@ -155,11 +155,7 @@ const WIDTH_PX: f64 = 920.0;
 fn timeline(verdict: &StagedVerdict) -> Markup {
     let scale = WIDTH_PX / verdict.duration_s.max(1e-9);
     let class = |stage: &StageVerdict| {
-        if stage.verdict == crate::model::verdict::VerdictKind::Holds {
-            stage.kind.clone()
-        } else {
-            "failed".to_owned()
-        }
+        if stage.verdict == VerdictKind::Holds { stage.kind.clone() } else { "failed".to_owned() }
     };
     html! {
         svg.stages viewBox={ "0 0 " (WIDTH_PX) " 56" } role="img" aria-label="stages over time" {

@@ -3,8 +3,9 @@
 use super::super::{exit::CliError, progress::Progress, versions::versions};
 use crate::{
     check::{CheckedPlan, StagedStates, initial_plan},
-    judge::{StageJudgement, fingerprint, judge_staged},
+    judge::{Judgement, StageJudgement, fingerprint, judge_staged},
     model::{
+        measures::EventKind,
         scenario::Scenario,
         staged_plan::{STAGED_FORMAT, StagedPlan, WorkedPiece},
         staged_trace::StagedTrace,
@@ -122,10 +123,10 @@ fn verdict(
             let reason = reason(judgement.first_failure.as_ref(), judgement);
             let first_failure = judgement.first_failure.clone();
             let failed = FailedStage { stage: span.stage + 1, kind: kind(span.stage), first_failure, reason };
-            let found = if complete || judgement.verdict != VerdictKind::Holds {
-                judgement.verdict
-            } else {
-                VerdictKind::NoVerdict
+            let found = match judgement.verdict {
+                // The board was lost after the load of a hold, and later stages were not simulated.
+                VerdictKind::Holds => VerdictKind::NoVerdict,
+                fails => fails,
             };
             with_failure(whole, found, failed)
         }
@@ -135,9 +136,9 @@ fn verdict(
 }
 
 /// The first failure of a stage in words.
-fn reason(failure: Option<&Failure>, judgement: &crate::judge::Judgement) -> String {
+fn reason(failure: Option<&Failure>, judgement: &Judgement) -> String {
     let crossed = failure.and_then(|failure| {
-        let is_it = |kind| kind == crate::model::measures::EventKind::LimitCrossed(failure.check);
+        let is_it = |kind| kind == EventKind::LimitCrossed(failure.check);
         judgement.events.iter().find(|event| is_it(event.kind)).map(|event| event.text.clone())
     });
     crossed.or_else(|| judgement.reason.clone()).unwrap_or_else(|| "the simulation ended early".into())
