@@ -19,7 +19,7 @@ use crate::{
     },
 };
 use arms::CarriedBy;
-pub(super) use segment::ArmCommand;
+pub(super) use segment::{ArmCommand, NewGrasp};
 use timeline::{Command, Timeline};
 
 /// Simulates a staged plan from its first stage to the end of its last. `initial` is a checked plan of the board as it is held at the
@@ -54,8 +54,8 @@ pub fn simulate_staged(
             return Err(SimError::Stopped);
         }
         scene.command(&command.arms);
-        if let Some((arm, x_og, grip_force_n)) = command.regrips {
-            scene.regrip(initial, arm, &x_og, grip_force_n, conditions);
+        if let Some(grasp) = &command.regrips {
+            scene.regrip(initial, grasp, conditions);
         }
         scene.step_under(command.tool);
         let time_s = step as f64 * timestep_s;

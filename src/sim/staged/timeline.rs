@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use super::{
     super::{phases::grip_steps, tool_load::ToolState},
     arms::CarriedBy,
-    segment::{ArmCommand, ArmSegment, Knot},
+    segment::{ArmCommand, ArmSegment, Knot, NewGrasp},
 };
 use crate::{
     check::Holding,
@@ -64,8 +64,18 @@ pub struct Command {
     pub tool: ToolState,
     /// The planned pose of the board.
     pub x_wo: Pose,
-    /// The arm that grips the board by a new grasp from this step on, with X_OG and the grip force, N.
-    pub regrips: Option<(usize, Pose, f64)>,
+    /// The grasp by which an arm grips the board from this step on.
+    pub regrips: Option<NewGrasp>,
+}
+
+/// What the tool does in a part of a stage.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    pub stroke: usize,
+    /// The lengths along the stroke from which and to which the tool works, m.
+    pub along_m: [f64; 2],
+    /// The load factor at both ends.
+    pub load_factor: [f64; 2],
 }
 
 /// A part of a stage.
@@ -78,9 +88,8 @@ pub struct Segment {
     pub arms: Vec<ArmSegment>,
     /// The planned poses of the board at the knots of a motion; one if it stays.
     pub x_wo: Vec<Pose>,
-    /// The stroke and the lengths along it, m, from which and to which the tool works, and the load factor at both ends.
-    pub work: Option<(usize, [f64; 2], [f64; 2])>,
-    pub regrips: Option<(usize, Pose, f64)>,
+    pub work: Option<Work>,
+    pub regrips: Option<NewGrasp>,
 }
 
 /// All segments of a plan.
@@ -153,11 +162,12 @@ impl<'a> Timeline<'a> {
 
     fn tool(&self, segment: &Segment, share: f64) -> ToolState {
         let none = ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m: Vector3::zeros() };
-        let Some((stroke, [from_m, to_m], [low, high])) = segment.work else { return none };
-        let along_m = from_m + share * (to_m - from_m);
-        let Some(operation) = self.task.operation_at(stroke, along_m, self.thickness_m) else { return none };
+        let Some(work) = segment.work else { return none };
+        let at_share = |[from, to]: [f64; 2]| from + share * (to - from);
+        let along_m = at_share(work.along_m);
+        let Some(operation) = self.task.operation_at(work.stroke, along_m, self.thickness_m) else { return none };
         let operation = operation.rolled(self.rolls_rad.get(segment.piece).copied().unwrap_or(0.0));
-        let load_factor = low + share * (high - low);
+        let load_factor = at_share(work.load_factor);
         let wrench_o = operation.wrench_o.scaled(load_factor);
         ToolState { load_factor, wrench_o, p_ot_m: operation.x_ot.translation.vector }
     }
@@ -203,9 +213,19 @@ impl Builder<'_, '_> {
         holding.arms.iter().enumerate().map(arm).collect()
     }
 
-    fn push(&mut self, stage: usize, phase: Phase, duration_s: f64, arms: Vec<ArmSegment>, x_wo: Vec<Pose>) {
+    /// Adds a segment in which no tool works.
+    fn push(
+        &mut self,
+        stage: usize,
+        phase: Phase,
+        duration_s: f64,
+        arms: Vec<ArmSegment>,
+        x_wo: Vec<Pose>,
+    ) -> &mut Segment {
         let piece = self.piece;
+        let number = self.segments.len();
         self.segments.push(Segment { stage, piece, phase, duration_s, arms, x_wo, work: None, regrips: None });
+        &mut self.segments[number]
     }
 
     fn still(&mut self, phase: Phase, stage: usize, holding: &Holding, duration_s: f64) {
@@ -247,13 +267,11 @@ impl Builder<'_, '_> {
         }
         parts.push((Phase::Release, LIFTED_S, [end_m; 2], [0.0; 2], pieces.len() - 1));
         let first_piece = self.piece;
-        for (phase, duration_s, along_m, load, number) in parts {
+        for (phase, duration_s, along_m, load_factor, number) in parts {
             self.piece = first_piece + number;
             let arms = self.resting(holding, duration_s, board_nm, board_nm);
-            self.push(stage, phase, duration_s, arms, vec![holding.x_wo]);
-            if let Some(segment) = self.segments.last_mut() {
-                segment.work = Some((stroke, along_m, load));
-            }
+            let segment = self.push(stage, phase, duration_s, arms, vec![holding.x_wo]);
+            segment.work = Some(Work { stroke, along_m, load_factor });
         }
         self.piece = first_piece + pieces.len();
     }
@@ -282,10 +300,9 @@ impl Builder<'_, '_> {
         arms[arm] = self.carried.free_path(arm, &regrasp.time_s, &regrasp.arm.q_rad);
         arms[arm].grip = [OPEN_SHARE; 2];
         self.push(stage, Phase::Regrasp, duration_s, arms, x_wo.clone());
-        let closing = self.segments.len();
         with_grip(self, after, CLOSE_S, [&alone_nm, &alone_nm], [CLOSE_SHARE; 2]);
-        if let Some(segment) = self.segments.get_mut(closing) {
-            segment.regrips = Some((arm, regrasp.x_og, regrasp.grip_force_n));
+        if let Some(closing) = self.segments.last_mut() {
+            closing.regrips = Some(NewGrasp { arm, x_og: regrasp.x_og, grip_force_n: regrasp.grip_force_n });
         }
         with_grip(self, after, GRIP_S, [&alone_nm, &alone_nm], [CLOSE_SHARE, 1.0]);
         with_grip(self, after, SHIFT_S, [&alone_nm, &then_nm], [1.0; 2]);
