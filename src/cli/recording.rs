@@ -13,7 +13,7 @@ use crate::{
         muscle_work::MuscleBelly,
         operation::OperationKind,
         scenario::Scenario,
-        staged_plan::{PersonDuring, Stage},
+        staged_plan::PersonDuring,
         staged_verdict::StagedVerdict,
         trace::Trace,
         verdict::{Check, Verdict},
@@ -48,14 +48,16 @@ pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Ve
 /// Time between two samples of a task's recording, s.
 const TASK_SAMPLE_S: f64 = 0.01;
 
-/// The bytes of a task's recording, with a sample each 10 ms; `None` without a piece.
+/// The bytes of a task's recording, with a sample each 10 ms; `None` without a piece or a step.
 ///
 /// # Errors
 /// If the recording cannot be made.
 pub fn encode_task(task: &TaskRecording<'_>) -> Result<Option<Vec<u8>>, CliError> {
     let TaskRecording { scenario, robot, pieces, trace, judgements, .. } = task;
-    let Some(first) = pieces.first() else { return Ok(None) };
-    let every = ((TASK_SAMPLE_S / scenario.simulation.timestep_s).round() as usize).max(1);
+    let (Some(first), [start, second, ..]) = (pieces.first(), &trace.trace.samples[..]) else { return Ok(None) };
+    // That of the simulation that decides, which may be shorter than the scenario's.
+    let timestep_s = second.time_s - start.time_s;
+    let every = ((TASK_SAMPLE_S / timestep_s).round() as usize).max(1);
     let samples = trace.trace.samples.iter().step_by(every).cloned().collect();
     let thinned = Trace { samples, ..trace.trace.clone() };
     let measures = measures_of_stages(judgements, every);
@@ -123,13 +125,9 @@ fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, CliError>
     let mut people = Vec::new();
     let mut now = None;
     for span in &trace.spans {
-        let steps_back = match &plan.stages[span.stage] {
-            Stage::Hold(_) => false,
-            Stage::Move(motion) => motion.person == PersonDuring::StepsBack,
-            Stage::Regrasp(regrasp) => regrasp.person == PersonDuring::StepsBack,
-        };
+        let during = plan.stages[span.stage].person();
         for sample in span.first..=span.last {
-            let next = Some((trace.pieces[sample], steps_back));
+            let next = Some((trace.pieces[sample], during));
             if now == next {
                 continue;
             }
@@ -138,11 +136,12 @@ fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, CliError>
             let checked = CheckedPlan::new(robot, &piece.plan, &scenario.human, &scenario.tool)?;
             let Some(person) = checked.person() else { continue };
             let mut posture = *person.posture;
-            let muscles = if steps_back {
-                posture.x_wb.translation.vector += step_back_w(&checked.person_parts());
-                Vec::new()
-            } else {
-                checked.muscle_bellies_w()
+            let muscles = match during {
+                PersonDuring::Stays => checked.muscle_bellies_w(),
+                PersonDuring::StepsBack => {
+                    posture.x_wb.translation.vector += step_back_w(&checked.person_parts());
+                    Vec::new()
+                }
             };
             let moved = CheckedPerson { posture: &posture, human: person.human.clone() };
             let shape = person_shape(&moved, piece.plan.operation.kind, muscles);
@@ -154,7 +153,8 @@ fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, CliError>
 
 /// The verdict of a task in the form of a plan of one hold: of each check that with the least margin.
 fn verdict_of_task(task: &TaskRecording<'_>, fingerprint: String) -> Verdict {
-    let StagedVerdict { name, verdict, expected, met, failed, stages, versions, seed, .. } = task.verdict.clone();
+    let StagedVerdict { name, verdict, expected, met, failed, confirmation, stages, versions, seed, .. } =
+        task.verdict.clone();
     let mut checks: Vec<Check> = Vec::new();
     for check in stages.iter().flat_map(|stage| &stage.checks) {
         match checks.iter_mut().find(|other| other.name == check.name) {
@@ -173,7 +173,7 @@ fn verdict_of_task(task: &TaskRecording<'_>, fingerprint: String) -> Verdict {
         self_checks: Vec::new(),
         first_failure: failed.as_ref().and_then(|failed| failed.first_failure.clone()),
         peak_torque_ratio: BTreeMap::new(),
-        confirmation: None,
+        confirmation,
         reason: failed.map(|failed| format!("stage {} ({}): {}", failed.stage, failed.kind, failed.reason)),
         notes: vec!["the recording of a task has a sample each 10 ms".into()],
         muscles: None,

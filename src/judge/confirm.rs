@@ -3,7 +3,7 @@
 //! A simulation that passes a limit by a little, or fails it by a little, may decide otherwise at another time step. Such a
 //! verdict is repeated at half the step, and at a quarter of it if the two differ. The caller runs the simulations.
 
-use super::judgement::Judgement;
+use super::{judgement::Judgement, staged::StagedJudgement};
 use crate::model::{
     measures::EventKind,
     verdict::{Check, CheckKind, Confirmation, StepVerdict, VerdictKind},
@@ -29,27 +29,93 @@ const TOGETHER_S: f64 = 0.05;
 /// The first error of `run`.
 pub fn confirmed<T, E>(
     timestep_s: f64,
-    mut run: impl FnMut(f64) -> Result<(T, Judgement), E>,
+    run: impl FnMut(f64) -> Result<(T, Judgement), E>,
 ) -> Result<(T, Judgement), E> {
-    let (first_trace, mut first) = run(timestep_s)?;
-    let Some(because) = doubt(&first) else { return Ok((first_trace, first)) };
-    let mut runs = vec![StepVerdict { timestep_s, verdict: first.verdict }];
-    let (half_trace, mut half) = run(timestep_s / 2.0)?;
-    runs.push(StepVerdict { timestep_s: timestep_s / 2.0, verdict: half.verdict });
-    if half.verdict == first.verdict {
-        first.confirmation = Some(Confirmation { because, runs });
-        return Ok((first_trace, first));
+    let verdict = |(_, judgement): &(T, Judgement)| (judgement.verdict, None);
+    let Deciding { run: (trace, mut judgement), confirmation, is_decided } =
+        deciding(timestep_s, run, |(_, judgement)| doubt(judgement), verdict)?;
+    if let Some(confirmation) = confirmation.as_ref().filter(|_| !is_decided) {
+        take_back(&mut judgement, confirmation);
     }
-    let (_, quarter) = run(timestep_s / 4.0)?;
-    runs.push(StepVerdict { timestep_s: timestep_s / 4.0, verdict: quarter.verdict });
-    let confirmation = Confirmation { because, runs };
-    if quarter.verdict != half.verdict {
-        half.verdict = VerdictKind::NoVerdict;
-        half.first_failure = None;
-        half.reason = Some(format!("the verdict depends on the time step: {confirmation}"));
+    judgement.confirmation = confirmation;
+    Ok((trace, judgement))
+}
+
+/// As [`confirmed`], for a staged plan: its verdict is confirmed if that of one of its stages would be. Two verdicts are the same
+/// if the first stage that does not hold is the same as well. If the verdict depends on the time step, the first stage at which
+/// half and quarter differ has no verdict, and is the last one.
+///
+/// # Errors
+/// The first error of `run`.
+pub fn confirmed_staged<T, E>(
+    timestep_s: f64,
+    run: impl FnMut(f64) -> Result<(T, StagedJudgement), E>,
+) -> Result<(T, StagedJudgement), E> {
+    let verdict = |(_, judgement): &(T, StagedJudgement)| {
+        (judgement.verdict(), judgement.failed().map(|failed| failed.span.stage + 1))
+    };
+    let Deciding { run: (trace, mut judgement), confirmation, is_decided } =
+        deciding(timestep_s, run, |(_, judgement)| doubt_of_stages(judgement), verdict)?;
+    if let Some(confirmation) = confirmation.as_ref().filter(|_| !is_decided) {
+        let differs = confirmation.runs[1..].iter().filter_map(|run| run.stage).min();
+        judgement.stages.retain(|stage| differs.is_none_or(|differs| stage.span.stage < differs));
+        if let Some(last) = judgement.stages.last_mut() {
+            take_back(&mut last.judgement, confirmation);
+        }
     }
-    half.confirmation = Some(confirmation);
-    Ok((half_trace, half))
+    judgement.confirmation = confirmation;
+    Ok((trace, judgement))
+}
+
+/// The run that decides.
+struct Deciding<R> {
+    run: R,
+    /// All runs; `None` if the first one decides alone.
+    confirmation: Option<Confirmation>,
+    /// False if the verdict depends on the time step.
+    is_decided: bool,
+}
+
+/// Runs at a time step, s, and if there is a `doubt`, at half of it and, if these two differ, at a quarter. `verdict` is that of a
+/// run and the stage that decides it.
+fn deciding<R, E>(
+    timestep_s: f64,
+    mut run: impl FnMut(f64) -> Result<R, E>,
+    doubt: impl FnOnce(&R) -> Option<String>,
+    verdict: impl Fn(&R) -> (VerdictKind, Option<usize>),
+) -> Result<Deciding<R>, E> {
+    let first = run(timestep_s)?;
+    let Some(because) = doubt(&first) else { return Ok(Deciding { run: first, confirmation: None, is_decided: true }) };
+    let of_run = |timestep_s: f64, run: &R| {
+        let (verdict, stage) = verdict(run);
+        StepVerdict { timestep_s, verdict, stage }
+    };
+    let agree = |a: &StepVerdict, b: &StepVerdict| (a.verdict, a.stage) == (b.verdict, b.stage);
+    let half = run(timestep_s / 2.0)?;
+    let mut runs = vec![of_run(timestep_s, &first), of_run(timestep_s / 2.0, &half)];
+    if agree(&runs[0], &runs[1]) {
+        return Ok(Deciding { run: first, confirmation: Some(Confirmation { because, runs }), is_decided: true });
+    }
+    // Traces of tasks are large.
+    drop(first);
+    runs.push(of_run(timestep_s / 4.0, &run(timestep_s / 4.0)?));
+    let is_decided = agree(&runs[1], &runs[2]);
+    Ok(Deciding { run: half, confirmation: Some(Confirmation { because, runs }), is_decided })
+}
+
+/// Takes a verdict back that depends on the time step.
+fn take_back(judgement: &mut Judgement, confirmation: &Confirmation) {
+    judgement.verdict = VerdictKind::NoVerdict;
+    judgement.first_failure = None;
+    judgement.reason = Some(format!("the verdict depends on the time step: {confirmation}"));
+}
+
+/// Why one of the stages does not decide alone; `None` if all do.
+fn doubt_of_stages(judgement: &StagedJudgement) -> Option<String> {
+    judgement
+        .stages
+        .iter()
+        .find_map(|stage| Some(format!("stage {}: {}", stage.span.stage + 1, doubt(&stage.judgement)?)))
 }
 
 /// Why a judgement does not decide alone; `None` if it does.
@@ -104,9 +170,10 @@ mod tests {
 
     use super::*;
     use crate::{
-        judge::checks::check,
+        judge::{StageJudgement, checks::check},
         model::{
             measures::{Event, Measures},
+            staged_trace::StageSpan,
             verdict::Failure,
         },
     };
@@ -169,6 +236,75 @@ mod tests {
         let (judgement, runs) = of(&[0.98, 1.02, 0.99]);
         assert_eq!((judgement.verdict, judgement.first_failure, runs), (VerdictKind::NoVerdict, None, 3));
         assert!(judgement.reason.unwrap().ends_with("2 ms holds, 1 ms slips, 0.5 ms holds"));
+    }
+
+    /// The confirmed judgement of a staged plan whose stages have these slips at each step, and the number of runs.
+    fn of_stages<const STAGES: usize>(slips_mm: &[[f64; STAGES]]) -> (StagedJudgement, usize) {
+        let mut runs = 0;
+        let run = |timestep_s: f64| {
+            assert_eq!(timestep_s, 0.002 / f64::from(1 << runs));
+            let judged = |stage: usize| StageJudgement {
+                span: StageSpan { stage, first: stage, last: stage },
+                judgement: slipped(slips_mm[runs][stage], stage as f64),
+            };
+            let failed = slips_mm[runs].iter().position(|&slip_mm| slip_mm > 1.0);
+            let stages = (0..failed.map_or(STAGES, |failed| failed + 1)).map(judged).collect();
+            runs += 1;
+            Ok::<_, Infallible>(((), StagedJudgement { stages, confirmation: None }))
+        };
+        let Ok(((), judgement)) = confirmed_staged(0.002, run);
+        (judgement, runs)
+    }
+
+    /// The verdict of a staged plan, and the first stage that does not hold, from 0.
+    fn decided(judgement: &StagedJudgement) -> (VerdictKind, Option<usize>) {
+        (judgement.verdict(), judgement.failed().map(|failed| failed.span.stage))
+    }
+
+    #[test]
+    fn clear_stages_need_no_confirmation() {
+        for slips_mm in [[0.0, 0.89, 0.0], [0.2, 0.3, 1.2]] {
+            let (judgement, runs) = of_stages(&[slips_mm]);
+            assert_eq!((runs, judgement.confirmation), (1, None), "{slips_mm:?}");
+        }
+    }
+
+    #[test]
+    fn a_stage_near_a_limit_is_confirmed_by_the_whole_plan_at_half_the_step() {
+        let (judgement, runs) = of_stages(&[[0.1, 0.95, 0.2], [0.1, 0.97, 0.2]]);
+        assert_eq!((decided(&judgement), runs), ((VerdictKind::Holds, None), 2));
+        assert_eq!(judgement.stages[1].judgement.checks[0].value, 0.95);
+        let said = judgement.confirmation.unwrap().to_string();
+        assert!(said.starts_with("stage 2: slip 0.950 mm is within 10 % of"), "{said}");
+        assert!(said.ends_with("2 ms holds, 1 ms holds"), "{said}");
+        let (judgement, runs) = of_stages(&[[0.1, 1.05, 0.2], [0.1, 1.3, 0.2]]);
+        assert_eq!((decided(&judgement), runs), ((VerdictKind::Slips, Some(1)), 2));
+    }
+
+    #[test]
+    fn if_half_the_step_fails_in_another_stage_a_quarter_decides() {
+        let (judgement, runs) = of_stages(&[[0.95, 2.0, 0.1], [1.05, 2.0, 0.1], [1.06, 2.0, 0.1]]);
+        assert_eq!((decided(&judgement), runs), ((VerdictKind::Slips, Some(0)), 3));
+        assert_eq!(judgement.stages[0].judgement.checks[0].value, 1.05);
+        let said = judgement.confirmation.unwrap().to_string();
+        assert!(said.ends_with("2 ms slips in stage 2, 1 ms slips in stage 1, 0.5 ms slips in stage 1"), "{said}");
+    }
+
+    #[test]
+    fn the_first_stage_at_which_half_and_quarter_differ_has_no_verdict() {
+        // Wherever the three runs fail: in one of them, or in different stages.
+        for (slips_mm, stage) in [
+            ([[0.1, 0.98, 0.1], [0.1, 1.02, 0.1], [0.1, 0.99, 0.1]], 1),
+            ([[0.1, 1.02, 0.1], [0.1, 0.98, 0.1], [0.1, 1.01, 0.1]], 1),
+            ([[0.1, 0.98, 0.1], [0.1, 0.98, 1.5], [1.5, 0.99, 0.1]], 0),
+        ] {
+            let (judgement, runs) = of_stages(&slips_mm);
+            assert_eq!((decided(&judgement), runs), ((VerdictKind::NoVerdict, Some(stage)), 3), "{slips_mm:?}");
+            let failed = &judgement.failed().unwrap().judgement;
+            assert_eq!(failed.first_failure, None);
+            let reason = failed.reason.as_ref().unwrap();
+            assert!(reason.starts_with("the verdict depends on the time step: stage 2: slip "), "{reason}");
+        }
     }
 
     #[test]

@@ -17,11 +17,11 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-pub use confirm::confirmed;
+pub use confirm::{confirmed, confirmed_staged};
 pub use failing_load::{FailingLoad, failing_load};
 pub use fingerprint::fingerprint;
 pub use judgement::Judgement;
-pub use staged::{StageJudgement, judge_staged};
+pub use staged::{StageJudgement, StagedJudgement, judge_staged};
 
 use crate::model::{
     measures::Measures,

@@ -6,8 +6,32 @@ use crate::model::{
     staged_plan::{Stage, StagedPlan},
     staged_trace::{StageSpan, StagedTrace},
     trace::Trace,
-    verdict::VerdictKind,
+    verdict::{Confirmation, VerdictKind},
 };
+
+/// The judgement of a staged plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StagedJudgement {
+    /// Those of its stages, up to the first one that does not hold.
+    pub stages: Vec<StageJudgement>,
+    /// Simulations at shorter time steps, if there were any, see [`confirmed_staged`](super::confirmed_staged).
+    pub confirmation: Option<Confirmation>,
+}
+
+impl StagedJudgement {
+    /// The verdict: that of the last stage that was judged.
+    #[must_use]
+    pub fn verdict(&self) -> VerdictKind {
+        // Without a stage the engine broke down in the first step.
+        self.stages.last().map_or(VerdictKind::NoVerdict, |last| last.judgement.verdict)
+    }
+
+    /// The first stage that does not hold; `None` if all that were judged do.
+    #[must_use]
+    pub fn failed(&self) -> Option<&StageJudgement> {
+        self.stages.last().filter(|last| last.judgement.verdict != VerdictKind::Holds)
+    }
+}
 
 /// The judgement of one stage.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,24 +46,31 @@ pub struct StageJudgement {
 ///
 /// A stage's trace begins at its first sample, to which slip, rotation and the board's displacement refer; the planned motion of
 /// the board is taken out of it. In a hold the limits apply as to a plan of one hold. In a motion and in a regrasp they apply to all
-/// samples, with the board's centre in place of the tool point; the arm that changes its grasp has a torque alone.
+/// samples, with the board's centre in place of the tool point; the arm that changes its grasp has a torque alone. A stage that
+/// holds has no verdict if the simulation ended after it, before the last stage.
 #[must_use]
-pub fn judge_staged(trace: &StagedTrace, plan: &StagedPlan, limits: &Limits) -> Vec<StageJudgement> {
-    let mut judged = Vec::with_capacity(trace.spans.len());
+pub fn judge_staged(trace: &StagedTrace, plan: &StagedPlan, limits: &Limits) -> StagedJudgement {
+    let mut stages = Vec::with_capacity(trace.spans.len());
     for span in &trace.spans {
-        let is_last = span == &trace.spans[trace.spans.len() - 1];
-        let judgement = judge(&stage_trace(trace, plan, *span, is_last), limits);
+        let judgement = judge(&stage_trace(trace, plan, *span), limits);
         let holds = judgement.verdict == VerdictKind::Holds;
-        judged.push(StageJudgement { span: *span, judgement });
+        stages.push(StageJudgement { span: *span, judgement });
         if !holds {
             break;
         }
     }
-    judged
+    let is_early = trace.spans.len() < plan.stages.len();
+    if let Some(last) = stages.last_mut().filter(|last| is_early && last.judgement.verdict == VerdictKind::Holds) {
+        // The board was lost after the load of a hold.
+        last.judgement.verdict = VerdictKind::NoVerdict;
+        last.judgement.reason = Some("the simulation ended before the last stage".to_owned());
+    }
+    StagedJudgement { stages, confirmation: None }
 }
 
 /// The trace of one stage.
-fn stage_trace(staged: &StagedTrace, plan: &StagedPlan, span: StageSpan, is_last: bool) -> Trace {
+fn stage_trace(staged: &StagedTrace, plan: &StagedPlan, span: StageSpan) -> Trace {
+    let is_last = staged.spans.last() == Some(&span);
     let StageSpan { stage, first, last } = span;
     let trace = &staged.trace;
     let start = staged.x_wo_planned[first];

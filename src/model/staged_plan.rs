@@ -70,6 +70,16 @@ impl Stage {
             Self::Regrasp(_) => "regrasp",
         }
     }
+
+    /// What the person does; they stay at the board that is held.
+    #[must_use]
+    pub fn person(&self) -> PersonDuring {
+        match self {
+            Self::Hold(_) => PersonDuring::Stays,
+            Self::Move(motion) => motion.person,
+            Self::Regrasp(regrasp) => regrasp.person,
+        }
+    }
 }
 
 /// A hold in which pieces of the path are worked on.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::verdict::{Check, Failure, VerdictKind};
+use super::verdict::{Check, Confirmation, Failure, VerdictKind};
 
 /// The verdict on a staged plan: that of its first stage that does not hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -24,6 +24,10 @@ pub struct StagedVerdict {
     /// The first stage that does not hold; absent if all do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed: Option<FailedStage>,
+    /// Simulations of the whole plan at shorter time steps, if a stage of the first one was too near to a limit to decide. Absent if
+    /// none was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confirmation: Option<Confirmation>,
     /// The stages that were judged, in their order.
     pub stages: Vec<StageVerdict>,
     /// The number of changes of one hand's grasp.

@@ -291,16 +291,22 @@ pub struct StepVerdict {
     pub timestep_s: f64,
     /// The verdict.
     pub verdict: VerdictKind,
+    /// The first stage of a staged plan that does not hold, from 1; absent if all hold, and for a plan of one hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stage: Option<usize>,
 }
 
 impl std::fmt::Display for Confirmation {
-    /// `deflection 4.80 mm is within 10 % of its limit of 5 mm: 2 ms holds, 1 ms holds`.
+    /// `deflection 4.80 mm is within 10 % of its limit of 5 mm: 2 ms holds, 1 ms holds`; of a staged plan `1 ms slips in stage 3`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.because)?;
-        for (index, StepVerdict { timestep_s, verdict }) in self.runs.iter().enumerate() {
+        for (index, StepVerdict { timestep_s, verdict, stage }) in self.runs.iter().enumerate() {
             let separator = if index == 0 { ':' } else { ',' };
             // Halves and quarters of round steps are short decimals.
             write!(f, "{separator} {} ms {verdict}", (timestep_s * 1e9).round() / 1e6)?;
+            if let Some(stage) = stage {
+                write!(f, " in stage {stage}")?;
+            }
         }
         Ok(())
     }

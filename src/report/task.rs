@@ -13,7 +13,7 @@ use crate::model::{
     staged_trace::StagedTrace,
     staged_verdict::{PersonOverTask, StageVerdict, StagedVerdict},
     trace::Sample,
-    verdict::CheckKind,
+    verdict::{CheckKind, VerdictKind},
 };
 
 /// The checks in tables of stages.
@@ -90,7 +90,7 @@ fn figure(stage: &StageVerdict, kind: CheckKind, digits: usize) -> String {
     check.map_or_else(String::new, |check| format!("{:.digits$}", check.value))
 }
 
-/// The stages in a table for the console, then the verdict and the person.
+/// The stages in a table for the console, then the verdict, its confirmation and the person.
 #[must_use]
 pub fn table(verdict: &StagedVerdict) -> String {
     let header = ["stage", "kind", "verdict", "from s", "to s", "slip mm", "slip deg", "deflection mm", "torque ratio"];
@@ -103,6 +103,7 @@ pub fn table(verdict: &StagedVerdict) -> String {
     let mut text = aligned(&rows, 3);
     text.push_str(&summary(verdict));
     text.push('\n');
+    text.extend(verdict.confirmation.as_ref().map(|confirmation| format!("confirmation: {confirmation}\n")));
     text.extend(verdict.person.as_ref().map(|person| format!("{}\n", person_in_words(person))));
     text
 }
@@ -131,6 +132,7 @@ pub fn page(plan: &StagedPlan, verdict: &StagedVerdict, trace: Option<&StagedTra
     let body = html! {
         p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Equal runs give equal pages." }
         p { (summary(verdict)) "." }
+        @if let Some(confirmation) = &verdict.confirmation { p { "Confirmation: " (confirmation) "." } }
         @if let Some(person) = &verdict.person { p { (person_in_words(person)) "." } }
         h2 { "Timeline" }
         (timeline(verdict))
@@ -155,11 +157,7 @@ const WIDTH_PX: f64 = 920.0;
 fn timeline(verdict: &StagedVerdict) -> Markup {
     let scale = WIDTH_PX / verdict.duration_s.max(1e-9);
     let class = |stage: &StageVerdict| {
-        if stage.verdict == crate::model::verdict::VerdictKind::Holds {
-            stage.kind.clone()
-        } else {
-            "failed".to_owned()
-        }
+        if stage.verdict == VerdictKind::Holds { stage.kind.clone() } else { "failed".to_owned() }
     };
     html! {
         svg.stages viewBox={ "0 0 " (WIDTH_PX) " 56" } role="img" aria-label="stages over time" {

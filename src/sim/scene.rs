@@ -13,7 +13,7 @@ use super::{
     feed_forward::feed_forward,
     hand_over::HandOver,
     pad::BoardHandles,
-    staged::ArmCommand,
+    staged::{ArmCommand, NewGrasp},
     tool_load::{ToolState, wrench_w},
     world::{new_world, sweep_for_joints},
 };
@@ -158,17 +158,11 @@ impl SimScene {
         if self.arms.iter().all(SimArm::has_rigid_pads) { Ok(()) } else { Err(SimError::Staged) }
     }
 
-    /// Gives an arm the pads of a new grasp of a box, and its grip force, N.
-    pub(super) fn regrip(
-        &mut self,
-        initial: &CheckedPlan<'_>,
-        arm: usize,
-        x_og: &Pose,
-        grip_force_n: f64,
-        conditions: &Conditions,
-    ) {
+    /// Gives an arm the pads of a new grasp of a box, and its grip force.
+    pub(super) fn regrip(&mut self, initial: &CheckedPlan<'_>, grasp: &NewGrasp, conditions: &Conditions) {
+        let NewGrasp { arm, x_og, grip_force_n } = *grasp;
         let checked = &initial.arms()[arm];
-        let hold = ArmHold { x_og: *x_og, grip_force_n, ..checked.hold.clone() };
+        let hold = ArmHold { x_og, grip_force_n, ..checked.hold.clone() };
         let object = conditions.uncertainty.board(&initial.plan().object);
         self.arms[arm].regrip(&mut self.world, initial.robot(), (arm, checked.index, &hold), &object, conditions);
     }

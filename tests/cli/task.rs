@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path, sync::LazyLock};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::{
@@ -40,6 +40,17 @@ fn stages_of(plan: &Value, kind: &str) -> Vec<usize> {
     (0..stages.len()).filter(|&number| stages[number].get(kind).is_some()).map(|number| number + 1).collect()
 }
 
+/// The number of the first stage with a check within a tenth of its limit, or 0.5 mm of a limit of 0.
+fn near_a_limit(verdict: &Value) -> Option<usize> {
+    let is_near = |check: &Value| {
+        let (margin, limit) = (check["margin"].as_f64().unwrap().abs(), check["limit"].as_f64().unwrap());
+        let is_loss = ["contact_lost", "drop"].contains(&check["name"].as_str().unwrap());
+        !is_loss && margin <= if limit == 0.0 { 0.5 } else { 0.1 * limit }
+    };
+    let stages = verdict["stages"].as_array().unwrap();
+    stages.iter().position(|stage| stage["checks"].as_array().unwrap().iter().any(is_near)).map(|stage| stage + 1)
+}
+
 #[test]
 fn all_pieces_of_the_circle_are_served_and_every_stage_holds() {
     let (plan, verdict) = (circle_plan(), json(&circle().join("whole-circle/verdict.json")));
@@ -53,6 +64,7 @@ fn all_pieces_of_the_circle_are_served_and_every_stage_holds() {
         .sum();
     assert_eq!(worked, 16);
     assert_eq!(verdict["stages"].as_array().unwrap().len(), plan["stages"].as_array().unwrap().len());
+    assert_eq!(verdict.get("confirmation").is_some(), near_a_limit(&verdict).is_some());
     // No piece has less than the least comfort that the task asks for.
     let path = fs::read_to_string(circle().join("whole-circle/path.csv")).unwrap();
     let mut rows = csv::Reader::from_reader(path.as_bytes());
@@ -65,6 +77,43 @@ fn a_staged_plan_from_a_file_has_the_verdict_of_the_task() {
     let (verdict, code) = simulated(&circle_plan());
     let first = json(&circle().join("whole-circle/verdict.json"));
     assert_eq!((verdict["fingerprint"].clone(), code), (first["fingerprint"].clone(), Some(0)));
+}
+
+/// The circle's plan under limits that it keeps by far, but for this share of its largest deflection; and the first stage beyond it.
+fn with_deflection_limit(share: f64) -> (Value, Option<usize>) {
+    let (mut plan, verdict) = (circle_plan(), json(&circle().join("whole-circle/verdict.json")));
+    let deflection_mm = |stage: &Value| {
+        let checks = stage["checks"].as_array().unwrap();
+        checks.iter().find(|check| check["name"] == "deflection").unwrap()["value"].as_f64().unwrap()
+    };
+    let deflections_mm: Vec<f64> = verdict["stages"].as_array().unwrap().iter().map(deflection_mm).collect();
+    let most_mm = deflections_mm.iter().copied().fold(0.0, f64::max);
+    let stage = deflections_mm.iter().position(|&mm| mm > share * most_mm).map(|stage| stage + 1);
+    let limits = &mut plan["scenario"]["limits"];
+    (limits["slip_mm"], limits["slip_deg"]) = (10.0.into(), 20.0.into());
+    limits["deflection_mm"] = (share * most_mm).into();
+    (plan, stage)
+}
+
+#[test]
+fn stages_that_are_clear_of_their_limits_are_simulated_once() {
+    let (verdict, code) = simulated(&with_deflection_limit(1.3).0);
+    assert_eq!((&verdict["verdict"], verdict.get("confirmation"), code), (&"holds".into(), None, Some(0)));
+}
+
+/// Deflections of holds at steps of 2 and 1 ms are within 0.5 % of each other.
+#[test]
+fn a_stage_beyond_its_limit_by_little_is_confirmed_at_half_the_step() {
+    let (plan, stage) = with_deflection_limit(0.98);
+    let stage = stage.unwrap();
+    let (verdict, code) = simulated(&plan);
+    let failed = (&verdict["verdict"], &verdict["failed"]["stage"], code);
+    assert_eq!(failed, (&"deflects".into(), &stage.into(), Some(1)));
+    let run = |timestep_s: f64| json!({"timestep_s": timestep_s, "verdict": "deflects", "stage": stage});
+    assert_eq!(verdict["confirmation"]["runs"], json!([run(0.002), run(0.001)]));
+    let because = verdict["confirmation"]["because"].as_str().unwrap();
+    let near = near_a_limit(&verdict).unwrap();
+    assert!(because.starts_with(&format!("stage {near}: deflection ")), "{because}");
 }
 
 #[test]

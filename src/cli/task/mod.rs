@@ -134,8 +134,8 @@ fn judged(
     let StagedRun { verdict, simulated } = run_staged(scenario, robot, plan, states, progress)?;
     progress.finish();
     let recording = match &simulated {
-        Some((trace, judgements)) if record => {
-            let pieces = &states.pieces[..];
+        Some((trace, judgement)) if record => {
+            let (pieces, judgements) = (&states.pieces[..], &judgement.stages[..]);
             let verdict = &verdict;
             recording::encode_task(&TaskRecording { scenario, robot, plan, pieces, verdict, trace, judgements })?
         }

@@ -3,14 +3,15 @@
 use super::super::{exit::CliError, progress::Progress, versions::versions};
 use crate::{
     check::{CheckedPlan, StagedStates, initial_plan},
-    judge::{StageJudgement, fingerprint, judge_staged},
+    judge::{Judgement, StageJudgement, StagedJudgement, confirmed_staged, fingerprint, judge_staged},
     model::{
+        measures::EventKind,
         scenario::Scenario,
         staged_plan::{STAGED_FORMAT, StagedPlan, WorkedPiece},
         staged_trace::StagedTrace,
         staged_verdict::{FailedStage, PersonOverTask, StageVerdict, StagedVerdict},
         task::Task,
-        verdict::{Failure, VerdictKind},
+        verdict::VerdictKind,
     },
     robot::Robot,
     sim::{self, Conditions},
@@ -20,12 +21,12 @@ use crate::{
 pub struct StagedRun {
     /// The verdict.
     pub verdict: StagedVerdict,
-    /// Trace and judgements; `None` if nothing was simulated.
-    pub simulated: Option<(StagedTrace, Vec<StageJudgement>)>,
+    /// Trace and judgement; `None` if nothing was simulated.
+    pub simulated: Option<(StagedTrace, StagedJudgement)>,
 }
 
-/// Simulates and judges a staged plan. A plan whose bodies meet at a piece, or whose person would not stand or see so, is not
-/// simulated.
+/// Simulates and judges a staged plan; the verdict is confirmed at shorter time steps if a stage is near to a limit. A plan whose
+/// bodies meet at a piece, or whose person would not stand or see so, is not simulated.
 ///
 /// # Errors
 /// If the simulation cannot be set up from the plan, and after a stop.
@@ -46,19 +47,24 @@ pub fn run_staged(
         if let Some((verdict, reason)) = refused(checked, scenario) {
             let reason = format!("piece {} of the hold: {reason}", piece.number + 1);
             let failed = FailedStage { stage: piece.stage + 1, kind: "hold".into(), first_failure: None, reason };
-            return Ok(StagedRun { verdict: with_failure(empty, verdict, failed), simulated: None });
+            return Ok(StagedRun { verdict: with_kind(empty, verdict, Some(failed)), simulated: None });
         }
     }
     progress.does("simulating");
     // The board as it is held at the start; a plan of a piece for its operation alone.
     let initial = initial_plan(plan).ok_or(CliError::Simulation(sim::SimError::Engine))?;
     let initial = CheckedPlan::new(robot, &initial, &scenario.human, &scenario.tool)?;
-    let conditions = Conditions::of(scenario);
-    let trace =
-        sim::simulate_staged(plan, states, &initial, &pieces, &conditions, progress).map_err(CliError::Simulation)?;
-    let judgements = judge_staged(&trace, plan, &scenario.limits);
-    let verdict = verdict(empty, plan, &trace, &judgements);
-    Ok(StagedRun { verdict, simulated: Some((trace, judgements)) })
+    let run = |timestep_s: f64| {
+        let mut conditions = Conditions::of(scenario);
+        conditions.settings.timestep_s = timestep_s;
+        let trace = sim::simulate_staged(plan, states, &initial, &pieces, &conditions, progress)
+            .map_err(CliError::Simulation)?;
+        let judgement = judge_staged(&trace, plan, &scenario.limits);
+        Ok::<_, CliError>((trace, judgement))
+    };
+    let (trace, judgement) = confirmed_staged(scenario.simulation.timestep_s, run)?;
+    let verdict = verdict(empty, plan, &trace, &judgement);
+    Ok(StagedRun { verdict, simulated: Some((trace, judgement)) })
 }
 
 /// Why a piece is not simulated.
@@ -75,6 +81,7 @@ fn empty_verdict(scenario: &Scenario, plan: &StagedPlan) -> StagedVerdict {
         expected: scenario.expect.verdict,
         met: false,
         failed: None,
+        confirmation: None,
         stages: Vec::new(),
         regrasps: plan.regrasps(),
         moves: plan.moves(),
@@ -86,21 +93,17 @@ fn empty_verdict(scenario: &Scenario, plan: &StagedPlan) -> StagedVerdict {
     }
 }
 
-fn with_failure(verdict: StagedVerdict, kind: VerdictKind, failed: FailedStage) -> StagedVerdict {
+/// A verdict of this kind.
+fn with_kind(verdict: StagedVerdict, kind: VerdictKind, failed: Option<FailedStage>) -> StagedVerdict {
     let met = kind == verdict.expected && kind != VerdictKind::NoVerdict;
-    StagedVerdict { verdict: kind, met, failed: Some(failed), ..verdict }
+    StagedVerdict { verdict: kind, met, failed, ..verdict }
 }
 
-fn verdict(
-    empty: StagedVerdict,
-    plan: &StagedPlan,
-    trace: &StagedTrace,
-    judgements: &[StageJudgement],
-) -> StagedVerdict {
+fn verdict(empty: StagedVerdict, plan: &StagedPlan, trace: &StagedTrace, judged: &StagedJudgement) -> StagedVerdict {
     let samples = &trace.trace.samples;
     let time_s = |sample: usize| samples.get(sample).map_or(0.0, |sample| sample.time_s);
     let kind = |stage: usize| plan.stages[stage].name().to_owned();
-    let stages = judgements.iter().map(|StageJudgement { span, judgement }| StageVerdict {
+    let stages = judged.stages.iter().map(|StageJudgement { span, judgement }| StageVerdict {
         stage: span.stage + 1,
         kind: kind(span.stage),
         from_s: time_s(span.first),
@@ -110,37 +113,28 @@ fn verdict(
         self_checks: judgement.self_checks.clone(),
     });
     let whole = StagedVerdict {
+        confirmation: judged.confirmation.clone(),
         stages: stages.collect(),
         duration_s: samples.last().map_or(0.0, |sample| sample.time_s),
         fingerprint: fingerprint(&trace.trace),
         ..empty
     };
-    let complete = judgements.len() == plan.stages.len();
-    match judgements.last() {
-        Some(last) if last.judgement.verdict != VerdictKind::Holds || !complete => {
-            let StageJudgement { span, judgement } = last;
-            let reason = reason(judgement.first_failure.as_ref(), judgement);
-            let first_failure = judgement.first_failure.clone();
-            let failed = FailedStage { stage: span.stage + 1, kind: kind(span.stage), first_failure, reason };
-            let found = if complete || judgement.verdict != VerdictKind::Holds {
-                judgement.verdict
-            } else {
-                VerdictKind::NoVerdict
-            };
-            with_failure(whole, found, failed)
-        }
-        Some(_) => StagedVerdict { met: whole.expected == VerdictKind::Holds, verdict: VerdictKind::Holds, ..whole },
-        None => whole,
-    }
+    let failed = judged.failed().map(|StageJudgement { span, judgement }| FailedStage {
+        stage: span.stage + 1,
+        kind: kind(span.stage),
+        first_failure: judgement.first_failure.clone(),
+        reason: reason(judgement),
+    });
+    with_kind(whole, judged.verdict(), failed)
 }
 
 /// The first failure of a stage in words.
-fn reason(failure: Option<&Failure>, judgement: &crate::judge::Judgement) -> String {
-    let crossed = failure.and_then(|failure| {
-        let is_it = |kind| kind == crate::model::measures::EventKind::LimitCrossed(failure.check);
+fn reason(judgement: &Judgement) -> String {
+    let crossed = judgement.first_failure.as_ref().and_then(|failure| {
+        let is_it = |kind| kind == EventKind::LimitCrossed(failure.check);
         judgement.events.iter().find(|event| is_it(event.kind)).map(|event| event.text.clone())
     });
-    crossed.or_else(|| judgement.reason.clone()).unwrap_or_else(|| "the simulation ended early".into())
+    crossed.or_else(|| judgement.reason.clone()).unwrap_or_default()
 }
 
 /// The person over the pieces of a plan; `None` unless all of them have comfort and muscles.

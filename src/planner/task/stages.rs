@@ -18,6 +18,7 @@ use super::{
 use crate::{
     collision::{PersonPart, Scene},
     model::{
+        frames::Pose,
         plan::{Plan, PlannerRecord},
         scenario::PlannerSettings,
         staged_plan::{
@@ -211,10 +212,7 @@ impl Builder<'_, '_, '_> {
     }
 
     /// What the person does while links and board are at these poses: they stay if nothing comes near them.
-    fn person_during<'g>(
-        &self,
-        mut poses: impl Iterator<Item = (Vec<crate::model::frames::Pose>, &'g BoardGrasp)>,
-    ) -> PersonDuring {
+    fn person_during<'g>(&self, mut poses: impl Iterator<Item = (Vec<Pose>, &'g BoardGrasp)>) -> PersonDuring {
         let Some((piece, posture)) = self.last else { return PersonDuring::StepsBack };
         let problem = self.transitions.problem.of_piece(piece);
         let person = problem.human.capsules_w(&posture.x_wb, &posture.q_h_rad).map(PersonPart::from);

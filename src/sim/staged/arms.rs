@@ -8,6 +8,7 @@ use crate::{
     model::{
         frames::Pose,
         plan::{ArmHold, PlacedObject, Plan},
+        staged_plan::MoveStage,
     },
     robot::{Chain, Robot},
     statics::{ContactModel, HandModel, StabilityWorkspace},
@@ -64,13 +65,14 @@ impl<'a> CarriedBy<'a> {
     }
 
     /// The arms along a motion of the board, and the board's poses at the same times.
-    pub fn along(&self, from: &Holding, time_s: &[f64], paths: &[&[Vec<f64>]]) -> (Vec<ArmSegment>, Vec<Pose>) {
+    pub fn along(&self, from: &Holding, motion: &MoveStage) -> (Vec<ArmSegment>, Vec<Pose>) {
+        let time_s = &motion.time_s;
         let at = |row: usize| {
             let arms: Vec<_> = from
                 .arms
                 .iter()
-                .zip(paths)
-                .map(|(hold, path)| ArmHold { q_rad: path[row].clone(), ..hold.clone() })
+                .zip(&motion.arms)
+                .map(|(hold, path)| ArmHold { q_rad: path.q_rad[row].clone(), ..hold.clone() })
                 .collect();
             let first = arms.first().zip(self.chains.first());
             let x_wo = first.map_or(from.x_wo, |(hold, chain)| chain.gripper_pose(&hold.q_rad) * hold.x_og.inverse());
@@ -91,16 +93,17 @@ impl<'a> CarriedBy<'a> {
             let whole_s = time_s[marks[next]] - time_s[marks[last]];
             let share = if whole_s > 0.0 { (time_s[row] - time_s[marks[last]]) / whole_s } else { 1.0 };
             let between = torques[last][arm].iter().zip(&torques[next][arm]);
+            let q_rad = &motion.arms[arm].q_rad[row];
             Knot {
                 time_s: time_s[row],
-                q_rad: paths[arm][row].clone(),
-                arm_nm: self.arm_nm(arm, &paths[arm][row]),
+                q_rad: q_rad.clone(),
+                arm_nm: self.arm_nm(arm, q_rad),
                 board_nm: between.map(|(a, b)| a + share * (b - a)).collect(),
             }
         };
         let arm =
             |arm: usize| ArmSegment { knots: (0..time_s.len()).map(|row| knot(arm, row)).collect(), grip: [1.0; 2] };
-        ((0..paths.len()).map(arm).collect(), rows.iter().map(|row| row.x_wo).collect())
+        ((0..motion.arms.len()).map(arm).collect(), rows.iter().map(|row| row.x_wo).collect())
     }
 
     /// An arm along a path without the board.

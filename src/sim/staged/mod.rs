@@ -7,7 +7,7 @@ mod timeline;
 
 use nalgebra::Vector3;
 
-use super::{Conditions, SimError, SimScene, blank_sample, distance_monitor::DistanceMonitor, empty_trace};
+use super::{Conditions, LOST_AFTER_S, SimError, SimScene, distance_monitor::DistanceMonitor, empty_trace};
 use crate::{
     check::{CheckedPlan, StagedStates},
     collision::PersonPart,
@@ -19,7 +19,7 @@ use crate::{
     },
 };
 use arms::CarriedBy;
-pub(super) use segment::ArmCommand;
+pub(super) use segment::{ArmCommand, NewGrasp};
 use timeline::{Command, Timeline};
 
 /// Simulates a staged plan from its first stage to the end of its last. `initial` is a checked plan of the board as it is held at the
@@ -44,42 +44,43 @@ pub fn simulate_staged(
     let timeline = Timeline::new(plan, &states.holdings, &carried, &conditions.settings);
     let mut distances = Distances::new(plan, initial, pieces, conditions);
     let mut trace = empty_trace(initial, conditions, timeline.steps() + 1);
-    trace.samples.truncate(1);
     let mut x_wo_planned = vec![initial.plan().object.x_wo];
     let mut spans: Vec<StageSpan> = Vec::new();
     scene.observe(&mut trace.samples[0]);
+    let timestep_s = conditions.settings.timestep_s;
     let mut untouched_s = 0.0;
-    for step in 1..=timeline.steps() {
+    for (step, command) in (1..).zip(timeline.commands()) {
         if stop.is_stopped() {
             return Err(SimError::Stopped);
         }
-        let Some(command) = timeline.at(step) else { break };
         scene.command(&command.arms);
-        if let Some((arm, x_og, grip_force_n)) = command.regrips {
-            scene.regrip(initial, arm, &x_og, grip_force_n, conditions);
+        if let Some(grasp) = &command.regrips {
+            scene.regrip(initial, grasp, conditions);
         }
         scene.step_under(command.tool);
-        let time_s = step as f64 * timeline.timestep_s();
+        let time_s = step as f64 * timestep_s;
         if let Some(reason) = scene.breakdown() {
+            trace.samples.truncate(step);
             trace.broke_down = Some(format!("at {time_s:.3} s {reason}"));
             break;
         }
-        let mut sample = blank_sample(initial);
+        distances.place_person(&command, &mut trace);
+        let sample = &mut trace.samples[step];
         (sample.time_s, sample.phase) = (time_s, command.phase);
-        scene.observe(&mut sample);
-        distances.observe(step, &command, &mut sample, &mut trace);
-        untouched_s = if sample.has_contact() { 0.0 } else { untouched_s + timeline.timestep_s() };
-        trace.samples.push(sample);
+        scene.observe(sample);
+        distances.monitor.observe(step, sample);
+        untouched_s = if sample.has_contact() { 0.0 } else { untouched_s + timestep_s };
         x_wo_planned.push(command.x_wo);
         match spans.last_mut().filter(|span| span.stage == command.stage) {
             Some(span) => span.last = step,
             None => spans.push(StageSpan { stage: command.stage, first: if step == 1 { 0 } else { step }, last: step }),
         }
-        if untouched_s > super::LOST_AFTER_S {
+        if untouched_s > LOST_AFTER_S {
+            trace.samples.truncate(step + 1);
             break;
         }
     }
-    distances.finish(&mut trace);
+    distances.monitor.enter(&mut trace);
     Ok(StagedTrace { trace, spans, x_wo_planned, pieces: distances.pieces })
 }
 
@@ -89,8 +90,8 @@ struct Distances<'a> {
     monitor: DistanceMonitor<'a>,
     /// The person at every piece.
     people: Vec<Vec<PersonPart>>,
-    /// Where the person is now: the piece, and whether they have stepped back.
-    now: Option<(usize, bool)>,
+    /// The piece where the person is, and what they do.
+    now: Option<(usize, PersonDuring)>,
     /// The piece of every sample.
     pieces: Vec<usize>,
 }
@@ -106,30 +107,26 @@ impl<'a> Distances<'a> {
         Self { plan, monitor: DistanceMonitor::of(initial, conditions), people, now: None, pieces: vec![0] }
     }
 
-    fn observe(&mut self, step: usize, command: &Command, sample: &mut crate::model::trace::Sample, trace: &mut Trace) {
-        let during = match &self.plan.stages[command.stage] {
-            Stage::Hold(_) => PersonDuring::Stays,
-            Stage::Move(motion) => motion.person,
-            Stage::Regrasp(regrasp) => regrasp.person,
-        };
+    /// The person where they are during a step.
+    fn place_person(&mut self, command: &Command, trace: &mut Trace) {
+        let stage = &self.plan.stages[command.stage];
         // Between the pieces the person is where they worked last.
-        let worked = matches!(self.plan.stages[command.stage], Stage::Hold(_));
+        let worked = matches!(stage, Stage::Hold(_));
         let last = if worked { command.piece } else { command.piece.saturating_sub(1) };
         let piece = last.min(self.people.len().saturating_sub(1));
-        let now = (piece, during == PersonDuring::StepsBack);
-        if self.now != Some(now) {
-            let parts = self.people.get(piece).map_or(&[][..], Vec::as_slice);
-            let back_w = if now.1 { step_back_w(parts) } else { Vector3::zeros() };
-            let parts: Vec<_> = parts.iter().map(|part| part.moved(&back_w)).collect();
-            self.monitor.replace_person(&parts, trace);
-            self.now = Some(now);
-        }
         self.pieces.push(piece);
-        self.monitor.observe(step, sample);
-    }
-
-    fn finish(&self, trace: &mut Trace) {
-        self.monitor.enter(trace);
+        let now = Some((piece, stage.person()));
+        if self.now == now {
+            return;
+        }
+        self.now = now;
+        let parts = self.people.get(piece).map_or(&[][..], Vec::as_slice);
+        let moved_w = match stage.person() {
+            PersonDuring::Stays => Vector3::zeros(),
+            PersonDuring::StepsBack => step_back_w(parts),
+        };
+        let parts: Vec<_> = parts.iter().map(|part| part.moved(&moved_w)).collect();
+        self.monitor.replace_person(&parts, trace);
     }
 }
 

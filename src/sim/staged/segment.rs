@@ -1,5 +1,18 @@
 //! What one arm does in a part of a stage.
 
+use crate::model::frames::Pose;
+
+/// A grasp by which an arm grips the board again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewGrasp {
+    /// The number of the arm in the plan.
+    pub arm: usize,
+    /// X_OG.
+    pub x_og: Pose,
+    /// The force with which each finger closes, N.
+    pub grip_force_n: f64,
+}
+
 /// What an arm does at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmCommand {

@@ -8,14 +8,15 @@ use nalgebra::Vector3;
 use super::{
     super::{phases::grip_steps, tool_load::ToolState},
     arms::CarriedBy,
-    segment::{ArmCommand, ArmSegment, Knot},
+    segment::{ArmCommand, ArmSegment, Knot, NewGrasp},
 };
 use crate::{
     check::Holding,
     model::{
         frames::Pose,
+        plan::ArmHold,
         scenario::SimulationSettings,
-        staged_plan::{HoldStage, Stage, StagedPlan},
+        staged_plan::{HoldStage, MoveStage, RegraspStage, Stage, StagedPlan},
         task::Task,
         tool_path::Piece,
         trace::Phase,
@@ -63,8 +64,18 @@ pub struct Command {
     pub tool: ToolState,
     /// The planned pose of the board.
     pub x_wo: Pose,
-    /// The arm that grips the board by a new grasp from this step on, with X_OG and the grip force, N.
-    pub regrips: Option<(usize, Pose, f64)>,
+    /// The grasp by which an arm grips the board from this step on.
+    pub regrips: Option<NewGrasp>,
+}
+
+/// What the tool does in a part of a stage.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    pub stroke: usize,
+    /// The lengths along the stroke from which and to which the tool works, m.
+    pub along_m: [f64; 2],
+    /// The load factor at both ends.
+    pub load_factor: [f64; 2],
 }
 
 /// A part of a stage.
@@ -77,9 +88,8 @@ pub struct Segment {
     pub arms: Vec<ArmSegment>,
     /// The planned poses of the board at the knots of a motion; one if it stays.
     pub x_wo: Vec<Pose>,
-    /// The stroke and the lengths along it, m, from which and to which the tool works, and the load factor at both ends.
-    pub work: Option<(usize, [f64; 2], [f64; 2])>,
-    pub regrips: Option<(usize, Pose, f64)>,
+    pub work: Option<Work>,
+    pub regrips: Option<NewGrasp>,
 }
 
 /// All segments of a plan.
@@ -88,10 +98,8 @@ pub struct Timeline<'a> {
     thickness_m: f64,
     rolls_rad: Vec<f64>,
     segments: Vec<Segment>,
-    /// The first step of every segment, counted from 1, and the number of steps.
-    first: Vec<usize>,
-    steps: usize,
-    timestep_s: f64,
+    /// The number of steps of every segment.
+    steps: Vec<usize>,
 }
 
 impl<'a> Timeline<'a> {
@@ -112,62 +120,54 @@ impl<'a> Timeline<'a> {
             }
             match stage {
                 Stage::Hold(hold) => builder.hold(number, holding, hold),
-                Stage::Move(motion) => {
-                    let paths: Vec<_> = motion.arms.iter().map(|path| &path.q_rad[..]).collect();
-                    builder.motion(number, holding, &motion.time_s, &paths);
-                }
+                Stage::Move(motion) => builder.motion(number, holding, motion),
                 Stage::Regrasp(regrasp) => builder.regrasp(number, [holding, &holdings[number + 1]], regrasp),
             }
         }
         let segments = builder.segments;
-        let timestep_s = settings.timestep_s;
-        let mut first = Vec::with_capacity(segments.len());
-        let mut steps = 0;
-        for segment in &segments {
-            first.push(steps + 1);
-            steps += ((segment.duration_s / timestep_s).round() as usize).max(1);
-        }
+        let steps = |segment: &Segment| ((segment.duration_s / settings.timestep_s).round() as usize).max(1);
+        let steps = segments.iter().map(steps).collect();
         let rolls_rad = plan.worked_pieces().map(|(_, worked)| worked.roll_rad.unwrap_or(0.0)).collect();
-        Self { task: &plan.task, thickness_m: plan.object.size_m[2], rolls_rad, segments, first, steps, timestep_s }
+        Self { task: &plan.task, thickness_m: plan.object.size_m[2], rolls_rad, segments, steps }
     }
 
     /// The number of steps.
     pub fn steps(&self) -> usize {
-        self.steps
+        self.steps.iter().sum()
     }
 
-    /// What happens in a step, from 1.
-    pub fn at(&self, step: usize) -> Option<Command> {
-        let number = self.first.partition_point(|&first| first <= step).checked_sub(1)?;
-        let segment = self.segments.get(number)?;
-        let end = self.first.get(number + 1).copied().unwrap_or(self.steps + 1);
-        let done = step + 1 - self.first[number];
-        let share = done as f64 / (end - self.first[number]) as f64;
-        let time_s = share * segment.duration_s;
-        let arms = segment.arms.iter().map(|arm| arm.at(time_s, share)).collect();
-        Some(Command {
-            stage: segment.stage,
-            piece: segment.piece,
-            phase: segment.phase,
-            arms,
-            tool: self.tool(segment, share),
-            x_wo: board_at(segment, time_s),
-            regrips: segment.regrips.filter(|_| done == 1),
+    /// What happens in each step.
+    pub fn commands(&self) -> impl Iterator<Item = Command> {
+        self.segments.iter().zip(&self.steps).flat_map(move |(segment, &steps)| {
+            (1..=steps).map(move |step| Command {
+                regrips: segment.regrips.filter(|_| step == 1),
+                ..self.command(segment, step as f64 / steps as f64)
+            })
         })
     }
 
-    /// The time of the first step, s.
-    pub fn timestep_s(&self) -> f64 {
-        self.timestep_s
+    /// What happens after a share of a segment.
+    fn command(&self, segment: &Segment, share: f64) -> Command {
+        let time_s = share * segment.duration_s;
+        Command {
+            stage: segment.stage,
+            piece: segment.piece,
+            phase: segment.phase,
+            arms: segment.arms.iter().map(|arm| arm.at(time_s, share)).collect(),
+            tool: self.tool(segment, share),
+            x_wo: board_at(segment, time_s),
+            regrips: None,
+        }
     }
 
     fn tool(&self, segment: &Segment, share: f64) -> ToolState {
         let none = ToolState { load_factor: 0.0, wrench_o: Wrench::default(), p_ot_m: Vector3::zeros() };
-        let Some((stroke, [from_m, to_m], [low, high])) = segment.work else { return none };
-        let along_m = from_m + share * (to_m - from_m);
-        let Some(operation) = self.task.operation_at(stroke, along_m, self.thickness_m) else { return none };
+        let Some(work) = segment.work else { return none };
+        let at_share = |[from, to]: [f64; 2]| from + share * (to - from);
+        let along_m = at_share(work.along_m);
+        let Some(operation) = self.task.operation_at(work.stroke, along_m, self.thickness_m) else { return none };
         let operation = operation.rolled(self.rolls_rad.get(segment.piece).copied().unwrap_or(0.0));
-        let load_factor = low + share * (high - low);
+        let load_factor = at_share(work.load_factor);
         let wrench_o = operation.wrench_o.scaled(load_factor);
         ToolState { load_factor, wrench_o, p_ot_m: operation.x_ot.translation.vector }
     }
@@ -200,7 +200,7 @@ struct Builder<'b, 'a> {
 impl Builder<'_, '_> {
     /// All arms as they hold the board, for a time; torques go from one distribution to another.
     fn resting(&self, holding: &Holding, duration_s: f64, from: &[Vec<f64>], to: &[Vec<f64>]) -> Vec<ArmSegment> {
-        let arm = |(number, hold): (usize, &crate::model::plan::ArmHold)| {
+        let arm = |(number, hold): (usize, &ArmHold)| {
             let arm_nm = self.carried.arm_nm(number, &hold.q_rad);
             let knot = |time_s: f64, board_nm: &Vec<f64>| Knot {
                 time_s,
@@ -213,9 +213,19 @@ impl Builder<'_, '_> {
         holding.arms.iter().enumerate().map(arm).collect()
     }
 
-    fn push(&mut self, stage: usize, phase: Phase, duration_s: f64, arms: Vec<ArmSegment>, x_wo: Vec<Pose>) {
+    /// Adds a segment in which no tool works.
+    fn push(
+        &mut self,
+        stage: usize,
+        phase: Phase,
+        duration_s: f64,
+        arms: Vec<ArmSegment>,
+        x_wo: Vec<Pose>,
+    ) -> &mut Segment {
         let piece = self.piece;
+        let number = self.segments.len();
         self.segments.push(Segment { stage, piece, phase, duration_s, arms, x_wo, work: None, regrips: None });
+        &mut self.segments[number]
     }
 
     fn still(&mut self, phase: Phase, stage: usize, holding: &Holding, duration_s: f64) {
@@ -257,29 +267,22 @@ impl Builder<'_, '_> {
         }
         parts.push((Phase::Release, LIFTED_S, [end_m; 2], [0.0; 2], pieces.len() - 1));
         let first_piece = self.piece;
-        for (phase, duration_s, along_m, load, number) in parts {
+        for (phase, duration_s, along_m, load_factor, number) in parts {
             self.piece = first_piece + number;
             let arms = self.resting(holding, duration_s, board_nm, board_nm);
-            self.push(stage, phase, duration_s, arms, vec![holding.x_wo]);
-            if let Some(segment) = self.segments.last_mut() {
-                segment.work = Some((stroke, along_m, load));
-            }
+            let segment = self.push(stage, phase, duration_s, arms, vec![holding.x_wo]);
+            segment.work = Some(Work { stroke, along_m, load_factor });
         }
         self.piece = first_piece + pieces.len();
     }
 
-    fn motion(&mut self, stage: usize, holding: &Holding, time_s: &[f64], paths: &[&[Vec<f64>]]) {
-        let (arms, x_wo) = self.carried.along(holding, time_s, paths);
-        let duration_s = time_s.last().copied().unwrap_or(0.0);
+    fn motion(&mut self, stage: usize, holding: &Holding, motion: &MoveStage) {
+        let (arms, x_wo) = self.carried.along(holding, motion);
+        let duration_s = motion.time_s.last().copied().unwrap_or(0.0);
         self.push(stage, Phase::Move, duration_s, arms, x_wo);
     }
 
-    fn regrasp(
-        &mut self,
-        stage: usize,
-        [before, after]: [&Holding; 2],
-        regrasp: &crate::model::staged_plan::RegraspStage,
-    ) {
+    fn regrasp(&mut self, stage: usize, [before, after]: [&Holding; 2], regrasp: &RegraspStage) {
         let Some(arm) = before.arms.iter().position(|hold| hold.name == regrasp.arm.name) else { return };
         let shared_nm = self.carried.board_nm(before, None);
         let alone_nm = self.carried.board_nm(before, Some(arm));
@@ -297,10 +300,9 @@ impl Builder<'_, '_> {
         arms[arm] = self.carried.free_path(arm, &regrasp.time_s, &regrasp.arm.q_rad);
         arms[arm].grip = [OPEN_SHARE; 2];
         self.push(stage, Phase::Regrasp, duration_s, arms, x_wo.clone());
-        let closing = self.segments.len();
         with_grip(self, after, CLOSE_S, [&alone_nm, &alone_nm], [CLOSE_SHARE; 2]);
-        if let Some(segment) = self.segments.get_mut(closing) {
-            segment.regrips = Some((arm, regrasp.x_og, regrasp.grip_force_n));
+        if let Some(closing) = self.segments.last_mut() {
+            closing.regrips = Some(NewGrasp { arm, x_og: regrasp.x_og, grip_force_n: regrasp.grip_force_n });
         }
         with_grip(self, after, GRIP_S, [&alone_nm, &alone_nm], [CLOSE_SHARE, 1.0]);
         with_grip(self, after, SHIFT_S, [&alone_nm, &then_nm], [1.0; 2]);
