@@ -13,7 +13,7 @@ use crate::{
         muscle_work::MuscleBelly,
         operation::OperationKind,
         scenario::Scenario,
-        staged_plan::{PersonDuring, Stage},
+        staged_plan::PersonDuring,
         staged_verdict::StagedVerdict,
         trace::Trace,
         verdict::{Check, Verdict},
@@ -123,11 +123,7 @@ fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, CliError>
     let mut people = Vec::new();
     let mut now = None;
     for span in &trace.spans {
-        let steps_back = match &plan.stages[span.stage] {
-            Stage::Hold(_) => false,
-            Stage::Move(motion) => motion.person == PersonDuring::StepsBack,
-            Stage::Regrasp(regrasp) => regrasp.person == PersonDuring::StepsBack,
-        };
+        let steps_back = plan.stages[span.stage].person() == PersonDuring::StepsBack;
         for sample in span.first..=span.last {
             let next = Some((trace.pieces[sample], steps_back));
             if now == next {

@@ -11,8 +11,9 @@ use super::{Conditions, SimError, SimScene, blank_sample, distance_monitor::Dist
 use crate::{
     check::{CheckedPlan, StagedStates},
     collision::PersonPart,
+    human::place,
     model::{
-        staged_plan::{PersonDuring, STEP_BACK_M, Stage, StagedPlan},
+        staged_plan::{PersonDuring, Stage, StagedPlan},
         staged_trace::{StageSpan, StagedTrace},
         stop::Stop,
         trace::Trace,
@@ -107,11 +108,7 @@ impl<'a> Distances<'a> {
     }
 
     fn observe(&mut self, step: usize, command: &Command, sample: &mut crate::model::trace::Sample, trace: &mut Trace) {
-        let during = match &self.plan.stages[command.stage] {
-            Stage::Hold(_) => PersonDuring::Stays,
-            Stage::Move(motion) => motion.person,
-            Stage::Regrasp(regrasp) => regrasp.person,
-        };
+        let during = self.plan.stages[command.stage].person();
         // Between the pieces the person is where they worked last.
         let worked = matches!(self.plan.stages[command.stage], Stage::Hold(_));
         let last = if worked { command.piece } else { command.piece.saturating_sub(1) };
@@ -133,11 +130,9 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// How a person steps back, W, m: by [`STEP_BACK_M`] in the horizontal direction from the work to the person, from the tool's tip, the
-/// last part, to the head, the first.
+/// How a person steps back, W, m, from the tool's tip, the last part, with the head, the first.
 #[must_use]
 pub fn step_back_w(parts: &[PersonPart]) -> Vector3<f64> {
     let (Some(head), Some(tool)) = (parts.first(), parts.last()) else { return Vector3::zeros() };
-    let away = head.p0_w - tool.p1_w;
-    Vector3::new(away.x, away.y, 0.0).try_normalize(1e-6).unwrap_or_default() * STEP_BACK_M
+    place::step_back_w(&head.p0_w, &tool.p1_w)
 }

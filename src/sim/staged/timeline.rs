@@ -10,17 +10,14 @@ use super::{
     arms::CarriedBy,
     segment::{ArmCommand, ArmSegment, Knot},
 };
-use crate::{
-    check::Holding,
-    model::{
-        frames::Pose,
-        scenario::SimulationSettings,
-        staged_plan::{HoldStage, Stage, StagedPlan},
-        task::Task,
-        tool_path::Piece,
-        trace::Phase,
-        wrench::Wrench,
-    },
+use crate::model::{
+    frames::Pose,
+    scenario::SimulationSettings,
+    staged_plan::{HoldStage, Holding, Stage, StagedPlan},
+    task::Task,
+    tool_path::Piece,
+    trace::Phase,
+    wrench::Wrench,
 };
 
 /// Time for which the arms hold the board still before a tool works on it, s: their swing after a motion has died away.
