@@ -24,6 +24,7 @@ pub mod plans;
 mod plot;
 pub mod posture;
 pub(crate) mod projection;
+pub mod stages;
 pub mod summary;
 pub mod sweep;
 pub mod task;
