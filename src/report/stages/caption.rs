@@ -42,9 +42,11 @@ fn caption(input: &JudgedPlan<'_>, number: usize, scene: &StageScene) -> Caption
         Stage::Regrasp(regrasp) => regrasped(&regrasp.arm.name, scene),
     }];
     if !matches!(stage, Stage::Hold(_)) && input.has_person() {
-        lines.push(match stage.person() {
-            PersonDuring::Stays => "person stays".to_owned(),
-            PersonDuring::StepsBack => format!("person steps back {STEP_BACK_M} m"),
+        lines.push(match (stage.person(), input.is_back_before(number)) {
+            (PersonDuring::Stays, false) => "person stays".to_owned(),
+            (PersonDuring::Stays, true) => "person comes forward".to_owned(),
+            (PersonDuring::StepsBack, false) => format!("person steps back {STEP_BACK_M} m"),
+            (PersonDuring::StepsBack, true) => "person stays a step back".to_owned(),
         });
     }
     lines.extend(judged.map(|judged| format!("{:.1} to {:.1} s", judged.from_s, judged.to_s)));

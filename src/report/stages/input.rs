@@ -3,7 +3,7 @@
 use crate::{
     model::{
         scenario::Scenario,
-        staged_plan::{Holding, StagedPlan},
+        staged_plan::{Holding, PersonDuring, StagedPlan},
         staged_verdict::StagedVerdict,
     },
     robot::Robot,
@@ -29,5 +29,12 @@ impl JudgedPlan<'_> {
     #[must_use]
     pub fn has_person(&self) -> bool {
         self.plan.worked_pieces().any(|(_, worked)| worked.human.is_some())
+    }
+
+    /// True if the person is a step back before the stage of this number, from 0.
+    #[must_use]
+    pub fn is_back_before(&self, number: usize) -> bool {
+        let before = number.checked_sub(1).and_then(|before| self.plan.stages.get(before));
+        before.is_some_and(|before| before.person() == PersonDuring::StepsBack)
     }
 }

@@ -92,7 +92,7 @@ impl StageScene {
         trail.iter().map(|[x, y]| self.x_wo * Point3::new(*x, *y, thickness_m / 2.0)).collect()
     }
 
-    /// Adds the person with the tool where they are in the stage, and where they have worked before a step back.
+    /// Adds the person with the tool where they are in the stage, and where they have worked if they step back in it.
     fn add_person(&mut self, input: &JudgedPlan<'_>, number: usize) -> Result<(), HumanError> {
         let Some(posture) = posture(input.plan, number) else { return Ok(()) };
         let human = Human::new(&posture.person(&input.scenario.human), &input.scenario.tool)?;
@@ -105,8 +105,10 @@ impl StageScene {
             let [head_w, tip_w] = [capsules[0].p0_w, capsules[capsules.len() - 1].p1_w];
             let step_w = step_back_w(&head_w, &tip_w);
             let back = Isometry3::from_parts(step_w.into(), UnitQuaternion::identity());
-            self.step_w = vec![head_w, head_w + step_w];
-            self.ghosts.extend(person(input.plan, &human, posture, &posture.x_wb));
+            if !input.is_back_before(number) {
+                self.step_w = vec![head_w, head_w + step_w];
+                self.ghosts.extend(person(input.plan, &human, posture, &posture.x_wb));
+            }
             self.items.extend(person(input.plan, &human, posture, &(back * posture.x_wb)));
         } else {
             self.items.extend(person(input.plan, &human, posture, &posture.x_wb));

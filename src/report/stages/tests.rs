@@ -316,6 +316,22 @@ fn a_person_who_steps_back_is_drawn_at_both_places() {
 }
 
 #[test]
+fn a_person_steps_back_once_for_stages_in_a_row() {
+    let mut judged = judged(true);
+    // Hold, motion, regrasp, hold, hold.
+    judged.plan.stages.swap(2, 3);
+    judged.holdings[3] = judged.holdings[4].clone();
+    let said = |judged: &Judged| captions(&judged.input(), &judged.scenes())[2].lines[1].clone();
+    assert_eq!(said(&judged), "person comes forward");
+    let Stage::Regrasp(regrasp) = &mut judged.plan.stages[2] else { panic!("no regrasp") };
+    regrasp.person = PersonDuring::StepsBack;
+    assert_eq!(said(&judged), "person stays a step back");
+    let scenes = judged.scenes();
+    assert!(scenes[2].step_w.is_empty() && points_of(&scenes[2].ghosts, "person").is_empty());
+    assert_eq!(points_of(&scenes[2].items, "person"), points_of(&scenes[1].items, "person"));
+}
+
+#[test]
 fn everything_is_inside_the_drawing() {
     for with_person in [true, false] {
         let judged = judged(with_person);
