@@ -15,5 +15,5 @@ mod tolerances;
 pub use board::check_plate;
 pub use checked_plan::{CheckedArm, CheckedPerson, CheckedPlan, Contact, fingers_across};
 pub use flaw::{Flaw, Flaws, ON_MATERIAL, off_material};
-pub use staged::{Holding, PiecePlan, StagedFlaw, StagedStates, initial_plan};
+pub use staged::{PiecePlan, StagedFlaw, StagedStates, initial_plan};
 pub use tolerances::{BOARD_SIDE_M, EXACT, FIGURE_TOLERANCE, GIVEN, ON_BOARD_M, POSTURE_DEG, POSTURE_M, PoseTolerance};

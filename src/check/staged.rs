@@ -7,7 +7,7 @@ use crate::{
         frames::Pose,
         operation::Operation,
         plan::{ArmHold, PlacedObject, Plan},
-        staged_plan::{ArmPath, HoldStage, MoveStage, RegraspStage, Stage, StagedPlan, WorkedPiece},
+        staged_plan::{ArmPath, HoldStage, Holding, MoveStage, RegraspStage, Stage, StagedPlan, WorkedPiece},
         task::Task,
         tool_path::Stroke,
     },
@@ -16,15 +16,6 @@ use crate::{
 
 /// Rounding of written lengths along the path, m.
 const ROUNDING_M: f64 = 1e-6;
-
-/// How the board is held.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Holding {
-    /// The board's pose.
-    pub x_wo: Pose,
-    /// The arms that hold it.
-    pub arms: Vec<ArmHold>,
-}
 
 /// The plan of a worked piece.
 #[derive(Clone, Debug)]

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use arrayvec::ArrayVec;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 
 use super::Human;
-use crate::model::{frames::Pose, scenario::StandingPlace};
+use crate::model::{frames::Pose, scenario::StandingPlace, staged_plan::STEP_BACK_M};
 
 /// Rounding of a standing pose, m and rad: the grid of responses has points at the ends of the tolerances.
 const ROUNDING: f64 = 1e-9;
@@ -14,6 +14,14 @@ const ROUNDING: f64 = 1e-9;
 /// Margins of a standing pose in a given place: along x_W and y_W, m, and of the heading, rad, two each; none if the place is
 /// free.
 pub type PlaceMargins<T> = ArrayVec<T, 6>;
+
+/// How a person with this centre of the head steps back from the tool's tip, W, m: by [`STEP_BACK_M`] in the horizontal direction
+/// from the tip to the head.
+#[must_use]
+pub fn step_back_w(head_w: &Point3<f64>, tip_w: &Point3<f64>) -> Vector3<f64> {
+    let away = head_w - tip_w;
+    Vector3::new(away.x, away.y, 0.0).try_normalize(1e-6).unwrap_or_default() * STEP_BACK_M
+}
 
 /// A standing pose: place in W, m, and heading, rad from x_W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

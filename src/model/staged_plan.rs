@@ -71,7 +71,7 @@ impl Stage {
         }
     }
 
-    /// What the person does; they stay at the board that is held.
+    /// What the person does; in a hold they work where they stand.
     #[must_use]
     pub fn person(&self) -> PersonDuring {
         match self {
@@ -167,6 +167,15 @@ pub struct RegraspStage {
     pub x_og: Pose,
     /// The force with which each finger closes, N.
     pub grip_force_n: f64,
+}
+
+/// How the board is held between two stages: what follows from a plan by kinematics.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Holding {
+    /// The board's pose.
+    pub x_wo: Pose,
+    /// The arms that hold it.
+    pub arms: Vec<ArmHold>,
 }
 
 impl StagedPlan {

@@ -12,6 +12,7 @@ pub mod curve;
 pub mod file;
 pub mod front;
 pub mod html;
+pub(crate) mod hull;
 pub mod json;
 #[cfg(feature = "cli")]
 pub mod junit;
@@ -22,6 +23,8 @@ mod picture;
 pub mod plans;
 mod plot;
 pub mod posture;
+pub(crate) mod projection;
+pub mod stages;
 pub mod summary;
 pub mod sweep;
 pub mod task;

@@ -7,13 +7,17 @@ use super::{
     csv_text::csv_text,
     html::document,
     plot::{Line, Plot},
+    stages::{self, JudgedPlan},
 };
-use crate::model::{
-    staged_plan::StagedPlan,
-    staged_trace::StagedTrace,
-    staged_verdict::{PersonOverTask, StageVerdict, StagedVerdict},
-    trace::Sample,
-    verdict::{CheckKind, VerdictKind},
+use crate::{
+    human::HumanError,
+    model::{
+        staged_plan::StagedPlan,
+        staged_trace::StagedTrace,
+        staged_verdict::{PersonOverTask, StageVerdict, StagedVerdict},
+        trace::Sample,
+        verdict::{CheckKind, VerdictKind},
+    },
 };
 
 /// The checks in tables of stages.
@@ -126,9 +130,12 @@ fn person_in_words(person: &PersonOverTask) -> String {
     )
 }
 
-/// The report as one page: summary, timeline, comfort along the path and the stages with their checks.
-#[must_use]
-pub fn page(plan: &StagedPlan, verdict: &StagedVerdict, trace: Option<&StagedTrace>) -> String {
+/// The report as one page: summary, timeline, comfort along the path, pictures of the stages and their checks.
+///
+/// # Errors
+/// If the person or the tool is invalid.
+pub fn page(judged: &JudgedPlan<'_>, trace: Option<&StagedTrace>) -> Result<String, HumanError> {
+    let JudgedPlan { plan, verdict, .. } = *judged;
     let body = html! {
         p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Equal runs give equal pages." }
         p { (summary(verdict)) "." }
@@ -140,9 +147,11 @@ pub fn page(plan: &StagedPlan, verdict: &StagedVerdict, trace: Option<&StagedTra
         (path(plan))
         @if let Some(trace) = trace { h2 { "Load and distance" } (plots(trace)) }
         h2 { "Stages" }
-        (stages(verdict))
+        (stages::pictures(judged)?)
+        h2 { "Checks" }
+        (checks(verdict))
     };
-    document(&format!("Benchdog task: {}", verdict.name), STYLE, &body)
+    Ok(document(&format!("Benchdog task: {}", verdict.name), &[STYLE, stages::STYLE].concat(), &body))
 }
 
 /// The colours of the kinds of stages.
@@ -162,9 +171,11 @@ fn timeline(verdict: &StagedVerdict) -> Markup {
     html! {
         svg.stages viewBox={ "0 0 " (WIDTH_PX) " 56" } role="img" aria-label="stages over time" {
             @for stage in &verdict.stages {
-                rect class=(class(stage)) x=(format!("{:.1}", stage.from_s * scale)) y="4" height="30"
-                    width=(format!("{:.1}", ((stage.to_s - stage.from_s) * scale - 1.0).max(0.5))) {
-                    title { "stage " (stage.stage) ", " (stage.kind) ": " (stage.verdict.to_string()) }
+                a href={ "#stage-" (stage.stage) } {
+                    rect class=(class(stage)) x=(format!("{:.1}", stage.from_s * scale)) y="4" height="30"
+                        width=(format!("{:.1}", ((stage.to_s - stage.from_s) * scale - 1.0).max(0.5))) {
+                        title { "stage " (stage.stage) ", " (stage.kind) ": " (stage.verdict.to_string()) }
+                    }
                 }
             }
             text x="0" y="50" { "0 s; holds green, motions blue, regrasps orange, a stage that fails red" }
@@ -216,7 +227,7 @@ fn plots(trace: &StagedTrace) -> Markup {
 }
 
 /// The stages with their checks.
-fn stages(verdict: &StagedVerdict) -> Markup {
+fn checks(verdict: &StagedVerdict) -> Markup {
     html! {
         div.wide {
             table {

@@ -8,7 +8,6 @@
 pub mod claims;
 pub mod csv_files;
 pub mod evaluation;
-mod hull;
 pub mod jobs;
 pub mod markdown;
 pub mod paper;

@@ -1,20 +1,22 @@
 //! A plan as SVG: robot, board, person and tool as convex primitives, seen from the right and from above. The line of sight
 //! is dashed; the view from above also shows the sector in front of the person that the tool tip must be over.
 //!
-//! Both views are parallel projections. Primitives are drawn in the order of their centres, farthest first (painter's
-//! algorithm); overlapping primitives of a link may be drawn in the wrong order.
+//! Overlapping primitives of a link may be drawn in the wrong order, see [`crate::report::projection`].
 
 use std::fmt::Write as _;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
-use super::hull::{Point2, convex_hull};
 use crate::{
     human::{BodyPart, Capsule, Human, HumanError, default_tool},
     model::{
         plan::{Comfort, HumanPosture, Plan},
         scenario::Person,
         tool_part::ToolMaterial,
+    },
+    report::{
+        hull::Point2,
+        projection::{Bounds, Item, Sheet, View},
     },
     robot::Robot,
 };
@@ -48,28 +50,6 @@ const EYE_STROKE: [&str; 2] = ["#ffffff", "#111111"];
 const SIGHT: &str = "fill=\"none\" stroke=\"#17456e\" stroke-width=\"1.3\" stroke-dasharray=\"5 3\"";
 const SECTOR: &str = "fill=\"#7fb2dc\" fill-opacity=\"0.18\" stroke=\"#2f5f8a\" stroke-width=\"0.8\"";
 
-/// A direction of view.
-struct View {
-    name: &'static str,
-    /// Directions in W: to the right, upward, and towards the viewer.
-    axes_w: [Vector3<f64>; 3],
-}
-
-fn views() -> [View; 2] {
-    let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
-    [View { name: "from the robot's right", axes_w: [x, z, -y] }, View { name: "from above", axes_w: [x, y, z] }]
-}
-
-/// A body of the scene, in W.
-enum Item {
-    /// The board: the convex hull of points without holes, whose corners are in its middle plane.
-    Pierced(Vec<Point3<f64>>, Vec<Vec<Point3<f64>>>),
-    /// The convex hull of points, with SVG attributes.
-    Hull(Vec<Point3<f64>>, String),
-    /// A capsule: ends, radius, colours of outline and fill.
-    Capsule([Point3<f64>; 2], f64, [&'static str; 2]),
-}
-
 /// What a picture shows.
 #[derive(Default)]
 struct Scene {
@@ -80,34 +60,24 @@ struct Scene {
     sight_w: Vec<Point3<f64>>,
 }
 
-impl Item {
-    fn centre(&self) -> Vector3<f64> {
-        let points: &[Point3<f64>] = match self {
-            Self::Hull(points, _) | Self::Pierced(points, _) => points,
-            Self::Capsule(ends, ..) => ends,
-        };
-        points.iter().map(|point| point.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64
-    }
-}
-
 /// The picture of a plan, with a title and the scores of the posture.
 ///
 /// # Errors
 /// If the plan's person or tool is invalid.
 pub fn svg(plan: &Plan, robot: &Robot, title: &str) -> Result<String, HumanError> {
     let scene = scene(plan, robot)?;
-    let views = views();
+    let views = [View::from_the_right(), View::from_above()];
     let bounds = views.each_ref().map(|view| bounds(view, &scene));
-    let width_px = |b: &[Point2; 2]| (b[1][0] - b[0][0]) * PX_PER_M + 2.0 * MARGIN_PX;
-    let height_px = |b: &[Point2; 2]| (b[1][1] - b[0][1]) * PX_PER_M + 2.0 * MARGIN_PX;
+    let width_px = |b: &Bounds| b.size_m()[0] * PX_PER_M + 2.0 * MARGIN_PX;
+    let height_px = |b: &Bounds| b.size_m()[1] * PX_PER_M + 2.0 * MARGIN_PX;
     let (width, height) = (bounds.iter().map(width_px).sum::<f64>(), bounds.iter().map(height_px).fold(0.0, f64::max));
     let mut body = String::new();
     let mut left_px = 0.0;
     for (view, bounds) in views.iter().zip(&bounds) {
         // The views are aligned at the lower edge of the picture.
-        let origin =
-            [left_px + MARGIN_PX - bounds[0][0] * PX_PER_M, TITLE_PX + height - MARGIN_PX + bounds[0][1] * PX_PER_M];
-        draw(&mut body, view, origin, &scene, plan);
+        let [[left_m, below_m], _] = bounds.corners_m;
+        let origin_px = [left_px + MARGIN_PX - left_m * PX_PER_M, TITLE_PX + height - MARGIN_PX + below_m * PX_PER_M];
+        draw(&mut body, &Sheet { view, origin_px, px_per_m: PX_PER_M }, &scene, plan);
         let _ = writeln!(body, "<text x=\"{:.0}\" y=\"62\" fill=\"#666666\">{}</text>", left_px + MARGIN_PX, view.name);
         left_px += width_px(bounds);
     }
@@ -138,7 +108,7 @@ fn scene(plan: &Plan, robot: &Robot) -> Result<Scene, HumanError> {
     let holes = plan.object.plate.iter().flat_map(|plate| plate.holes_m());
     scene.items.push(match holes.map(|hole| hole.iter().map(in_plane).collect()).collect::<Vec<_>>() {
         holes_w if holes_w.is_empty() => Item::Hull(board_w, BOARD.to_owned()),
-        holes_w => Item::Pierced(board_w, holes_w),
+        holes_w => Item::Pierced(board_w, holes_w, BOARD.to_owned()),
     });
     if let Some(posture) = &plan.human {
         add_person(&mut scene, plan, posture)?;
@@ -155,15 +125,20 @@ fn add_person(scene: &mut Scene, plan: &Plan, posture: &HumanPosture) -> Result<
     let (x_wb, q_rad) = (&posture.x_wb, &posture.q_rad);
     for Capsule { name, p0_w, p1_w, radius_m } in human.capsules_w(x_wb, q_rad) {
         if name != BodyPart::Tool {
-            scene.items.push(Item::Capsule([p0_w, p1_w], radius_m, PERSON_STROKE));
+            scene.items.push(Item::Capsule([p0_w, p1_w], radius_m, strokes(PERSON_STROKE)));
         }
     }
-    scene.items.extend(human.eyes_w(x_wb).map(|eye_w| Item::Capsule([eye_w; 2], EYE_RADIUS_M, EYE_STROKE)));
+    scene.items.extend(human.eyes_w(x_wb).map(|eye_w| Item::Capsule([eye_w; 2], EYE_RADIUS_M, strokes(EYE_STROKE))));
     let parts = human.tool_parts_w(x_wb, q_rad, kind).into_iter();
     scene.items.extend(parts.map(|part| Item::Hull(part.ends_w.concat(), tool_paint(part.material))));
     scene.sector_w = human.sector_w(x_wb);
     scene.sight_w = human.line_of_sight_w(x_wb, q_rad).to_vec();
     Ok(())
+}
+
+/// The attributes of a capsule.
+fn strokes(colours: [&str; 2]) -> [String; 2] {
+    colours.map(|colour| format!("stroke=\"{colour}\""))
 }
 
 fn tool_paint(material: ToolMaterial) -> String {
@@ -181,79 +156,26 @@ fn robot_paint(rgba: [f64; 4]) -> String {
     format!("fill=\"#{r:02x}{g:02x}{b:02x}\" stroke=\"#444444\"")
 }
 
-impl View {
-    fn is_from_above(&self) -> bool {
-        self.axes_w[2] == Vector3::z()
-    }
-
-    /// The projection of a point, m: to the right and upward.
-    fn project(&self, p_w: &Point3<f64>) -> Point2 {
-        [self.axes_w[0].dot(&p_w.coords), self.axes_w[1].dot(&p_w.coords)]
-    }
-}
-
-/// Lower left and upper right corner of the projection of all that is drawn in a view, m.
-fn bounds(view: &View, scene: &Scene) -> [Point2; 2] {
-    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    let extents = scene.items.iter().map(|item| match item {
-        Item::Hull(points, _) | Item::Pierced(points, _) => (points.as_slice(), 0.0),
-        Item::Capsule(ends, radius_m, _) => (ends.as_slice(), *radius_m),
-    });
-    for (points, reach_m) in extents.chain(view.is_from_above().then_some((scene.sector_w.as_slice(), 0.0))) {
-        for point in points.iter().map(|point| view.project(point)) {
-            for axis in 0..2 {
-                bounds[0][axis] = bounds[0][axis].min(point[axis] - reach_m);
-                bounds[1][axis] = bounds[1][axis].max(point[axis] + reach_m);
-            }
-        }
+/// The extent of all that is drawn in a view.
+fn bounds(view: &View, scene: &Scene) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    let sector = view.is_from_above().then_some((scene.sector_w.as_slice(), 0.0));
+    for (points_w, reach_m) in scene.items.iter().map(Item::extent).chain(sector) {
+        bounds.include(view, points_w, reach_m);
     }
     bounds
 }
 
-/// Draws one view; `origin` is the position of W's origin, px.
-fn draw(body: &mut String, view: &View, origin: Point2, scene: &Scene, plan: &Plan) {
-    let px = |p_w: &Point3<f64>| {
-        let [right, up] = view.project(p_w);
-        [origin[0] + right * PX_PER_M, origin[1] - up * PX_PER_M]
-    };
-    let corners =
-        |points: &[Point2]| points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ");
-    let polyline = |points_w: &[Point3<f64>]| corners(&points_w.iter().map(px).collect::<Vec<_>>());
-    if view.is_from_above() && !scene.sector_w.is_empty() {
-        let _ = writeln!(body, "<polygon points=\"{}\" {SECTOR}/>", polyline(&scene.sector_w));
+/// Draws one view.
+fn draw(body: &mut String, sheet: &Sheet, scene: &Scene, plan: &Plan) {
+    if sheet.view.is_from_above() && !scene.sector_w.is_empty() {
+        let _ = writeln!(body, "<polygon points=\"{}\" {SECTOR}/>", sheet.polyline(&scene.sector_w));
     }
-    let mut order: Vec<(f64, &Item)> =
-        scene.items.iter().map(|item| (view.axes_w[2].dot(&item.centre()), item)).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (_, item) in order {
-        match item {
-            Item::Hull(points, paint) => {
-                let outline = corners(&convex_hull(points.iter().map(px).collect()));
-                let _ = writeln!(body, "<polygon points=\"{outline}\" {paint} stroke-width=\"0.7\"/>");
-            }
-            Item::Pierced(points, holes) => {
-                let outline = corners(&convex_hull(points.iter().map(px).collect()));
-                let holes: Vec<_> = holes.iter().map(|hole| format!(" M{}Z", polyline(hole))).collect();
-                let path = format!("M{outline}Z{}", holes.concat());
-                let _ = writeln!(body, "<path d=\"{path}\" fill-rule=\"evenodd\" {BOARD} stroke-width=\"0.7\"/>");
-            }
-            Item::Capsule(ends, radius_m, strokes) => {
-                let ([x1, y1], [x2, y2]) = (px(&ends[0]), px(&ends[1]));
-                let width_px = 2.0 * radius_m * PX_PER_M;
-                for (stroke, width_px) in strokes.iter().zip([width_px, width_px - 1.6]) {
-                    let _ = writeln!(
-                        body,
-                        "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" stroke=\"{stroke}\" stroke-width=\"{width_px:.1}\" \
-                         stroke-linecap=\"round\"/>"
-                    );
-                }
-            }
-        }
-    }
+    sheet.draw(body, &scene.items);
     if !scene.sight_w.is_empty() {
-        let _ = writeln!(body, "<polyline points=\"{}\" {SIGHT}/>", polyline(&scene.sight_w));
+        let _ = writeln!(body, "<polyline points=\"{}\" {SIGHT}/>", sheet.polyline(&scene.sight_w));
     }
-    arrow(body, plan, px);
+    arrow(body, plan, |point| sheet.px(point));
 }
 
 /// Draws the tool's force as an arrow that starts at the tip, so that it does not hide the tool, on top of everything.

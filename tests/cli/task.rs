@@ -73,6 +73,22 @@ fn all_pieces_of_the_circle_are_served_and_every_stage_holds() {
 }
 
 #[test]
+fn the_report_has_a_picture_of_every_stage() {
+    let page = fs::read_to_string(circle().join("whole-circle/report.html")).unwrap();
+    let stages = circle_plan()["stages"].as_array().unwrap().len();
+    assert_eq!((page.matches("<figure").count(), page.matches("stage fails").count()), (stages, 0));
+    for number in 1..=stages {
+        assert!(page.contains(&format!("id=\"stage-{number}\"")));
+    }
+    assert!(page.len() < 1_500_000, "{} bytes", page.len());
+    // The same plan has the same pictures when it is simulated from its file.
+    let folder = folder(&[("plan.json", &circle_plan().to_string())]);
+    let out = argument(folder.path()).to_owned();
+    benchdog(folder.path(), &["simulate", "plan.json", "--out", &out]);
+    assert!(fs::read_to_string(folder.path().join("whole-circle/report.html")).unwrap() == page);
+}
+
+#[test]
 fn a_staged_plan_from_a_file_has_the_verdict_of_the_task() {
     let (verdict, code) = simulated(&circle_plan());
     let first = json(&circle().join("whole-circle/verdict.json"));

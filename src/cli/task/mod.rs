@@ -27,7 +27,7 @@ use crate::{
         verdict::VerdictKind,
     },
     planner::task::{TaskInfeasible, TaskPlan},
-    report,
+    report::{self, stages::JudgedPlan},
     robot::Robot,
     scenario::{self, LoadedStagedPlan},
 };
@@ -146,7 +146,8 @@ fn judged(
         report::file::write_whole(&files.recording, &bytes)?;
     }
     report::file::write_whole(&files.stages, report::task::stages_csv(&verdict).as_bytes())?;
-    let page = report::task::page(plan, &verdict, simulated.as_ref().map(|(trace, _)| trace));
+    let judged = JudgedPlan { plan, holdings: &states.holdings, robot, scenario, verdict: &verdict };
+    let page = report::task::page(&judged, simulated.as_ref().map(|(trace, _)| trace))?;
     report::file::write_whole(&files.page, page.as_bytes())?;
     report::file::write_whole(&files.verdict, report::json::pretty(&verdict).as_bytes())?;
     drop(writing);

@@ -4,11 +4,10 @@ use std::cell::RefCell;
 
 use super::segment::{ArmSegment, Knot};
 use crate::{
-    check::Holding,
     model::{
         frames::Pose,
         plan::{ArmHold, PlacedObject, Plan},
-        staged_plan::MoveStage,
+        staged_plan::{Holding, MoveStage},
     },
     robot::{Chain, Robot},
     statics::{ContactModel, HandModel, StabilityWorkspace},

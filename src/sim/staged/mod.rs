@@ -11,8 +11,9 @@ use super::{Conditions, LOST_AFTER_S, SimError, SimScene, distance_monitor::Dist
 use crate::{
     check::{CheckedPlan, StagedStates},
     collision::PersonPart,
+    human::place,
     model::{
-        staged_plan::{PersonDuring, STEP_BACK_M, Stage, StagedPlan},
+        staged_plan::{PersonDuring, Stage, StagedPlan},
         staged_trace::{StageSpan, StagedTrace},
         stop::Stop,
         trace::Trace,
@@ -130,11 +131,9 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// How a person steps back, W, m: by [`STEP_BACK_M`] in the horizontal direction from the work to the person, from the tool's tip, the
-/// last part, to the head, the first.
+/// How a person steps back, W, m, from the tool's tip, the last part, with the head, the first.
 #[must_use]
 pub fn step_back_w(parts: &[PersonPart]) -> Vector3<f64> {
     let (Some(head), Some(tool)) = (parts.first(), parts.last()) else { return Vector3::zeros() };
-    let away = head.p0_w - tool.p1_w;
-    Vector3::new(away.x, away.y, 0.0).try_normalize(1e-6).unwrap_or_default() * STEP_BACK_M
+    place::step_back_w(&head.p0_w, &tool.p1_w)
 }

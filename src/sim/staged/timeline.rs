@@ -10,18 +10,15 @@ use super::{
     arms::CarriedBy,
     segment::{ArmCommand, ArmSegment, Knot, NewGrasp},
 };
-use crate::{
-    check::Holding,
-    model::{
-        frames::Pose,
-        plan::ArmHold,
-        scenario::SimulationSettings,
-        staged_plan::{HoldStage, MoveStage, RegraspStage, Stage, StagedPlan},
-        task::Task,
-        tool_path::Piece,
-        trace::Phase,
-        wrench::Wrench,
-    },
+use crate::model::{
+    frames::Pose,
+    plan::ArmHold,
+    scenario::SimulationSettings,
+    staged_plan::{HoldStage, Holding, MoveStage, RegraspStage, Stage, StagedPlan},
+    task::Task,
+    tool_path::Piece,
+    trace::Phase,
+    wrench::Wrench,
 };
 
 /// Time for which the arms hold the board still before a tool works on it, s: their swing after a motion has died away.
