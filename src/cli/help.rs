@@ -78,9 +78,11 @@ pub const TASK: &str = "\
 Examples:
   benchdog task scenarios/whole-circle.toml     plan, simulate and judge 16 pieces of a circle
   benchdog task scenarios/whole-circle.toml --plan-only
+  benchdog task scenarios/whole-circle.toml --stream       each stage is written as soon as it is planned
   benchdog simulate out/whole-circle/plan.json  judge the staged plan again, or that of another planner
 
-The folder of the task has plan.json, verdict.json, stages.csv, path.csv, report.html and recording.rrd.";
+The folder of the task has plan.json, verdict.json, stages.csv, path.csv, report.html and recording.rrd,
+with --stream stages.jsonl too: the plan without stages in its first line, then a stage a line.";
 
 /// `benchdog sweep --help`.
 pub const SWEEP: &str = "\

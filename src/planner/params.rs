@@ -506,6 +506,8 @@ pub mod task {
     pub const MOST_FOLLOWED_RAD: f64 = 1.2;
     /// Postures of the map from which one for a piece is searched for.
     pub const MAPPED_STARTS: usize = 3;
+    /// Joint angles of one arm that differ by less are the same, rad: rounding of inverse kinematics.
+    pub const SAME_RAD: f64 = 1e-6;
     /// Cost per rad of the joint that moves most: breaks ties in favour of less motion.
     pub const COST_PER_RAD: f64 = 0.002;
 

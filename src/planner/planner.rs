@@ -21,7 +21,7 @@ use super::{
     second_search::search_again,
     select,
     stats::SearchStats,
-    task::{self, TaskInfeasible, TaskPlan, TaskSearch},
+    task::{self, Ahead, TaskInfeasible, TaskPlan, TaskSearch},
     task_family::TaskFamily,
     warm_starts::WarmStarts,
     watch::{Counter, Phase, Subordinate, Watch, begin, go_on},
@@ -31,9 +31,9 @@ use crate::{
         board::BoardShape,
         plan::Plan,
         scenario::{Optima, Person, PlannerKind, PlannerSettings, Scenario, StandingPlace},
+        staged_plan::StagedPlan,
         stop::Never,
         task::Task,
-        tool_path::Piece,
     },
     robot::Robot,
 };
@@ -477,16 +477,36 @@ impl<'a> Search<'a> {
     /// # Errors
     /// When the scenario's person or tool is invalid, and after a stop.
     pub fn task(self, task: &Task) -> Result<Result<TaskPlan, TaskInfeasible>, PlanError> {
+        self.task_ahead(task, Ahead::Whole, &mut |_| {})
+    }
+
+    /// As [`Search::task`], part by part: `ready` is told of the plan so far whenever it has new stages, which stay as they are, so
+    /// that they can be carried out while the next ones are planned. Only the loads and regrasps of the next `pieces_ahead` pieces
+    /// are known then: the plan may be less good than that as a whole, and a plan that begins may not end.
+    ///
+    /// # Errors
+    /// When the scenario's person or tool is invalid, and after a stop.
+    pub fn task_in_parts(
+        self,
+        task: &Task,
+        pieces_ahead: usize,
+        ready: &mut dyn FnMut(&StagedPlan),
+    ) -> Result<Result<TaskPlan, TaskInfeasible>, PlanError> {
+        self.task_ahead(task, Ahead::Pieces(pieces_ahead), ready)
+    }
+
+    fn task_ahead(
+        self,
+        task: &Task,
+        ahead: Ahead,
+        ready: &mut dyn FnMut(&StagedPlan),
+    ) -> Result<Result<TaskPlan, TaskInfeasible>, PlanError> {
         let Self { planner, scenario, watch } = self;
         let maps = planner.maps(scenario);
-        let no_hold = |piece: usize, why| {
-            let place = task.pieces().get(piece).copied().unwrap_or(Piece { stroke: 0, from_m: 0.0, to_m: 0.0 });
-            Ok(Err(TaskInfeasible { piece, place, alone: Some(Box::new(why)) }))
-        };
         // The optima of the first piece serve for all, and make them comparable.
         let scenario = match planner.normalised(&maps, scenario, watch)? {
             Outcome::Found(scenario) => scenario,
-            Outcome::Infeasible(why) => return no_hold(0, why),
+            Outcome::Infeasible(why) => return Ok(Err(TaskInfeasible::new(task, 0, Some(why)))),
         };
         let pieces = task::pieces(&scenario, task);
         let chosen = task::planned_by_themselves(pieces.len());
@@ -508,12 +528,12 @@ impl<'a> Search<'a> {
         for (piece, outcome) in planned {
             match outcome {
                 Outcome::Found(plan) => separate[piece] = Some(plan),
-                Outcome::Infeasible(why) => return no_hold(piece, why),
+                Outcome::Infeasible(why) => return Ok(Err(TaskInfeasible::new(task, piece, Some(why)))),
             }
         }
         let robot = &maps.library.robot;
         let search = TaskSearch { task, scenario: &scenario, pieces: &pieces, separate: &separate, robot, watch };
-        Ok(search.run()?.map(|staged| TaskPlan { staged, separate: separate.clone() }))
+        Ok(search.run(ahead, ready)?.map(|staged| TaskPlan { staged, separate: separate.clone() }))
     }
 
     /// Plans for a whole circle that is cut, with the person's best response: one grasp, a sequence of board poses with one

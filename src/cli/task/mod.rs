@@ -1,6 +1,7 @@
 //! `benchdog task`: plans, simulates and judges a whole task; and the judgement of staged plans for `benchdog simulate`.
 
 mod pipeline;
+mod stream;
 
 use std::{
     path::{Path, PathBuf},
@@ -24,14 +25,20 @@ use crate::{
         plan::PlannerRecord,
         scenario::{ResponseKind, Scenario},
         staged_plan::StagedPlan,
+        staged_verdict::StagedVerdict,
+        task::Task,
         verdict::VerdictKind,
     },
-    planner::task::{TaskInfeasible, TaskPlan},
+    planner::{
+        Search,
+        task::{TaskInfeasible, TaskPlan},
+    },
     report::{self, stages::JudgedPlan},
     robot::Robot,
     scenario::{self, LoadedStagedPlan},
 };
 use pipeline::{StagedRun, run_staged};
+use stream::{StageStream, Waiting};
 
 /// The files of a task.
 struct TaskFiles {
@@ -41,6 +48,7 @@ struct TaskFiles {
     path: PathBuf,
     page: PathBuf,
     recording: PathBuf,
+    stream: PathBuf,
 }
 
 impl TaskFiles {
@@ -53,12 +61,14 @@ impl TaskFiles {
             path: file("path.csv"),
             page: file("report.html"),
             recording: file("recording.rrd"),
+            stream: file("stages.jsonl"),
         }
     }
 
     /// Those that `task` writes; `simulate` leaves the plan as it is.
-    fn all(&self) -> [PathBuf; 6] {
-        [&self.plan, &self.verdict, &self.stages, &self.path, &self.page, &self.recording].map(Clone::clone)
+    fn all(&self) -> [PathBuf; 7] {
+        let Self { plan, verdict, stages, path, page, recording, stream } = self;
+        [plan, verdict, stages, path, page, recording, stream].map(Clone::clone)
     }
 }
 
@@ -77,9 +87,10 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     planner.search(&loaded.scenario).watch(&*progress).prepare_task(&task)?;
     let map_ms = start.elapsed().as_secs_f64() * 1e3;
     let start = Instant::now();
-    let found = planner.search(&loaded.scenario).watch(&*progress).task(&task)?;
+    let search = planner.search(&loaded.scenario).watch(&*progress);
+    let FoundTask { plan, planned_s } = found(search, &task, args.stream, &files.stream)?;
     let wall_ms = start.elapsed().as_secs_f64() * 1e3;
-    let TaskPlan { mut staged, separate } = match found {
+    let TaskPlan { mut staged, separate } = match plan {
         Ok(found) => found,
         Err(why) => {
             progress.finish();
@@ -106,7 +117,33 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     }
     let robot = loaded.robot.at_gap(staged.object.size_m[2]);
     let states = StagedStates::new(&robot, &staged)?;
-    judged(&loaded.scenario, &robot, &staged, &states, (&files, args.format, !args.no_recording), &progress)
+    let output = (&files, args.format, !args.no_recording);
+    let verdict = judged(&loaded.scenario, &robot, &staged, &states, output, &progress)?;
+    if let Some(planned_s) = planned_s {
+        let Waiting { first_s, later_s } = Waiting::new(&planned_s, &verdict.stages);
+        output::message(&format!(
+            "{}: the person waits {first_s:.2} s for the planner before the first stage and {later_s:.2} s later",
+            staged.name
+        ));
+    }
+    Ok(exit(&verdict))
+}
+
+/// What a search found.
+struct FoundTask {
+    plan: Result<TaskPlan, TaskInfeasible>,
+    /// When each stage was planned, s after the search began; `None` if all were at once.
+    planned_s: Option<Vec<f64>>,
+}
+
+/// Searches the plan of a task: as a whole, or with so many pieces ahead; then its stages are written to a file as soon as they are
+/// planned.
+fn found(search: Search<'_>, task: &Task, ahead: Option<u16>, path: &Path) -> Result<FoundTask, CliError> {
+    report::file::remove(path)?;
+    let Some(pieces) = ahead else { return Ok(FoundTask { plan: search.task(task)?, planned_s: None }) };
+    let mut stream = StageStream::new(path)?;
+    let plan = search.task_in_parts(task, pieces.into(), &mut |plan| stream.write(plan))?;
+    Ok(FoundTask { plan, planned_s: Some(stream.finish()?) })
 }
 
 /// Simulates and judges a staged plan of any planner.
@@ -117,7 +154,7 @@ pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progr
     report::file::check_folder(&args.report.out)?;
     report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
     let is_recorded = args.report.record != RecordChoice::Never;
-    judged(scenario, robot, plan, states, (&files, args.report.format, is_recorded), progress)
+    judged(scenario, robot, plan, states, (&files, args.report.format, is_recorded), progress).map(|of| exit(&of))
 }
 
 /// Simulates and judges a plan, writes verdict, table and report, and prints the table.
@@ -128,7 +165,7 @@ fn judged(
     states: &StagedStates,
     (files, format, record): (&TaskFiles, Format, bool),
     progress: &Progress,
-) -> Result<Exit, CliError> {
+) -> Result<StagedVerdict, CliError> {
     report::file::remove(&files.verdict)?;
     report::file::remove(&files.recording)?;
     let StagedRun { verdict, simulated } = run_staged(scenario, robot, plan, states, progress)?;
@@ -155,11 +192,15 @@ fn judged(
         Format::Human => output::print(&report::task::table(&verdict))?,
         Format::Json => output::print(&report::json::pretty(&verdict))?,
     }
-    Ok(match (verdict.met, verdict.verdict) {
+    Ok(verdict)
+}
+
+fn exit(verdict: &StagedVerdict) -> Exit {
+    match (verdict.met, verdict.verdict) {
         (true, _) => Exit::Met,
         (false, VerdictKind::Infeasible) => Exit::Infeasible,
         (false, _) => Exit::NotMet,
-    })
+    }
 }
 
 /// Prints why no plan was found.

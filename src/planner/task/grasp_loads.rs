@@ -14,7 +14,7 @@ use super::{
     problem::TaskProblem,
 };
 use crate::{
-    model::{plan::PlacedObject, scenario::Limits},
+    model::{operation::Operation, plan::PlacedObject, scenario::Limits},
     statics::{AtRest, ContactModel, HandModel, LoadCases, ResponseOutcome, StabilityWorkspace},
 };
 
@@ -38,7 +38,7 @@ impl<'g> GraspLoads<'g> {
         Self { grasp, object, hands, at_rest: None }
     }
 
-    /// True if the grasp resists the load of a piece.
+    /// True if the grasp resists the load in the middle of a piece.
     pub fn resists(
         &mut self,
         problem: &TaskProblem<'_>,
@@ -46,11 +46,33 @@ impl<'g> GraspLoads<'g> {
         piece: usize,
         roll_rad: f64,
     ) -> bool {
+        self.resists_operation(problem, workspace, piece, &problem.operation(piece, roll_rad))
+    }
+
+    /// True if the grasp resists the load from where a piece begins to where it ends: in its middle and at both ends.
+    pub fn resists_along(
+        &mut self,
+        problem: &TaskProblem<'_>,
+        workspace: &mut StabilityWorkspace,
+        piece: usize,
+        roll_rad: f64,
+    ) -> bool {
+        let ends = problem.operations_at_ends(piece, roll_rad);
+        self.resists(problem, workspace, piece, roll_rad)
+            && ends.iter().all(|operation| self.resists_operation(problem, workspace, piece, operation))
+    }
+
+    fn resists_operation(
+        &mut self,
+        problem: &TaskProblem<'_>,
+        workspace: &mut StabilityWorkspace,
+        piece: usize,
+        operation: &Operation,
+    ) -> bool {
         let Some(hands) = &self.hands else { return false };
         let of_piece = problem.of_piece(piece);
-        let operation = problem.operation(piece, roll_rad);
-        let model = ContactModel::from_hands(hands.clone(), &self.object, &operation);
-        let cases = LoadCases::new(model, &operation, &of_piece.scenario.load);
+        let model = ContactModel::from_hands(hands.clone(), &self.object, operation);
+        let cases = LoadCases::new(model, operation, &of_piece.scenario.load);
         let stability = assess_cases(of_piece, workspace, Ok(cases), &mut self.at_rest);
         test_stability(of_piece, &self.grasp.arms, &self.grasp.x_wo, &stability).is_ok()
     }

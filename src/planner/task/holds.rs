@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::{
     super::{
         library::{BoardGrasp, largest_joint_difference_rad},
-        params::task::COST_PER_RAD,
+        params::task::{COST_PER_RAD, SAME_RAD},
         problem::posture_map,
     },
     graph::{Arc, ArcKind},
@@ -90,6 +90,13 @@ pub fn changed_arms(from: &BoardGrasp, to: &BoardGrasp) -> Vec<usize> {
     pairs.filter(|(_, (a, b))| a.grasp != b.grasp).map(|(arm, _)| arm).collect()
 }
 
+/// True if the arms that keep their grasps keep their configurations, too: a redundant arm may have the same grasp in many.
+fn keeps_others_still(from: &BoardGrasp, to: &BoardGrasp) -> bool {
+    let pairs = from.arms.iter().zip(&to.arms).filter(|(a, b)| a.grasp == b.grasp);
+    let differences = pairs.flat_map(|(a, b)| a.q_rad.iter().zip(&b.q_rad).map(|(a, b)| (a - b).abs()));
+    differences.fold(0.0, f64::max) <= SAME_RAD
+}
+
 /// Motions of a grip between neighbouring board poses; regrasps between grips at the same one.
 fn arcs(holds: &[Hold], grips: &[Grip], places: &Places) -> Vec<Vec<Arc>> {
     // Holds of one grip follow one another in the order of places.
@@ -113,7 +120,10 @@ fn arcs(holds: &[Hold], grips: &[Grip], places: &Places) -> Vec<Vec<Arc>> {
         });
         // A hand that lets go needs another one that holds meanwhile.
         let may_regrasp = hold.grasp.arms.len() > 1;
-        let others = at_place[hold.place].iter().copied().filter(|&to| may_regrasp && to != number);
+        let others = at_place[hold.place]
+            .iter()
+            .copied()
+            .filter(|&to| may_regrasp && to != number && keeps_others_still(&hold.grasp, &holds[to].grasp));
         let regrasps = others.map(|to| {
             let hands = changed_arms(&hold.grasp, &holds[to].grasp).len();
             Arc { to, kind: ArcKind::Regrasp, hands, extra: 0.0 }
@@ -121,4 +131,27 @@ fn arcs(holds: &[Hold], grips: &[Grip], places: &Places) -> Vec<Vec<Arc>> {
         moves.chain(regrasps.filter(|arc| arc.hands > 0)).collect()
     };
     holds.par_iter().enumerate().map(of_hold).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        model::{board::Edge, frames::Pose, grasp::EdgeGrasp},
+        planner::library::ArmGrasp,
+    };
+
+    #[test]
+    fn an_arm_that_keeps_its_grasp_keeps_its_configuration() {
+        let arm = |along_m: f64, q_rad: f64| ArmGrasp {
+            grasp: EdgeGrasp { edge: Edge::PLUS_X, along_m, depth_m: 0.0, angle_rad: 0.0, flipped: false },
+            q_rad: vec![0.3, q_rad],
+        };
+        let held = |left: ArmGrasp, right: ArmGrasp| BoardGrasp { x_wo: Pose::identity(), arms: vec![left, right] };
+        let from = held(arm(0.1, 0.5), arm(0.2, 0.7));
+        assert!(keeps_others_still(&from, &held(arm(0.1, 0.5), arm(0.0, -0.4))));
+        assert!(keeps_others_still(&from, &held(arm(0.3, 0.1), arm(0.0, -0.4))));
+        // The left hand keeps its grasp, but its elbow is elsewhere.
+        assert!(!keeps_others_still(&from, &held(arm(0.1, 0.502), arm(0.0, -0.4))));
+    }
 }

@@ -20,13 +20,15 @@ mod stages;
 mod timing;
 mod transitions;
 
+pub use graph::Ahead;
 pub use inputs::TaskSearch;
 
 use self::{
-    graph::{Costs, Found, Graph},
+    graph::{Costs, Found, Graph, Start, Step},
     holds::Holds,
     problem::{Posture, TaskProblem},
     root::Root,
+    stages::Stages,
     transitions::Transitions,
 };
 use super::{
@@ -65,6 +67,17 @@ pub struct TaskInfeasible {
     pub alone: Option<Box<Infeasible>>,
 }
 
+impl TaskInfeasible {
+    /// For a piece of a task, or its last one if it has fewer.
+    pub(super) fn new(task: &Task, piece: usize, alone: Option<Infeasible>) -> Self {
+        let pieces = task.pieces();
+        let piece = piece.min(pieces.len().saturating_sub(1));
+        let nowhere = Piece { stroke: 0, from_m: 0.0, to_m: 0.0 };
+        let place = pieces.get(piece).copied().unwrap_or(nowhere);
+        Self { piece, place, alone: alone.map(Box::new) }
+    }
+}
+
 impl std::fmt::Display for TaskInfeasible {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { piece, place: Piece { stroke, from_m, .. }, alone } = self;
@@ -100,11 +113,16 @@ fn evenly(count: usize, most: usize) -> Vec<usize> {
 }
 
 impl TaskSearch<'_> {
-    /// The staged plan; after a stop before there was one [`PlanError::Stopped`].
+    /// The staged plan. It is found part by part: `ready` is told of the plan so far whenever it has new stages, which stay as they
+    /// are. After a stop before there was a whole one [`PlanError::Stopped`].
     ///
     /// # Errors
     /// When the scenario's person or tool is invalid, and after a stop.
-    pub fn run(&self) -> Result<Result<StagedPlan, TaskInfeasible>, PlanError> {
+    pub fn run(
+        &self,
+        ahead: Ahead,
+        ready: &mut dyn FnMut(&StagedPlan),
+    ) -> Result<Result<StagedPlan, TaskInfeasible>, PlanError> {
         let Self { task, pieces, robot, watch, .. } = *self;
         let mut problem = TaskProblem::new(task, pieces, self.best(), robot, watch)?;
         let roots = self.roots(&problem);
@@ -112,27 +130,35 @@ impl TaskSearch<'_> {
         let holds = Holds::new(&problem, &roots, self.is_closed());
         let costs = Costs { per_move: task.move_cost, per_regrasp: task.regrasp_cost };
         let mut transitions = Transitions::new(&mut problem, &holds);
+        let mut stages = Stages::new(self, &holds);
+        let mut start = Start { piece: 0, hold: None };
         // Postures beside the robot are searched for only if those beside the board alone are too few.
-        let mut is_wide = false;
-        loop {
-            go_on(watch)?;
-            let serving = if is_wide { &holds.serving_nearby } else { &holds.serving };
+        let mut all_served = holds.served_by_some();
+        for serving in [&holds.serving, &holds.serving_nearby] {
             let graph = Graph { arcs: &holds.arcs, serving, costs };
-            let Some(found) = graph.cheapest(&mut transitions) else { return Err(PlanError::Stopped) };
-            let steps = match found {
-                Found::Way(steps) => steps,
-                Found::Nothing { .. } if !is_wide => {
-                    is_wide = true;
-                    continue;
+            let to_end = graph.costs_to_end();
+            loop {
+                go_on(watch)?;
+                let found = graph.cheapest(&to_end, start, ahead, &mut transitions).ok_or(PlanError::Stopped)?;
+                let steps = match found {
+                    Found::Way(steps) => steps,
+                    Found::Nothing { served } => {
+                        all_served = all_served.max(served);
+                        break;
+                    }
+                };
+                // Each round adds stages, or excludes a step of this way.
+                if stages.add(&mut transitions, &steps) {
+                    start = Start { piece: stages.served(), hold: steps.last().map(Step::end) };
+                    stages.plan.iter().for_each(&mut *ready);
                 }
-                Found::Nothing { served } => return Ok(Err(self.infeasible(served.max(holds.served_by_some())))),
-            };
-            // A way whose plans are all accepted ends the loop; each other round excludes at least one hold for one piece.
-            if let Some(staged) = stages::staged(self, &mut transitions, &holds, &steps) {
-                watch.tell(&Event::Found);
-                return Ok(Ok(staged));
+                if start.piece == pieces.len() {
+                    watch.tell(&Event::Found);
+                    return stages.plan.map(Ok).ok_or(PlanError::Stopped);
+                }
             }
         }
+        Ok(Err(TaskInfeasible::new(task, all_served, None)))
     }
 
     /// The objective of the best hold for each piece alone: of pieces without a plan that of the nearest piece with one.
@@ -163,11 +189,5 @@ impl TaskSearch<'_> {
     /// True if the path ends where it begins, so that the last piece is beside the first one.
     fn is_closed(&self) -> bool {
         matches!(self.task.path[..], [Stroke::Circle { .. }])
-    }
-
-    fn infeasible(&self, served: usize) -> TaskInfeasible {
-        let place = self.task.pieces().get(served).copied();
-        let place = place.unwrap_or(Piece { stroke: 0, from_m: 0.0, to_m: 0.0 });
-        TaskInfeasible { piece: served, place, alone: None }
     }
 }

@@ -21,8 +21,12 @@ use crate::{
         plan::{Comfort, Plan},
         scenario::Scenario,
         task::Task,
+        tool_path::Piece,
     },
 };
+
+/// How far inside a piece its ends are tested, m: at a corner between two pieces the tool has the direction of the next.
+const INSIDE_M: f64 = 1e-6;
 
 /// The person at a piece.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +47,8 @@ impl Posture {
 /// The problems of all pieces.
 pub struct TaskProblem<'a> {
     pub task: &'a Task,
+    /// The pieces of the path.
+    pieces_of_path: Vec<Piece>,
     pub robot: &'a GraspingRobot,
     pub evaluators: Vec<Evaluator<'a>>,
     /// The objective of the best hold for each piece alone.
@@ -65,7 +71,7 @@ impl<'a> TaskProblem<'a> {
         let evaluator =
             |scenario| Ok(Evaluator::new(Problem::new(scenario, robot, watch)?, SearchStats::unlimited(watch)));
         let evaluators = pieces.iter().map(evaluator).collect::<Result<_, PlanError>>()?;
-        Ok(Self { task, robot, evaluators, best, watch })
+        Ok(Self { task, pieces_of_path: task.pieces(), robot, evaluators, best, watch })
     }
 
     pub fn pieces(&self) -> usize {
@@ -79,6 +85,17 @@ impl<'a> TaskProblem<'a> {
     /// A piece's operation with the tool rolled.
     pub fn operation(&self, piece: usize, roll_rad: f64) -> Operation {
         self.of_piece(piece).scenario.operation.rolled(roll_rad)
+    }
+
+    /// The operations where a piece begins and ends, with the tool rolled; a hole has none beside its own.
+    pub fn operations_at_ends(&self, piece: usize, roll_rad: f64) -> Vec<Operation> {
+        let Piece { stroke, from_m, to_m } = self.pieces_of_path[piece];
+        if to_m - from_m <= 2.0 * INSIDE_M {
+            return Vec::new();
+        }
+        let thickness_m = self.of_piece(piece).scenario.object.size_m[2];
+        let ends_m = [from_m + INSIDE_M, to_m - INSIDE_M].into_iter();
+        ends_m.filter_map(|at_m| Some(self.task.operation_at(stroke, at_m, thickness_m)?.rolled(roll_rad))).collect()
     }
 
     /// The pose of the board with a piece at a pose of the tool.

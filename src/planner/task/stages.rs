@@ -4,7 +4,7 @@ use super::{
     super::{
         candidate::Candidate,
         contact::{placed_object, plan_arms},
-        library::{ArmGrasp, BoardGrasp},
+        library::{ArmGrasp, BoardGrasp, GraspingArm},
         params::task::DEFAULT_SPEED_RAD_S,
     },
     graph::{ArcKind, Step},
@@ -27,39 +27,93 @@ use crate::{
     },
 };
 
-/// The staged plan of a way; `None` if a hold's plan for a piece is not accepted, which is then excluded from the next search.
-pub fn staged(
-    search: &TaskSearch<'_>,
-    transitions: &mut Transitions<'_, '_>,
-    holds: &Holds,
-    steps: &[Step],
-) -> Option<StagedPlan> {
-    let first = holds.holds.get(first_hold(steps)?)?;
-    let worked = worked_pieces(search, transitions, holds, steps)?;
-    let paths = regrasp_paths(transitions, steps)?;
-    let mut builder = Builder { search, transitions, holds, stages: Vec::new(), moving: Vec::new(), last: None };
-    let mut worked = worked.into_iter();
-    let mut paths = paths.into_iter();
-    for step in steps {
-        builder.add(step, &mut worked, &mut paths)?;
+/// The staged plan as far as it is known.
+pub struct Stages<'b> {
+    search: &'b TaskSearch<'b>,
+    holds: &'b Holds,
+    /// `None` before its first stage.
+    pub plan: Option<StagedPlan>,
+    /// The piece that was served last, with the person.
+    last: Option<(usize, Posture)>,
+}
+
+impl<'b> Stages<'b> {
+    /// Without stages.
+    pub fn new(search: &'b TaskSearch<'b>, holds: &'b Holds) -> Self {
+        Self { search, holds, plan: None, last: None }
     }
-    let stages = builder.stages;
-    let problem = transitions.problem.of_piece(0);
+
+    /// The number of pieces that are served.
+    pub fn served(&self) -> usize {
+        self.last.map_or(0, |(piece, _)| piece + 1)
+    }
+
+    /// Adds the steps of a way. False, and nothing is added, if a hold's plan for a piece, a motion or a regrasp is not accepted,
+    /// which is then excluded from the next search.
+    pub fn add(&mut self, transitions: &mut Transitions<'_, '_>, steps: &[Step]) -> bool {
+        self.added(transitions, steps).is_some()
+    }
+
+    fn added(&mut self, transitions: &mut Transitions<'_, '_>, steps: &[Step]) -> Option<()> {
+        let Self { search, holds, last, .. } = *self;
+        let first = holds.holds.get(first_hold(steps)?)?;
+        let worked = worked_pieces(search, transitions, holds, (self.served(), steps))?;
+        let regrasps = timed_regrasps(search, transitions, steps)?;
+        let moves = timed_moves(search, transitions, holds, steps)?;
+        let mut builder = Builder { search, transitions, stages: Vec::new(), last };
+        let (mut worked, mut regrasps, mut moves) = (worked.into_iter(), regrasps.into_iter(), moves.into_iter());
+        for (number, step) in steps.iter().enumerate() {
+            match *step {
+                Step::Serve { .. } => builder.serve(worked.next()?),
+                // Several motions in a row are one.
+                Step::Go { kind: ArcKind::Move, .. } if number > 0 && is_move(&steps[number - 1]) => {}
+                Step::Go { kind: ArcKind::Move, .. } => builder.go(&moves.next()?),
+                Step::Go { from, to, kind: ArcKind::Regrasp } => {
+                    for change in transitions.regrasps(from, to)? {
+                        builder.regrasp(change, regrasps.next()?, &holds.holds[to].grasp);
+                    }
+                }
+            }
+        }
+        let Builder { mut stages, last, .. } = builder;
+        step_back_once(&mut stages);
+        let plan = self.plan.get_or_insert_with(|| without_stages(search, transitions, &first.grasp));
+        plan.stages.extend(stages);
+        self.last = last;
+        Some(())
+    }
+}
+
+/// The plan of a task whose board is held like this at the start.
+fn without_stages(search: &TaskSearch<'_>, transitions: &Transitions<'_, '_>, first: &BoardGrasp) -> StagedPlan {
     let scenario = search.scenario;
     let PlannerSettings { kind, seed, .. } = scenario.planner;
-    let candidate = Candidate::without_person(&first.grasp);
-    Some(StagedPlan {
+    StagedPlan {
         format: STAGED_FORMAT,
         name: scenario.name.clone(),
         robot: search.robot.robot.description.clone(),
         task: search.task.clone(),
-        object: placed_object(scenario, first.grasp.x_wo),
-        arms: plan_arms(problem, &candidate),
-        stages,
+        object: placed_object(scenario, first.x_wo),
+        arms: plan_arms(transitions.problem.of_piece(0), &Candidate::without_person(first)),
+        stages: Vec::new(),
         planner: Some(PlannerRecord { kind, seed, wall_ms: None, map_ms: None, evaluations: 0, robust: None }),
         scenario: Some(scenario.clone()),
         benchdog: Some(env!("CARGO_PKG_VERSION").into()),
-    })
+    }
+}
+
+/// A person who steps back for one motion between two holds steps back for all of them: they do not come forward in between.
+fn step_back_once(stages: &mut [Stage]) {
+    for between in stages.split_mut(|stage| matches!(stage, Stage::Hold(_))) {
+        if between.iter().any(|stage| stage.person() == PersonDuring::StepsBack) {
+            between.iter_mut().for_each(|stage| match stage {
+                Stage::Move(MoveStage { person, .. }) | Stage::Regrasp(RegraspStage { person, .. }) => {
+                    *person = PersonDuring::StepsBack;
+                }
+                Stage::Hold(_) => {}
+            });
+        }
+    }
 }
 
 fn first_hold(steps: &[Step]) -> Option<usize> {
@@ -69,12 +123,16 @@ fn first_hold(steps: &[Step]) -> Option<usize> {
     })
 }
 
-/// The plans of all served pieces in their order, each with its hold.
+fn is_move(step: &Step) -> bool {
+    matches!(step, Step::Go { kind: ArcKind::Move, .. })
+}
+
+/// The plans of the served pieces in their order from the first, each with its hold.
 fn worked_pieces(
     search: &TaskSearch<'_>,
     transitions: &mut Transitions<'_, '_>,
     holds: &Holds,
-    steps: &[Step],
+    (first, steps): (usize, &[Step]),
 ) -> Option<Vec<(WorkedPiece, Posture)>> {
     let served = steps.iter().filter_map(|step| match step {
         Step::Serve { hold } => Some(*hold),
@@ -83,7 +141,7 @@ fn worked_pieces(
     let pieces = search.task.pieces();
     let mut worked = Vec::with_capacity(pieces.len());
     let mut all_accepted = true;
-    for ((number, hold), piece) in served.enumerate().zip(&pieces) {
+    for (hold, (number, piece)) in served.zip(pieces.iter().enumerate().skip(first)) {
         let grasp = &holds.holds[hold].grasp;
         let Some((plan, posture)) = transitions.accepted_plan(hold, number, grasp) else {
             transitions.exclude(hold, number);
@@ -97,100 +155,106 @@ fn worked_pieces(
     all_accepted.then_some(worked)
 }
 
-/// The joint paths of all regrasps in their order; those between two holds without one are excluded from the next search.
-fn regrasp_paths(transitions: &mut Transitions<'_, '_>, steps: &[Step]) -> Option<Vec<Vec<Vec<f64>>>> {
-    let mut paths = Vec::new();
+/// A change of an arm's grasp: the steps of its path, and its timing.
+type TimedRegrasp = (Vec<Vec<f64>>, Timed);
+
+/// All regrasps in their order; those between two holds without a path are excluded from the next search.
+fn timed_regrasps(
+    search: &TaskSearch<'_>,
+    transitions: &mut Transitions<'_, '_>,
+    steps: &[Step],
+) -> Option<Vec<TimedRegrasp>> {
+    let mut regrasps = Vec::new();
     let mut all_found = true;
     for step in steps {
         let &Step::Go { from, to, kind: ArcKind::Regrasp } = step else { continue };
-        let found = |change: &HandChange| change.path(transitions.problem, [from, to]);
+        let found = |change: &HandChange| {
+            let path = change.path(transitions.problem, [from, to])?;
+            let timed = timed(search, &path, &[change.arm])?;
+            Some((path, timed))
+        };
         match transitions.regrasps(from, to)?.iter().map(found).collect::<Option<Vec<_>>>() {
-            Some(found) => paths.extend(found),
+            Some(found) => regrasps.extend(found),
             None => {
                 transitions.exclude_regrasp(from, to);
                 all_found = false;
             }
         }
     }
-    all_found.then_some(paths)
+    all_found.then_some(regrasps)
+}
+
+/// A motion of the board: its steps, and their timing.
+type TimedMove = (Vec<BoardGrasp>, Timed);
+
+/// All motions in their order, several in a row as one; one without a path or timing is excluded from the next search.
+fn timed_moves(
+    search: &TaskSearch<'_>,
+    transitions: &mut Transitions<'_, '_>,
+    holds: &Holds,
+    steps: &[Step],
+) -> Option<Vec<TimedMove>> {
+    let mut moves = Vec::new();
+    let mut all_found = true;
+    for in_a_row in steps.chunk_by(|a, b| is_move(a) && is_move(b)).filter(|steps| is_move(&steps[0])) {
+        let pairs: Vec<_> = in_a_row.iter().filter_map(Step::between).collect();
+        match timed_move(search, holds, &pairs) {
+            Some(found) => moves.push(found),
+            None => {
+                pairs.iter().for_each(|&[from, to]| transitions.exclude_move(from, to));
+                all_found = false;
+            }
+        }
+    }
+    all_found.then_some(moves)
+}
+
+/// A motion over these pairs of holds: straight to the end if that is possible, else over the holds in between.
+fn timed_move(search: &TaskSearch<'_>, holds: &Holds, pairs: &[[usize; 2]]) -> Option<TimedMove> {
+    let robot = search.robot;
+    let between = |[from, to]: [usize; 2]| motion::between(robot, &holds.holds[from].grasp, &holds.holds[to].grasp);
+    let ends = [pairs.first()?[0], pairs.last()?[1]];
+    let path = between(ends)
+        .or_else(|| Some(pairs.iter().map(|pair| between(*pair)).collect::<Option<Vec<_>>>()?.concat()))?;
+    let joints = |grasp: &BoardGrasp| grasp.arms.iter().flat_map(|arm| arm.q_rad.clone()).collect();
+    let arms: Vec<_> = (0..robot.arms.len()).collect();
+    let timed = timed(search, &path.iter().map(joints).collect::<Vec<_>>(), &arms)?;
+    Some((path, timed))
 }
 
 /// Collects stages.
 struct Builder<'b, 'p, 'a> {
     search: &'b TaskSearch<'b>,
     transitions: &'b Transitions<'p, 'a>,
-    holds: &'b Holds,
     stages: Vec<Stage>,
-    /// The holds of the motion that is under way.
-    moving: Vec<usize>,
     /// The piece that was served last, with the person.
     last: Option<(usize, Posture)>,
 }
 
 impl Builder<'_, '_, '_> {
-    fn add(
-        &mut self,
-        step: &Step,
-        worked: &mut impl Iterator<Item = (WorkedPiece, Posture)>,
-        paths: &mut impl Iterator<Item = Vec<Vec<f64>>>,
-    ) -> Option<()> {
-        match *step {
-            Step::Serve { .. } => {
-                self.finish_motion()?;
-                let (piece, posture) = worked.next()?;
-                self.last = Some((self.last.map_or(0, |(number, _)| number + 1), posture));
-                match self.stages.last_mut() {
-                    Some(Stage::Hold(hold)) => hold.pieces.push(piece),
-                    _ => self.stages.push(Stage::Hold(HoldStage { pieces: vec![piece] })),
-                }
-            }
-            Step::Go { from, to, kind: ArcKind::Move } => {
-                if self.moving.is_empty() {
-                    self.moving.push(from);
-                }
-                self.moving.push(to);
-            }
-            Step::Go { from, to, kind: ArcKind::Regrasp } => {
-                self.finish_motion()?;
-                for change in self.transitions.regrasps(from, to)? {
-                    let stage = self.regrasp(change, &paths.next()?, &self.holds.holds[to].grasp)?;
-                    self.stages.push(Stage::Regrasp(stage));
-                }
-            }
+    fn serve(&mut self, (piece, posture): (WorkedPiece, Posture)) {
+        self.last = Some((self.last.map_or(0, |(number, _)| number + 1), posture));
+        match self.stages.last_mut() {
+            Some(Stage::Hold(hold)) => hold.pieces.push(piece),
+            _ => self.stages.push(Stage::Hold(HoldStage { pieces: vec![piece] })),
         }
-        Some(())
     }
 
-    /// Ends the motion that is under way.
-    fn finish_motion(&mut self) -> Option<()> {
-        let moving = std::mem::take(&mut self.moving);
-        let (Some(first), Some(last)) = (moving.first(), moving.last()) else { return Some(()) };
+    fn go(&mut self, (path, Timed { time_s, q, .. }): &TimedMove) {
         let robot = self.search.robot;
-        let grasp = |hold: usize| &self.holds.holds[hold].grasp;
-        // Straight to the end if that is possible, else over the holds in between.
-        let path = motion::between(robot, grasp(*first), grasp(*last)).or_else(|| {
-            let parts = moving.windows(2).map(|pair| motion::between(robot, grasp(pair[0]), grasp(pair[1])));
-            Some(parts.collect::<Option<Vec<_>>>()?.concat())
-        })?;
         let person = self.person_during(path.iter().map(|grasp| (robot.link_poses(&grasp.arms), grasp)));
-        let joints = |grasp: &BoardGrasp| grasp.arms.iter().flat_map(|arm| arm.q_rad.clone()).collect();
-        let arms: Vec<_> = (0..robot.arms.len()).collect();
-        let Timed { time_s, q, .. } = self.timed(&path.iter().map(joints).collect::<Vec<_>>(), &arms)?;
         let mut first_joint = 0;
-        let of_arm = |arm: usize| {
-            let joints = first_joint..first_joint + robot.arms[arm].chain.dof();
+        let of_arm = |arm: &GraspingArm| {
+            let joints = first_joint..first_joint + arm.chain.dof();
             first_joint = joints.end;
-            ArmPath {
-                name: robot.arms[arm].name.clone(),
-                q_rad: q.iter().map(|q_rad| q_rad[joints.clone()].to_vec()).collect(),
-            }
+            let q_rad = q.iter().map(|q_rad| q_rad[joints.clone()].to_vec()).collect();
+            ArmPath { name: arm.name.clone(), q_rad }
         };
-        let stage = MoveStage { person, arms: arms.into_iter().map(of_arm).collect(), time_s };
-        self.stages.push(Stage::Move(stage));
-        Some(())
+        let arms = robot.arms.iter().map(of_arm).collect();
+        self.stages.push(Stage::Move(MoveStage { person, arms, time_s: time_s.clone() }));
     }
 
-    fn regrasp(&self, change: &HandChange, path: &[Vec<f64>], after: &BoardGrasp) -> Option<RegraspStage> {
+    fn regrasp(&mut self, change: &HandChange, (path, timed): TimedRegrasp, after: &BoardGrasp) {
         let &HandChange { arm, ref before, .. } = change;
         let robot = self.search.robot;
         let with = |q_rad: &Vec<f64>| {
@@ -199,16 +263,15 @@ impl Builder<'_, '_, '_> {
             arms
         };
         let person = self.person_during(path.iter().map(|q_rad| (robot.link_poses(&with(q_rad)), before)));
-        let Timed { time_s, q, .. } = self.timed(path, &[arm])?;
         let problem = self.transitions.problem.of_piece(0);
         let hold = plan_arms(problem, &Candidate::without_person(after)).swap_remove(arm);
-        Some(RegraspStage {
+        self.stages.push(Stage::Regrasp(RegraspStage {
             person,
-            time_s,
-            arm: ArmPath { name: hold.name, q_rad: q },
+            time_s: timed.time_s,
+            arm: ArmPath { name: hold.name, q_rad: timed.q },
             x_og: hold.x_og,
             grip_force_n: hold.grip_force_n,
-        })
+        }));
     }
 
     /// What the person does while links and board are at these poses: they stay if nothing comes near them.
@@ -222,26 +285,42 @@ impl Builder<'_, '_, '_> {
         });
         if touched { PersonDuring::StepsBack } else { PersonDuring::Stays }
     }
+}
 
-    /// The timing of a path of the joints of these arms.
-    fn timed(&self, path: &[Vec<f64>], arms: &[usize]) -> Option<Timed> {
-        let robot = &self.search.robot.robot;
-        let motion = &self.search.task.motion;
-        let joints = arms.iter().flat_map(|&arm| &robot.arms[self.search.robot.arms[arm].index].joints);
-        let joints: Vec<_> = joints.copied().collect();
-        let speed = |&joint: &usize| {
-            let most = robot.joints[joint].most_speed;
-            motion.speed_share * if most > 0.0 && most.is_finite() { most } else { DEFAULT_SPEED_RAD_S }
-        };
-        let velocity: Vec<_> = joints.iter().map(speed).collect();
-        let acceleration = vec![motion.acceleration_rad_s2; velocity.len()];
-        let mut timed = timing::time(path, &MotionLimits { velocity, acceleration }).ok()?;
-        // The smooth path may pass a limit that its waypoints touch by a little.
-        for q_rad in &mut timed.q {
-            for (q, &joint) in q_rad.iter_mut().zip(&joints) {
-                *q = q.clamp(robot.joints[joint].lower, robot.joints[joint].upper);
-            }
+/// The timing of a path of the joints of these arms.
+fn timed(search: &TaskSearch<'_>, path: &[Vec<f64>], arms: &[usize]) -> Option<Timed> {
+    let robot = &search.robot.robot;
+    let motion = &search.task.motion;
+    let joints = arms.iter().flat_map(|&arm| &robot.arms[search.robot.arms[arm].index].joints);
+    let joints: Vec<_> = joints.copied().collect();
+    let speed = |&joint: &usize| {
+        let most = robot.joints[joint].most_speed;
+        motion.speed_share * if most > 0.0 && most.is_finite() { most } else { DEFAULT_SPEED_RAD_S }
+    };
+    let velocity: Vec<_> = joints.iter().map(speed).collect();
+    let acceleration = vec![motion.acceleration_rad_s2; velocity.len()];
+    let mut timed = timing::time(path, &MotionLimits { velocity, acceleration }).ok()?;
+    // The smooth path may pass a limit that its waypoints touch by a little.
+    for q_rad in &mut timed.q {
+        for (q, &joint) in q_rad.iter_mut().zip(&joints) {
+            *q = q.clamp(robot.joints[joint].lower, robot.joints[joint].upper);
         }
-        Some(timed)
+    }
+    Some(timed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_person_steps_back_once_between_two_holds() {
+        use PersonDuring::{Stays, StepsBack};
+        let go = |person| Stage::Move(MoveStage { person, arms: Vec::new(), time_s: Vec::new() });
+        let hold = || Stage::Hold(HoldStage { pieces: Vec::new() });
+        let mut stages = vec![go(Stays), go(StepsBack), go(Stays), hold(), go(Stays), go(Stays), hold(), go(StepsBack)];
+        step_back_once(&mut stages);
+        let people: Vec<_> = stages.iter().map(Stage::person).collect();
+        assert_eq!(people, [StepsBack, StepsBack, StepsBack, Stays, Stays, Stays, Stays, StepsBack]);
     }
 }

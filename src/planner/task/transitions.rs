@@ -59,7 +59,7 @@ impl<'p, 'a> Transitions<'p, 'a> {
         let hold = &holds.holds[number];
         let posture = holds.places.posture(hold.place, piece)?;
         let loads = self.loads.entry(number).or_insert_with(|| GraspLoads::new(self.problem, &hold.grasp));
-        if !loads.resists(self.problem, &mut self.workspace, piece, posture.roll_rad) {
+        if !loads.resists_along(self.problem, &mut self.workspace, piece, posture.roll_rad) {
             return None;
         }
         if holds.serving[number][piece].is_finite() {
@@ -84,6 +84,11 @@ impl<'p, 'a> Transitions<'p, 'a> {
     /// Excludes a hold for a piece.
     pub fn exclude(&mut self, hold: usize, piece: usize) {
         self.served.insert((hold, piece), None);
+    }
+
+    /// Excludes the motion between two holds.
+    pub fn exclude_move(&mut self, from: usize, to: usize) {
+        self.moves.insert((from, to), false);
     }
 
     /// Excludes the regrasps between two holds.
@@ -195,10 +200,15 @@ impl Exact for Transitions<'_, '_> {
         self.problem.cost(piece, objective)
     }
 
-    fn may_exist(&mut self, from: usize, arc: &Arc) -> bool {
+    fn may_serve(&self, hold: usize, piece: usize) -> bool {
+        self.served.get(&(hold, piece)).is_none_or(Option::is_some)
+    }
+
+    fn may_exist(&self, from: usize, arc: &Arc) -> bool {
+        let key = (from, arc.to);
         match arc.kind {
-            ArcKind::Move => self.moves.get(&(from, arc.to)) != Some(&false),
-            ArcKind::Regrasp => self.exists(from, arc),
+            ArcKind::Move => self.moves.get(&key).is_none_or(|exists| *exists),
+            ArcKind::Regrasp => self.regrasps.get(&key).is_none_or(Option::is_some),
         }
     }
 
