@@ -1,5 +1,6 @@
 //! `benchdog task`: plans, simulates and judges a whole task; and the judgement of staged plans for `benchdog simulate`.
 
+mod compare;
 mod pipeline;
 
 use std::{
@@ -26,8 +27,11 @@ use crate::{
         staged_plan::StagedPlan,
         verdict::VerdictKind,
     },
-    planner::task::{TaskInfeasible, TaskPlan},
-    report::{self, stages::JudgedPlan},
+    planner::{
+        Planner,
+        task::{TaskInfeasible, TaskPlan},
+    },
+    report::{self, comparison::Comparison, stages::JudgedPlan},
     robot::Robot,
     scenario::{self, LoadedStagedPlan},
 };
@@ -36,6 +40,8 @@ use pipeline::{StagedRun, run_staged};
 /// The files of a task.
 struct TaskFiles {
     plan: PathBuf,
+    comparison: PathBuf,
+    compared_pieces: PathBuf,
     verdict: PathBuf,
     stages: PathBuf,
     path: PathBuf,
@@ -48,6 +54,8 @@ impl TaskFiles {
         let file = |file: &str| out.join(name).join(file);
         Self {
             plan: file("plan.json"),
+            comparison: file("comparison.csv"),
+            compared_pieces: file("comparison-pieces.csv"),
             verdict: file("verdict.json"),
             stages: file("stages.csv"),
             path: file("path.csv"),
@@ -56,9 +64,11 @@ impl TaskFiles {
         }
     }
 
-    /// Those that `task` writes; `simulate` leaves the plan as it is.
-    fn all(&self) -> [PathBuf; 6] {
-        [&self.plan, &self.verdict, &self.stages, &self.path, &self.page, &self.recording].map(Clone::clone)
+    /// Those that `task` writes; `simulate` leaves the first three as they are.
+    fn all(&self) -> [PathBuf; 8] {
+        let [plan, comparison, pieces] = [&self.plan, &self.comparison, &self.compared_pieces];
+        [plan, comparison, pieces, &self.verdict, &self.stages, &self.path, &self.page, &self.recording]
+            .map(Clone::clone)
     }
 }
 
@@ -79,13 +89,14 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     let start = Instant::now();
     let found = planner.search(&loaded.scenario).watch(&*progress).task(&task)?;
     let wall_ms = start.elapsed().as_secs_f64() * 1e3;
-    let TaskPlan { mut staged, separate } = match found {
+    let mut found = match found {
         Ok(found) => found,
         Err(why) => {
             progress.finish();
             return Ok(infeasible(&loaded.scenario, &why));
         }
     };
+    let TaskPlan { staged, separate } = &mut found;
     staged.planner =
         staged.planner.map(|record| PlannerRecord { wall_ms: Some(wall_ms), map_ms: Some(map_ms), ..record });
     output::message(&format!(
@@ -98,26 +109,57 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
         staged.regrasps(),
     ));
     let best: Vec<_> = separate.iter().map(|plan| Some(plan.as_ref()?.comfort?.objective)).collect();
-    report::file::write_whole(&files.plan, report::json::pretty(&staged).as_bytes())?;
-    report::file::write_whole(&files.path, report::task::path_csv(&staged, &best).as_bytes())?;
+    report::file::write_whole(&files.plan, report::json::pretty(staged).as_bytes())?;
+    report::file::write_whole(&files.path, report::task::path_csv(staged, &best).as_bytes())?;
+    let comparison = compared(args.compare, &planner, &loaded.scenario, &found, (&files, &progress))?;
+    let staged = found.staged;
     if args.plan_only {
         progress.finish();
+        print_comparison(comparison.as_ref(), args.format)?;
         return Ok(Exit::Met);
     }
     let robot = loaded.robot.at_gap(staged.object.size_m[2]);
     let states = StagedStates::new(&robot, &staged)?;
-    judged(&loaded.scenario, &robot, &staged, &states, (&files, args.format, !args.no_recording), &progress)
+    judged(&loaded.scenario, &robot, &staged, &states, (&files, args.format, !args.no_recording, comparison), &progress)
+}
+
+/// Compares the plan with other strategies if that is wanted, and writes the tables; otherwise removes those of another plan.
+fn compared(
+    is_wanted: bool,
+    planner: &Planner,
+    scenario: &Scenario,
+    found: &TaskPlan,
+    (files, progress): (&TaskFiles, &Progress),
+) -> Result<Option<Comparison>, CliError> {
+    report::file::remove(&files.comparison)?;
+    report::file::remove(&files.compared_pieces)?;
+    if !is_wanted {
+        return Ok(None);
+    }
+    progress.leaves("the plan is written");
+    let comparison = compare::compared(planner, scenario, found, progress)?;
+    report::file::write_whole(&files.compared_pieces, report::comparison::pieces_csv(&comparison).as_bytes())?;
+    report::file::write_whole(&files.comparison, report::comparison::csv(&comparison).as_bytes())?;
+    Ok(Some(comparison))
+}
+
+/// Prints the comparison for people.
+fn print_comparison(comparison: Option<&Comparison>, format: Format) -> Result<(), CliError> {
+    match (comparison, format) {
+        (Some(comparison), Format::Human) => output::print(&report::comparison::table(comparison)),
+        _ => Ok(()),
+    }
 }
 
 /// Simulates and judges a staged plan of any planner.
 pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progress) -> Result<Exit, CliError> {
     let LoadedStagedPlan { plan, states, robot, scenario, inputs, .. } = loaded;
     let files = TaskFiles::new(&args.report.out, &plan.name);
-    inputs::protect(inputs, files.all().into_iter().skip(1))?;
+    inputs::protect(inputs, files.all().into_iter().skip(3))?;
     report::file::check_folder(&args.report.out)?;
     report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
     let is_recorded = args.report.record != RecordChoice::Never;
-    judged(scenario, robot, plan, states, (&files, args.report.format, is_recorded), progress)
+    judged(scenario, robot, plan, states, (&files, args.report.format, is_recorded, None), progress)
 }
 
 /// Simulates and judges a plan, writes verdict, table and report, and prints the table.
@@ -126,7 +168,7 @@ fn judged(
     robot: &Robot,
     plan: &StagedPlan,
     states: &StagedStates,
-    (files, format, record): (&TaskFiles, Format, bool),
+    (files, format, record, comparison): (&TaskFiles, Format, bool, Option<Comparison>),
     progress: &Progress,
 ) -> Result<Exit, CliError> {
     report::file::remove(&files.verdict)?;
@@ -147,7 +189,8 @@ fn judged(
     }
     report::file::write_whole(&files.stages, report::task::stages_csv(&verdict).as_bytes())?;
     let judged = JudgedPlan { plan, holdings: &states.holdings, robot, scenario, verdict: &verdict };
-    let page = report::task::page(&judged, simulated.as_ref().map(|(trace, _)| trace))?;
+    let trace = simulated.as_ref().map(|(trace, _)| trace);
+    let page = report::task::page(&judged, trace, comparison.as_ref())?;
     report::file::write_whole(&files.page, page.as_bytes())?;
     report::file::write_whole(&files.verdict, report::json::pretty(&verdict).as_bytes())?;
     drop(writing);
@@ -155,6 +198,7 @@ fn judged(
         Format::Human => output::print(&report::task::table(&verdict))?,
         Format::Json => output::print(&report::json::pretty(&verdict))?,
     }
+    print_comparison(comparison.as_ref(), format)?;
     Ok(match (verdict.met, verdict.verdict) {
         (true, _) => Exit::Met,
         (false, VerdictKind::Infeasible) => Exit::Infeasible,
