@@ -12,7 +12,7 @@ run      one `run --record never` with the 25 operations of the paper's evaluati
 curve    `curve`: muscular_curve.csv
 top      `plan --top 3` on the quickstart
 front    `front` on the quickstart: front.csv and its plans
-circle   `circle` on the cut of the rim: circle.csv, motion.csv and their plans
+task     `task --plan-only --compare` on the whole circle: plan.json, path.csv and the tables of the comparison
 export   `export --mjcf` and
 margin   `margin --format json` of the plan under scenarios/plans
 results  with `--results A B` only: the CSV files of two folders that `reproduce` wrote
@@ -53,7 +53,7 @@ IGNORED = {"versions", "wall_ms", "map_ms"}
 WORDING = {"reason"}
 # Exit codes of a run that reached its end: expectations met, not met, no plan.
 ENDED = {0, 1, 3}
-COMMANDS = ["run", "curve", "top", "front", "circle", "export", "margin"]
+COMMANDS = ["run", "curve", "top", "front", "task", "export", "margin"]
 
 # Settings that the scenarios of the evaluation leave at their defaults.
 VARIANTS = {
@@ -143,13 +143,14 @@ def jobs(folder: Path, given: Path, only: list[str], threads: int | None) -> lis
             sys.exit(f"--only {', '.join(patterns)}: no scenario has such a name")
         limit = ["--jobs", str(threads)] if threads else []
         chosen.append(Job("run", ["run", "--record", "never", *limit, "--out", "{out}"], "run", files))
-    quickstart, rim = str(scenarios / "quickstart.toml"), str(scenarios / "cut-rim.toml")
+    names = ["quickstart.toml", "cut-rim.toml", "whole-circle.toml"]
+    quickstart, rim, circle = (str(scenarios / name) for name in names)
     plan = str(scenarios / "plans" / "cut-rim.json")
     others = [
         Job("curve", ["curve", "--out", "{out}"], "curve"),
         Job("top", ["plan", "--top", "3", "-o", "{out}", quickstart], "top"),
         Job("front", ["front", "--out", "{out}", quickstart], "front"),
-        Job("circle", ["circle", "--out", "{out}", rim], "circle"),
+        Job("task", ["task", "--plan-only", "--compare", "--out", "{out}", circle], "task"),
         Job("export", ["export", "--mjcf", "{out}", plan, "--scenario", rim], "export.xml"),
         Job("margin", ["margin", "--format", "json", plan, "--scenario", rim], "margin.json", stdout_is_output=True),
     ]

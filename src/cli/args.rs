@@ -10,7 +10,7 @@ use super::{
     help,
     search_args::SearchArgs,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
-    task_args::{CircleArgs, TaskArgs},
+    task_args::TaskArgs,
     versions,
 };
 use crate::model::{
@@ -38,8 +38,6 @@ pub enum Command {
     Replan(ReplanArgs),
     /// Write the Pareto front of muscular and peripersonal comfort as CSV, SVG and plans
     Front(FrontArgs),
-    /// Plan the cut of a whole circle: with one grasp, with a sequence of poses, and with 16 separate plans
-    Circle(CircleArgs),
     /// Plan, simulate and judge a whole task: a path that is cut or drilled in holds, motions and regrasps
     Task(TaskArgs),
     /// Simulate and judge a plan, also one from another planner

@@ -64,25 +64,20 @@ Example:
 The objective's weights vary from muscular comfort alone to peripersonal comfort alone, each divided
 by its optimum. Plans that another plan dominates are omitted. The plans are front-1.json, ...";
 
-/// `benchdog circle --help`.
-pub const CIRCLE: &str = "\
-Example:
-  benchdog circle scenarios/cut-rim.toml --out circle
-
-circle.csv lists the comfort at 16 points for the three strategies. The plans are hold-1.json to
-hold-16.json, sequence-1.json to sequence-16.json and separate-1.json to separate-16.json.
-motion.csv is the sequence's path of the arms' joints and the board from point to point.";
-
 /// `benchdog task --help`.
 pub const TASK: &str = "\
 Examples:
   benchdog task scenarios/whole-circle.toml     plan, simulate and judge 16 pieces of a circle
   benchdog task scenarios/whole-circle.toml --plan-only
   benchdog task scenarios/whole-circle.toml --stream       each stage is written as soon as it is planned
+  benchdog task scenarios/whole-circle.toml --compare      what the motions and regrasps are worth
   benchdog simulate out/whole-circle/plan.json  judge the staged plan again, or that of another planner
 
-The folder of the task has plan.json, verdict.json, stages.csv, path.csv, report.html and recording.rrd,
-with --stream stages.jsonl too: the plan without stages in its first line, then a stage a line.";
+The folder of the task has plan.json, verdict.json, stages.csv, path.csv, report.html and recording.rrd.
+With --compare it also has comparison.csv, a row for each strategy, and comparison-pieces.csv, a row for
+each strategy and piece: the staged plan, one fixed hold for as many pieces as possible, the best hold
+for each piece by itself, and random holds.
+With --stream it also has stages.jsonl: the plan without stages in its first line, then a stage a line.";
 
 /// `benchdog sweep --help`.
 pub const SWEEP: &str = "\

@@ -3,7 +3,6 @@
 
 mod args;
 mod cache;
-mod circle;
 mod compare;
 mod completions;
 mod curve;
@@ -75,7 +74,6 @@ pub fn main() -> ExitCode {
         Command::Plan(args) => plan::plan(args),
         Command::Replan(args) => replan::replan(args),
         Command::Front(args) => front::front(args),
-        Command::Circle(args) => circle::circle(args),
         Command::Task(args) => task::task(args),
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),

@@ -51,16 +51,14 @@ pub struct Progress {
     keeps: AtomicBool,
     /// What is done after Ctrl-C, if there is something to keep.
     ending: &'static str,
-    /// What stays of a command that is ended at once, in words.
-    left: Mutex<String>,
+    /// What stays of a command that is ended before its end, in words, if it is not what usually stays.
+    left: Mutex<Option<String>>,
 }
 
 /// What is done at present.
 struct Now {
     /// The scenario or job of several that began last.
     item: Option<String>,
-    /// The point of a circle that is planned.
-    point: Option<String>,
     /// What is done, in words.
     doing: String,
     /// How long that usually takes.
@@ -71,7 +69,7 @@ struct Now {
 
 impl Now {
     fn words(&self) -> String {
-        let parts = [self.item.as_deref(), self.point.as_deref(), Some(self.doing.as_str())];
+        let parts = [self.item.as_deref(), Some(self.doing.as_str())];
         parts.into_iter().flatten().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(": ")
     }
 }
@@ -100,11 +98,11 @@ impl Progress {
         let progress = Arc::new(Self {
             bar,
             begun: Instant::now(),
-            now: Mutex::new(Now { item: None, point: None, doing: doing.to_owned(), usually: "", candidates: 0 }),
+            now: Mutex::new(Now { item: None, doing: doing.to_owned(), usually: "", candidates: 0 }),
             counts: items.is_some(),
             keeps: AtomicBool::new(false),
             ending,
-            left: Mutex::new(NOTHING_LEFT.to_owned()),
+            left: Mutex::new(None),
         });
         progress.style(OPEN);
         progress.bar.set_message(doing.to_owned());
@@ -132,14 +130,14 @@ impl Progress {
         self.keeps.store(true, Ordering::SeqCst);
     }
 
-    /// Says what stays of the command if it is ended at once from now on.
+    /// Says what stays of the command if it is ended from now on.
     pub fn leaves(&self, what: &str) {
-        what.clone_into(&mut self.left.lock().unwrap_or_else(PoisonError::into_inner));
+        *self.left.lock().unwrap_or_else(PoisonError::into_inner) = Some(what.to_owned());
     }
 
     /// Shows that a scenario or a job has started.
     pub fn begins(&self, name: &str) {
-        self.show(|now| (now.item, now.point) = (Some(name.to_owned()), None));
+        self.show(|now| now.item = Some(name.to_owned()));
     }
 
     /// Shows what is done now.
@@ -209,10 +207,7 @@ impl Progress {
             self.show(|now| {
                 now.candidates = 0;
                 now.usually = usually(phase);
-                match phase {
-                    Phase::Point { .. } => (now.point, now.doing) = (Some(phase.to_string()), String::new()),
-                    _ => now.doing = phase.to_string(),
-                }
+                now.doing = phase.to_string();
             });
             if !self.counts {
                 self.style(if total == 0 { OPEN } else { MEASURED });
@@ -266,7 +261,8 @@ impl Interruptible for Progress {
         let elapsed_s = self.begun.elapsed().as_secs_f64();
         let doing = self.with_now(|now| now.words());
         let left = self.left.lock().unwrap_or_else(PoisonError::into_inner);
-        let left = if self.ending().is_some() { UNCHECKED_LEFT } else { &left };
+        let usually = if self.ending().is_some() { UNCHECKED_LEFT } else { NOTHING_LEFT };
+        let left = left.as_deref().unwrap_or(usually);
         format!("interrupted after {elapsed_s:.1} s, while {doing}: {left}")
     }
 

@@ -1,4 +1,4 @@
-//! The command line of `task` and `circle`.
+//! The command line of `task`.
 
 use std::path::PathBuf;
 
@@ -26,27 +26,13 @@ pub struct TaskArgs {
     /// Plan only
     #[arg(long)]
     pub plan_only: bool,
+    /// Also compare with one fixed hold, the best hold for each piece, and random holds
+    #[arg(long)]
+    pub compare: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
     /// Budget and seed of the search.
-    #[command(flatten)]
-    pub search: SearchArgs,
-    /// Maps between runs.
-    #[command(flatten)]
-    pub cache: CacheArgs,
-}
-
-/// `benchdog circle`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = help::CIRCLE)]
-pub struct CircleArgs {
-    /// Scenario of a cut; the circle about the board's centre goes through its point
-    pub scenario: PathBuf,
-    /// Folder for `circle.csv`, `motion.csv` and the plans
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
-    /// Budget and seed of each search.
     #[command(flatten)]
     pub search: SearchArgs,
     /// Maps between runs.

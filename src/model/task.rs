@@ -90,6 +90,13 @@ impl Task {
         self.operation_at(piece.stroke, piece.middle_m(), thickness_m)
     }
 
+    /// How long the tool works on a piece, s: its length at the tool's speed, or `hold_s` at a hole.
+    #[must_use]
+    pub fn work_s(&self, piece: &Piece, hold_s: f64) -> f64 {
+        let length_m = piece.length_m();
+        if length_m > 0.0 { length_m / self.speed_m_s } else { hold_s }
+    }
+
     /// The length of all strokes, m.
     #[must_use]
     pub fn length_m(&self) -> f64 {

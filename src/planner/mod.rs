@@ -11,6 +11,7 @@
 mod assemble;
 mod assessment;
 mod candidate;
+pub mod comparison;
 mod configurations;
 mod contact;
 mod domain;
@@ -24,9 +25,9 @@ mod map_store;
 mod natural_boards;
 mod near_miss;
 mod normalise;
+mod one_hold;
 mod outcome;
 mod params;
-pub mod path;
 mod place_board;
 #[allow(clippy::module_inception)]
 mod planner;

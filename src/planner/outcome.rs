@@ -259,9 +259,6 @@ pub enum PlanError {
     /// The scenario's person or tool is invalid.
     #[error("{0}")]
     Person(#[from] HumanError),
-    /// A circle was asked for, and the operation is not a cut along one about the board's centre.
-    #[error("the operation is not a cut along a circle about the board's centre")]
-    NoCircle,
     /// The watch stopped the work before anything was found; nothing was kept.
     #[error("stopped before anything was found")]
     Stopped,

@@ -12,9 +12,9 @@ use super::{
     library::GraspLibrary,
     map_store::MapStore,
     normalise::{alone, needs_optima, with_optima},
+    one_hold::{self, PlansByPiece},
     outcome::{Infeasible, Outcome, PlanError},
     params::SearchBudget,
-    path::{self, CirclePlans},
     problem::Problem,
     replan::{self, KnownHolds, Replanned, Replanning},
     search::{rank, search},
@@ -297,21 +297,27 @@ fn best_plan<'a>(
     watch: &'a dyn Watch,
 ) -> Result<Outcome<Plan>, PlanError> {
     let mut evaluator = evaluator(scenario, maps, watch)?;
-    let budget = SearchBudget::of(scenario);
-    let best = |evaluator: &mut Evaluator<'_>, found: Vec<Feasible>| -> Option<Plan> {
-        found.iter().find_map(|found| verified(evaluator, found))
-    };
-    let found = search(&mut evaluator, &maps.library, warm, &budget, watch);
-    if let Some(plan) = best(&mut evaluator, found) {
+    if let Some(plan) = best_found(&mut evaluator, maps, warm, watch) {
         return Ok(Outcome::Found(plan));
     }
     go_on(watch)?;
     let again = if twice { second_search(&mut evaluator, maps, watch)? } else { None };
     let searched_twice = again.is_some();
-    match again.and_then(|found| best(&mut evaluator, found)) {
+    match again.and_then(|found| best_verified(&mut evaluator, &found)) {
         Some(plan) => Ok(Outcome::Found(plan)),
         None => Ok(Outcome::Infeasible(evidence(evaluator, maps, searched_twice, watch)?)),
     }
+}
+
+/// The best plan that one search finds.
+fn best_found(evaluator: &mut Evaluator<'_>, maps: &Maps, warm: &WarmStarts, watch: &dyn Watch) -> Option<Plan> {
+    let budget = SearchBudget::of(evaluator.problem.scenario);
+    let found = search(evaluator, &maps.library, warm, &budget, watch);
+    best_verified(evaluator, &found)
+}
+
+fn best_verified(evaluator: &mut Evaluator<'_>, found: &[Feasible]) -> Option<Plan> {
+    found.iter().find_map(|found| verified(evaluator, found))
 }
 
 /// The candidates of the second search; `None` without one: the search has ended early, or the planner is the random one, which
@@ -536,38 +542,20 @@ impl<'a> Search<'a> {
         Ok(search.run(ahead, ready)?.map(|staged| TaskPlan { staged, separate: separate.clone() }))
     }
 
-    /// Plans for a whole circle that is cut, with the person's best response: one grasp, a sequence of board poses with one
-    /// grasp, and a plan for every point by itself. A stopped search gives what was found.
-    ///
-    /// # Errors
-    /// When the scenario's person or tool is invalid, or its operation is not a cut along a circle, and after a stop before
-    /// anything was found.
-    pub fn circle(self) -> Result<Outcome<CirclePlans>, PlanError> {
+    /// The plans of one hold for as many of a path's pieces as possible, with the person's best response. The pieces are of one task
+    /// ([`task::pieces`]), with the optima of a normalised objective filled in.
+    pub(super) fn one_hold(self, pieces: &[Scenario]) -> Result<PlansByPiece, PlanError> {
         let Self { planner, scenario, watch } = self;
         let maps = planner.maps(scenario);
-        // The optima of the scenario's own cut serve for all points, and make them comparable.
-        let scenario = match planner.normalised(&maps, scenario, watch)? {
-            Outcome::Found(scenario) => scenario,
-            Outcome::Infeasible(why) => return Ok(Outcome::Infeasible(why)),
-        };
-        let points = path::points(&scenario).ok_or(PlanError::NoCircle)?;
-        let continuous = path::continuous(&points, &maps.library, watch)?;
-        let plan = |(index, point): (usize, &Scenario)| {
-            begin(watch, Phase::Point { number: index as u64 + 1, of: points.len() as u64 });
-            let warm = planner.warm_starts(&maps, point, watch)?;
-            // A point of a circle has neighbours that are searched too.
-            best_plan(point, &maps, &warm, false, watch)
-        };
-        let found = |planned| match planned {
-            Ok(outcome) => Ok(Outcome::found(outcome)),
-            Err(PlanError::Stopped) => Ok(None),
-            Err(error) => Err(error),
-        };
-        let separate = points.iter().enumerate().map(plan).map(found).collect::<Result<Vec<_>, _>>()?;
-        let plans = CirclePlans { continuous, separate };
-        if plans.is_empty() {
-            go_on(watch)?;
-        }
-        Ok(Outcome::Found(plans))
+        one_hold::plans(pieces, &task::planned_by_themselves(pieces.len()), &maps.library, watch)
+    }
+
+    /// The best plan that one search finds, without evidence if it finds nothing. The optima of a normalised objective are filled in.
+    pub(super) fn searched_once(self) -> Result<Option<Plan>, PlanError> {
+        let Self { planner, scenario, watch } = self;
+        let maps = planner.maps(scenario);
+        let warm = planner.warm_starts(&maps, scenario, watch)?;
+        let mut evaluator = evaluator(scenario, &maps, watch)?;
+        Ok(best_found(&mut evaluator, &maps, &warm, watch))
     }
 }

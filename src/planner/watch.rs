@@ -86,17 +86,10 @@ pub enum Phase {
     Pieces,
     /// The way through the holds of a task.
     Task,
-    /// One grasp for all points of a circle.
-    OneGrasp,
-    /// A sequence of poses for the points of a circle.
-    Sequence,
-    /// The plan of one point of a circle by itself.
-    Point {
-        /// Its number, from 1.
-        number: u64,
-        /// All points.
-        of: u64,
-    },
+    /// One hold for all pieces of a path.
+    OneHold,
+    /// Random holds of a path's pieces.
+    RandomHolds,
 }
 
 impl std::fmt::Display for Phase {
@@ -112,9 +105,8 @@ impl std::fmt::Display for Phase {
             Self::Weighting { number, of } => write!(f, "searching weighting {number} of {of}"),
             Self::Pieces => write!(f, "planning the pieces of the path"),
             Self::Task => write!(f, "searching the stages of the task"),
-            Self::OneGrasp => write!(f, "searching one grasp for the circle"),
-            Self::Sequence => write!(f, "searching a sequence of poses for the circle"),
-            Self::Point { number, of } => write!(f, "planning point {number} of {of}"),
+            Self::OneHold => write!(f, "comparing: searching one hold for the whole path"),
+            Self::RandomHolds => write!(f, "comparing: drawing random holds of the pieces"),
         }
     }
 }

@@ -3,9 +3,9 @@
 //! All functions are pure, from outcomes to text, except those of [`mod@file`], which write to the disk. Nothing here
 //! changes a verdict, prints, or reads a clock. Durations are shown on the console only, so equal runs write equal files.
 
-pub mod circle;
 pub(crate) mod columns;
 pub mod compare;
+pub mod comparison;
 pub mod console;
 pub(crate) mod csv_text;
 pub mod curve;

@@ -4,6 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::{
     columns::aligned,
+    comparison::{self, Comparison},
     csv_text::csv_text,
     html::document,
     plot::{Line, Plot},
@@ -130,11 +131,16 @@ fn person_in_words(person: &PersonOverTask) -> String {
     )
 }
 
-/// The report as one page: summary, timeline, comfort along the path, pictures of the stages and their checks.
+/// The report as one page: summary, timeline, comfort along the path, the comparison with other strategies if there is one, pictures
+/// of the stages and their checks.
 ///
 /// # Errors
 /// If the person or the tool is invalid.
-pub fn page(judged: &JudgedPlan<'_>, trace: Option<&StagedTrace>) -> Result<String, HumanError> {
+pub fn page(
+    judged: &JudgedPlan<'_>,
+    trace: Option<&StagedTrace>,
+    comparison: Option<&Comparison>,
+) -> Result<String, HumanError> {
     let JudgedPlan { plan, verdict, .. } = *judged;
     let body = html! {
         p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Equal runs give equal pages." }
@@ -145,13 +151,16 @@ pub fn page(judged: &JudgedPlan<'_>, trace: Option<&StagedTrace>) -> Result<Stri
         (timeline(verdict))
         h2 { "Along the path" }
         (path(plan))
+        @if let Some(comparison) = comparison { (comparison::section(comparison)) }
         @if let Some(trace) = trace { h2 { "Load and distance" } (plots(trace)) }
         h2 { "Stages" }
         (stages::pictures(judged)?)
         h2 { "Checks" }
         (checks(verdict))
     };
-    Ok(document(&format!("Benchdog task: {}", verdict.name), &[STYLE, stages::STYLE].concat(), &body))
+    let of_comparison = if comparison.is_some() { comparison::STYLE } else { "" };
+    let style = [STYLE, stages::STYLE, of_comparison].concat();
+    Ok(document(&format!("Benchdog task: {}", verdict.name), &style, &body))
 }
 
 /// The colours of the kinds of stages.

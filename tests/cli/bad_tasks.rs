@@ -325,7 +325,7 @@ fn unknown_keys() {
 fn other_commands_refuse_a_task_file() {
     let message =
         "bad.toml:4: task: found [task], expected [operation] with one operation; a task is run by `benchdog task`";
-    for command in ["plan", "run", "curve", "circle", "front", "sweep"] {
+    for command in ["plan", "run", "curve", "front", "sweep"] {
         let folder = folder(&[("bad.toml", CUT)]);
         assert_refused(&benchdog(folder.path(), &[command, "bad.toml"]), message);
     }

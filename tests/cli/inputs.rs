@@ -41,12 +41,9 @@ fn plan_does_not_overwrite_its_scenario_through_a_link() {
 }
 
 #[test]
-fn front_circle_and_curve_do_not_overwrite_their_scenario() {
+fn front_and_curve_do_not_overwrite_their_scenario() {
     for name in ["front-1.json", "front.csv", "front.svg", "own-weights.json"] {
         assert_refused(&[(name, CUT)], &["front", name, "--out", "."], &format!("./{name}"));
-    }
-    for name in ["hold-1.json", "sequence-7.json", "separate-16.json", "circle.csv", "motion.csv"] {
-        assert_refused(&[(name, CUT)], &["circle", name, "--out", "."], &format!("./{name}"));
     }
     for name in ["muscular_curve.csv", "muscular_curve.svg"] {
         assert_refused(&[(name, CUT)], &["curve", name, "--out", "."], &format!("./{name}"));

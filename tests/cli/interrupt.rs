@@ -121,11 +121,11 @@ fn a_plan_that_has_not_begun_to_search_writes_nothing() {
 }
 
 #[test]
-fn fronts_and_circles_that_have_not_begun_to_search_write_nothing() {
+fn fronts_and_tasks_that_have_not_begun_to_search_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let wait = Duration::from_millis(50);
     writes_nothing(folder.path(), &["front", &scenario("quickstart"), "--no-cache", "--out", "out"], wait);
-    writes_nothing(folder.path(), &["circle", &scenario("cut-rim"), "--no-cache", "--out", "out"], wait);
+    writes_nothing(folder.path(), &["task", &scenario("whole-circle"), "--no-cache", "--out", "out"], wait);
 }
 
 #[test]

@@ -81,7 +81,6 @@ fn the_help_of_every_command() {
         "plan",
         "replan",
         "front",
-        "circle",
         "task",
         "simulate",
         "sweep",

@@ -1,6 +1,6 @@
 //! Tasks: planned, simulated and judged stage by stage; staged plans that fail, each in its stage; bad paths.
 
-use std::{fs, path::Path, sync::LazyLock};
+use std::{collections::BTreeMap, fs, path::Path, sync::LazyLock};
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -175,6 +175,77 @@ fn a_streamed_task_gives_out_its_stages_one_after_the_other() {
     let stages = std::mem::replace(&mut plan["stages"], Value::Array(Vec::new()));
     assert_eq!(first, plan);
     assert_eq!(stages, lines.iter().map(|line| line["stage"].clone()).collect::<Value>());
+}
+
+/// Five pieces of the circle on straight segments, which are cut in two holds.
+const ARC: &str = "format = 1\nname = \"arc\"\n\n[task]\nkind = \"cut\"\nforce_n = 30.0\nlines_m = [[[-0.023869484, 0.12], \
+                   [-0.06797454, 0.101731088], [-0.101731088, 0.06797454], [-0.12, 0.023869484], [-0.12, -0.023869484], \
+                   [-0.101731088, -0.06797454]]]\n";
+
+/// The rows of a CSV file, each a map from column to cell.
+fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> Option<f64> {
+    row[column].parse().ok()
+}
+
+#[test]
+fn a_task_is_compared_with_other_strategies() {
+    let folder = folder(&[("arc.toml", ARC)]);
+    let output = benchdog(folder.path(), &["task", "arc.toml", "--compare"]);
+    let printed = String::from_utf8(output.stdout.clone()).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{printed}{}", stderr(&output));
+    let out = folder.path().join("out/arc");
+    let (totals, pieces) = (rows(&out.join("comparison.csv")), rows(&out.join("comparison-pieces.csv")));
+    let names: Vec<_> = totals.iter().map(|row| row["strategy"].as_str()).collect();
+    assert_eq!((names, pieces.len()), (vec!["staged", "one_hold", "separate", "random"], 4 * 5));
+    let of = |strategy: &str| pieces.iter().filter(|row| row["strategy"] == strategy).collect::<Vec<_>>();
+    // The figures of the staged plan are those of its other tables.
+    let path = rows(&out.join("path.csv"));
+    for (row, piece) in of("staged").into_iter().zip(&path) {
+        assert_eq!((&row["objective"], &row["effort"]), (&piece["objective"], &piece["effort"]));
+    }
+    let verdict = json(&out.join("verdict.json"));
+    for (column, key) in [("mean_effort", "mean_effort"), ("accumulated_effort_s", "accumulated_effort_s")] {
+        // Rounding to four digits and more.
+        assert!((number(&totals[0], column).unwrap() - verdict["person"][key].as_f64().unwrap()).abs() < 1e-4);
+    }
+    // Separate plans are the best that a search finds, not the best that exist; another strategy has been seen to be better at a
+    // piece by some percent at most, and is not in the mean.
+    let separate: Vec<_> = of("separate").into_iter().map(|row| number(row, "objective").unwrap()).collect();
+    for total in &totals {
+        let served = of(&total["strategy"]).into_iter().map(|row| number(row, "objective"));
+        let kept: Vec<_> = served.zip(&separate).filter_map(|(objective, best)| Some(objective? / best)).collect();
+        assert_eq!(kept.len(), number(total, "served").unwrap() as usize);
+        assert!(kept.iter().all(|kept| *kept < 1.05), "{} {kept:?}", total["strategy"]);
+        assert!(kept.iter().sum::<f64>() / kept.len() as f64 <= 1.0, "{} {kept:?}", total["strategy"]);
+    }
+    // Holds that are chosen are better than random ones, which are the means of eight plans.
+    assert!(number(&totals[3], "staged_ratio").unwrap() < 0.7, "{:?}", totals[3]);
+    assert!(of("random").iter().all(|row| row["plans"] == "8"));
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    let sentence = printed.lines().last().unwrap();
+    assert!(sentence.starts_with("While the robot ") && page.contains(sentence), "{sentence}");
+    assert_eq!(page.matches("class=\"plot comparison\"").count(), 2);
+    // A task that is not compared leaves no comparison of another plan.
+    benchdog(folder.path(), &["task", "arc.toml", "--plan-only"]);
+    assert!(out.join("plan.json").exists() && !out.join("comparison.csv").exists());
+    assert!(!out.join("comparison-pieces.csv").exists());
+}
+
+#[test]
+fn a_comparison_is_the_same_with_one_thread_and_two() {
+    let folder = folder(&[("arc.toml", ARC)]);
+    let compared = |threads: &str| {
+        let arguments = ["task", "arc.toml", "--compare", "--plan-only", "--out", threads];
+        let output = command(folder.path(), &arguments).env("RAYON_NUM_THREADS", threads).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let file = |name: &str| fs::read(folder.path().join(threads).join("arc").join(name)).unwrap();
+        (file("comparison.csv"), file("comparison-pieces.csv"), output.stdout)
+    };
+    assert!(compared("1") == compared("2"));
 }
 
 /// A motion that is twenty times as fast, with the inertia of arms and board in its way.

@@ -10,6 +10,7 @@ mod shared;
 mod check;
 mod clearance;
 mod comfort;
+mod comparison;
 mod infeasible;
 mod kept_maps;
 mod lateral;

@@ -6,12 +6,16 @@ use benchdog::{
         operation::OperationKind,
         plan::{Plan, PostureConstraint},
         scenario::{Budget, PlannerKind, PostureLimits, Scenario, StandingPlace},
+        stop::Never,
     },
     planner::{Infeasible, Outcome},
     reproduce::paper,
 };
 
-use crate::shared::{PLANNER, fast, flaws, found, plan, verified};
+use crate::{
+    comparison::{compared, square},
+    shared::{PLANNER, fast, flaws, found, plan, verified},
+};
 
 /// An operation of the paper's evaluation for a natural person.
 fn natural(name: &str) -> Scenario {
@@ -51,19 +55,18 @@ fn every_planner_keeps_every_limit_of_a_natural_posture() {
 }
 
 #[test]
-fn several_plans_the_front_and_a_circle_keep_them_too() {
+fn several_plans_the_front_and_the_plans_of_a_path_keep_them_too() {
     let scenario = fast("cut-front");
     let search = || PLANNER.search(&scenario);
     let plans = found(search().top(3).unwrap());
     let front = found(search().front().unwrap());
     assert!(plans.len() > 1 && front.points.len() > 1);
-    let circle = found(search().circle().unwrap());
-    let of_circle = circle.separate.iter().chain(&circle.continuous.hold).chain(&circle.continuous.sequence);
-    let mut of_circle: Vec<_> = of_circle.flatten().collect();
-    // Most points of the circle can be cut from somewhere.
-    assert!(of_circle.len() > 16, "{}", of_circle.len());
-    of_circle.extend(plans.iter().chain(front.points.iter().map(|point| &point.plan)));
-    of_circle.into_iter().for_each(is_natural);
+    let compared = compared(&scenario, &square(), &Never).unwrap();
+    let of_path: Vec<_> = compared.one_hold.iter().chain(&compared.separate).flatten().collect();
+    // Every side of a square can be cut from somewhere.
+    assert!(of_path.len() > 4, "{}", of_path.len());
+    let of_front = front.points.iter().map(|point| &point.plan);
+    plans.iter().chain(of_front).chain(of_path).for_each(is_natural);
 }
 
 #[test]
@@ -118,14 +121,14 @@ fn a_person_who_stands_somewhere_gets_a_plan_for_that_place() {
         p_wb_m[0] += 0.5;
         assert!(flaws(&plan, &scenario).iter().any(|flaw| flaw.starts_with("human.x_wb: found place")));
     }
-    // A circle, from one place: its plans are for that place too.
+    // A square, cut from one place: its plans are for that place too.
     let mut scenario = natural("cut-05");
     scenario.planner.budget = Budget::Fast;
     scenario.human.place =
         StandingPlace::Given { p_wb_m: [1.10, -0.30], heading_deg: 170.0, tolerance_m: 0.05, tolerance_deg: 5.0 };
-    let circle = found(PLANNER.search(&scenario).circle().unwrap());
-    let plans: Vec<_> = circle.separate.iter().chain(&circle.continuous.hold).flatten().collect();
-    assert!(plans.len() > 8, "{}", plans.len());
+    let compared = compared(&scenario, &square(), &Never).unwrap();
+    let plans: Vec<_> = compared.separate.iter().chain(&compared.one_hold).flatten().collect();
+    assert!(plans.len() > 4, "{}", plans.len());
     plans.into_iter().for_each(|plan| verified(plan, plan.scenario.as_ref().unwrap()));
     // Nobody drills from the far end of the room.
     let mut scenario = fast("quickstart");

@@ -1,21 +1,14 @@
-//! Searches that are limited, and searches for several plans: the best few, the Pareto front, a whole circle.
+//! Searches that are limited, and searches for several plans: the best few and the Pareto front.
 
 use benchdog::{
-    collision::{BoardBody, CollisionModel, Scene},
     model::{
-        board::BoardShape,
-        frames::Pose,
         plan::Plan,
         scenario::{Budget, PlannerKind},
     },
-    planner::{self, Outcome, path},
-    robot::{ArmState, Chain},
+    planner::{self, Outcome},
 };
 
-use crate::{
-    common::baxter,
-    shared::{PLANNER, fast, found, plan, verified},
-};
+use crate::shared::{PLANNER, fast, found, plan, verified};
 
 fn objective(plan: &Plan) -> f64 {
     plan.comfort.as_ref().unwrap().objective
@@ -120,98 +113,5 @@ fn a_front_marks_the_share_that_a_normalised_objective_asks_for() {
         let front = found(PLANNER.search(&scenario).front().unwrap());
         // The sweep's own optima may be some hundredths better than those of the objective.
         assert!((front.own.share - 0.3).abs() < 0.02, "{kind}: {}", front.own.share);
-    }
-}
-
-/// Poses of the robot's links when its arms take these configurations.
-fn link_poses(q_rad: &[Vec<f64>], thickness_m: f64) -> Vec<Pose> {
-    let states: Vec<_> = (0..q_rad.len())
-        .map(|arm| {
-            let finger_travel_m = [0, 1].map(|finger| baxter().arms[arm].gripper.travel_for_gap_m(finger, thickness_m));
-            ArmState { arm, q_rad: &q_rad[arm], finger_travel_m }
-        })
-        .collect();
-    baxter().link_poses(&baxter().positions(&states))
-}
-
-#[test]
-fn a_circle_is_covered_by_one_grasp_and_by_a_sequence_with_one_grasp() {
-    let scenario = fast("cut-rim");
-    let points = path::points(&scenario).unwrap();
-    let found = found(PLANNER.search(&scenario).circle().unwrap()).continuous;
-    let covered = |plans: &path::PlansByPoint| plans.iter().flatten().count();
-    assert!(covered(&found.hold) > 0 && covered(&found.sequence) >= covered(&found.hold));
-    for plans in [&found.hold, &found.sequence] {
-        let first = plans.iter().flatten().next().unwrap();
-        for (plan, scenario) in plans.iter().zip(&points) {
-            let Some(plan) = plan else { continue };
-            verified(plan, scenario);
-            assert!(plan.arms.iter().zip(&first.arms).all(|(a, b)| a.x_og == b.x_og), "the grasp stays");
-            assert_eq!(plan.operation.x_ot, scenario.operation.x_ot);
-        }
-    }
-    let first = found.hold.iter().flatten().next().unwrap();
-    for plan in found.hold.iter().flatten() {
-        assert_eq!((&plan.arms, plan.object.x_wo), (&first.arms, first.object.x_wo), "one grasp for all points");
-    }
-    motions_are_clear(&found, first.object.size_m);
-}
-
-/// The limit of evaluations applies to each of the three searches of a circle.
-#[test]
-fn no_search_of_a_circle_evaluates_more_than_allowed() {
-    const LIMIT: u64 = 60;
-    let mut scenario = fast("cut-rim");
-    scenario.planner.evaluations = Some(LIMIT);
-    let plans = found(PLANNER.search(&scenario).circle().unwrap());
-    let most = |plans: &path::PlansByPoint| {
-        plans.iter().flatten().map(|plan| plan.planner.unwrap().evaluations).max().unwrap_or(0)
-    };
-    // The two searches without regrasping share a count.
-    assert!(most(&plans.continuous.hold) <= 2 * LIMIT, "{}", most(&plans.continuous.hold));
-    assert!(most(&plans.continuous.sequence) <= 2 * LIMIT, "{}", most(&plans.continuous.sequence));
-    assert!(most(&plans.separate) <= LIMIT, "{}", most(&plans.separate));
-    assert!(plans.continuous.hold.iter().any(Option::is_some), "60 evaluations find some coverage");
-}
-
-/// Every step of every motion within joint limits, on the grasps, free of collisions, short, and from plan to plan.
-fn motions_are_clear(found: &path::Continuous, size_m: [f64; 3]) {
-    let collision = CollisionModel::new(baxter());
-    let board = BoardBody::new(&BoardShape::cuboid(size_m));
-    let grasp = &found.sequence.iter().flatten().next().unwrap().arms;
-    let chains: Vec<_> = (0..2).map(|arm| Chain::new(baxter(), arm, 0.0)).collect();
-    assert_eq!(found.motions.len(), path::POINTS - 1);
-    for (index, motion) in found.motions.iter().enumerate() {
-        for (plan, step) in
-            [(&found.sequence[index], &motion[0]), (&found.sequence[index + 1], &motion[motion.len() - 1])]
-        {
-            let Some(plan) = plan else { continue };
-            assert_eq!(plan.object.x_wo, step.x_wo);
-            assert!(plan.arms.iter().zip(&step.q_rad).all(|(arm, q_rad)| arm.q_rad == *q_rad));
-        }
-        for step in motion {
-            for ((chain, hold), q_rad) in chains.iter().zip(grasp).zip(&step.q_rad) {
-                assert!(chain.within_limits(q_rad, 0.0));
-                let (is, meant) = (chain.gripper_pose(q_rad), step.x_wo * hold.x_og);
-                // The tolerance of docs/method.md#34-constraints.
-                assert!((is.translation.vector - meant.translation.vector).norm() < 1e-6);
-                assert!(is.rotation.angle_to(&meant.rotation) < 1e-6);
-            }
-            let poses = link_poses(&step.q_rad, size_m[2]);
-            let scene = Scene {
-                link_poses: &poses,
-                holding: &[0, 1],
-                board: &board,
-                x_wo: step.x_wo,
-                person: &[],
-                clearance_m: 0.0,
-            };
-            assert_eq!(collision.first_violation(&scene), None);
-        }
-        for pair in motion.windows(2) {
-            let joints = pair[0].q_rad.iter().flatten().zip(pair[1].q_rad.iter().flatten());
-            let most_rad = joints.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(most_rad <= 3.0 * path::STEP_RAD, "a step of {most_rad} rad");
-        }
     }
 }

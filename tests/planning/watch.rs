@@ -11,11 +11,12 @@ use benchdog::{
         scenario::{Budget, ResponseKind, Scenario},
         stop::Stop,
     },
-    planner::{Event, Outcome, Part, Phase, PlanError, Planner, Watch, path::CirclePlans},
+    planner::{Event, Outcome, Part, Phase, PlanError, Planner, Watch},
 };
 
 use crate::{
     common::baxter,
+    comparison::{compared, square},
     shared::{PLANNER, fast, found, plan, plan_by, verified},
 };
 
@@ -193,7 +194,7 @@ fn a_search_that_is_stopped_at_once_is_not_infeasible() {
     assert!(is_stopped(&PLANNER.search(&scenario).watch(&flag).plan()));
     assert!(is_stopped(&PLANNER.search(&scenario).watch(&flag).top(2)));
     assert!(is_stopped(&PLANNER.search(&scenario).watch(&flag).front()));
-    assert!(is_stopped(&PLANNER.search(&fast("cut-rim")).watch(&flag).circle()));
+    assert!(matches!(compared(&fast("cut-rim"), &square(), &flag), Err(PlanError::Stopped)));
     flag.store(false, Ordering::SeqCst);
     verified(&found(PLANNER.search(&scenario).watch(&flag).plan().unwrap()), &scenario);
 }
@@ -241,23 +242,20 @@ fn the_searches_for_optima_are_no_result() {
     assert_eq!(json(&watched), json(&plan(&scenario)));
 }
 
+/// A comparison that is not complete compares nothing.
 #[test]
-fn a_stopped_circle_has_the_points_that_were_covered() {
+fn a_comparison_can_be_stopped_in_each_of_its_searches() {
     let scenario = fast("cut-rim");
-    let stopped_at = |at: fn(&Event<'_>) -> bool| PLANNER.search(&scenario).watch(&Recorder::at(at)).circle();
-    assert!(is_stopped(&stopped_at(|event| is_phase(event, |phase| phase == Phase::OneGrasp))));
-    let count = |plans: &[Option<Plan>]| plans.iter().flatten().count();
-    let of = |plans: &CirclePlans| {
-        let CirclePlans { continuous, separate } = plans;
-        assert!([&continuous.hold, &continuous.sequence, separate].iter().all(|plans| plans.len() == 16));
-        [&continuous.hold, &continuous.sequence, separate].map(|plans| count(plans))
-    };
-    let one_grasp = found(stopped_at(|event| is_phase(event, |phase| phase == Phase::Sequence)).unwrap());
-    let [hold, sequence, separate] = of(&one_grasp);
-    assert!(hold > 0 && sequence == 0 && separate == 0 && one_grasp.continuous.motions.is_empty());
-    let some = stopped_at(|event| is_phase(event, |phase| matches!(phase, Phase::Point { number: 3, .. })));
-    let [hold, sequence, separate] = of(&found(some.unwrap()));
-    assert!(hold > 0 && sequence >= hold && separate <= 2, "{hold} {sequence} {separate}");
+    let phases: [fn(&Event<'_>) -> bool; 3] = [
+        |event| is_phase(event, |phase| phase == Phase::OneHold),
+        |event| is_phase(event, |phase| phase == Phase::Pieces),
+        |event| is_phase(event, |phase| phase == Phase::RandomHolds),
+    ];
+    for phase in phases {
+        let watch = Recorder::at(phase);
+        assert!(matches!(compared(&scenario, &square(), &watch), Err(PlanError::Stopped)));
+        assert!(watch.stopped.load(Ordering::SeqCst), "the watch is told of the phase");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `benchdog task`: plans, simulates and judges a whole task; and the judgement of staged plans for `benchdog simulate`.
 
+mod compare;
 mod pipeline;
 mod stream;
 
@@ -30,10 +31,10 @@ use crate::{
         verdict::VerdictKind,
     },
     planner::{
-        Search,
+        Planner, Search,
         task::{TaskInfeasible, TaskPlan},
     },
-    report::{self, stages::JudgedPlan},
+    report::{self, comparison::Comparison, stages::JudgedPlan},
     robot::Robot,
     scenario::{self, LoadedStagedPlan},
 };
@@ -43,6 +44,8 @@ use stream::{StageStream, Waiting};
 /// The files of a task.
 struct TaskFiles {
     plan: PathBuf,
+    comparison: PathBuf,
+    compared_pieces: PathBuf,
     verdict: PathBuf,
     stages: PathBuf,
     path: PathBuf,
@@ -56,6 +59,8 @@ impl TaskFiles {
         let file = |file: &str| out.join(name).join(file);
         Self {
             plan: file("plan.json"),
+            comparison: file("comparison.csv"),
+            compared_pieces: file("comparison-pieces.csv"),
             verdict: file("verdict.json"),
             stages: file("stages.csv"),
             path: file("path.csv"),
@@ -65,10 +70,10 @@ impl TaskFiles {
         }
     }
 
-    /// Those that `task` writes; `simulate` leaves the plan as it is.
-    fn all(&self) -> [PathBuf; 7] {
-        let Self { plan, verdict, stages, path, page, recording, stream } = self;
-        [plan, verdict, stages, path, page, recording, stream].map(Clone::clone)
+    /// Those that `task` writes; `simulate` leaves the first four as they are.
+    fn all(&self) -> [PathBuf; 9] {
+        let Self { plan, stream, comparison, compared_pieces, verdict, stages, path, page, recording } = self;
+        [plan, stream, comparison, compared_pieces, verdict, stages, path, page, recording].map(Clone::clone)
     }
 }
 
@@ -90,34 +95,30 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     let search = planner.search(&loaded.scenario).watch(&*progress);
     let FoundTask { plan, planned_s } = found(search, &task, args.stream, &files.stream)?;
     let wall_ms = start.elapsed().as_secs_f64() * 1e3;
-    let TaskPlan { mut staged, separate } = match plan {
+    let mut found = match plan {
         Ok(found) => found,
         Err(why) => {
             progress.finish();
             return Ok(infeasible(&loaded.scenario, &why));
         }
     };
+    let TaskPlan { staged, separate } = &mut found;
     staged.planner =
         staged.planner.map(|record| PlannerRecord { wall_ms: Some(wall_ms), map_ms: Some(map_ms), ..record });
-    output::message(&format!(
-        "{}: planned in {:.2} s (maps {:.1} s): {} holds, {} motions, {} regrasps",
-        staged.name,
-        wall_ms / 1e3,
-        map_ms / 1e3,
-        staged.stages.len() - staged.moves() - staged.regrasps(),
-        staged.moves(),
-        staged.regrasps(),
-    ));
+    say_planned(staged, wall_ms, map_ms);
     let best: Vec<_> = separate.iter().map(|plan| Some(plan.as_ref()?.comfort?.objective)).collect();
-    report::file::write_whole(&files.plan, report::json::pretty(&staged).as_bytes())?;
-    report::file::write_whole(&files.path, report::task::path_csv(&staged, &best).as_bytes())?;
+    report::file::write_whole(&files.plan, report::json::pretty(staged).as_bytes())?;
+    report::file::write_whole(&files.path, report::task::path_csv(staged, &best).as_bytes())?;
+    let comparison = compared(args.compare, &planner, &loaded.scenario, &found, (&files, &progress))?;
+    let staged = found.staged;
     if args.plan_only {
         progress.finish();
+        print_comparison(comparison.as_ref(), args.format)?;
         return Ok(Exit::Met);
     }
     let robot = loaded.robot.at_gap(staged.object.size_m[2]);
     let states = StagedStates::new(&robot, &staged)?;
-    let output = (&files, args.format, !args.no_recording);
+    let output = (&files, args.format, !args.no_recording, comparison);
     let verdict = judged(&loaded.scenario, &robot, &staged, &states, output, &progress)?;
     if let Some(planned_s) = planned_s {
         let Waiting { first_s, later_s } = Waiting::new(&planned_s, &verdict.stages);
@@ -127,6 +128,18 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
         ));
     }
     Ok(exit(&verdict))
+}
+
+/// Says how long a plan took, and what it has.
+fn say_planned(staged: &StagedPlan, wall_ms: f64, map_ms: f64) {
+    let (moves, regrasps) = (staged.moves(), staged.regrasps());
+    output::message(&format!(
+        "{}: planned in {:.2} s (maps {:.1} s): {} holds, {moves} motions, {regrasps} regrasps",
+        staged.name,
+        wall_ms / 1e3,
+        map_ms / 1e3,
+        staged.stages.len() - moves - regrasps,
+    ));
 }
 
 /// What a search found.
@@ -146,15 +159,44 @@ fn found(search: Search<'_>, task: &Task, ahead: Option<u16>, path: &Path) -> Re
     Ok(FoundTask { plan, planned_s: Some(stream.finish()?) })
 }
 
+/// Compares the plan with other strategies if that is wanted, and writes the tables; otherwise removes those of another plan.
+fn compared(
+    is_wanted: bool,
+    planner: &Planner,
+    scenario: &Scenario,
+    found: &TaskPlan,
+    (files, progress): (&TaskFiles, &Progress),
+) -> Result<Option<Comparison>, CliError> {
+    report::file::remove(&files.comparison)?;
+    report::file::remove(&files.compared_pieces)?;
+    if !is_wanted {
+        return Ok(None);
+    }
+    progress.leaves("the plan is written");
+    let comparison = compare::compared(planner, scenario, found, progress)?;
+    report::file::write_whole(&files.compared_pieces, report::comparison::pieces_csv(&comparison).as_bytes())?;
+    report::file::write_whole(&files.comparison, report::comparison::csv(&comparison).as_bytes())?;
+    Ok(Some(comparison))
+}
+
+/// Prints the comparison for people.
+fn print_comparison(comparison: Option<&Comparison>, format: Format) -> Result<(), CliError> {
+    match (comparison, format) {
+        (Some(comparison), Format::Human) => output::print(&report::comparison::table(comparison)),
+        _ => Ok(()),
+    }
+}
+
 /// Simulates and judges a staged plan of any planner.
 pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progress) -> Result<Exit, CliError> {
     let LoadedStagedPlan { plan, states, robot, scenario, inputs, .. } = loaded;
     let files = TaskFiles::new(&args.report.out, &plan.name);
-    inputs::protect(inputs, files.all().into_iter().skip(1))?;
+    inputs::protect(inputs, files.all().into_iter().skip(4))?;
     report::file::check_folder(&args.report.out)?;
     report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
     let is_recorded = args.report.record != RecordChoice::Never;
-    judged(scenario, robot, plan, states, (&files, args.report.format, is_recorded), progress).map(|of| exit(&of))
+    let output = (&files, args.report.format, is_recorded, None);
+    judged(scenario, robot, plan, states, output, progress).map(|of| exit(&of))
 }
 
 /// Simulates and judges a plan, writes verdict, table and report, and prints the table.
@@ -163,7 +205,7 @@ fn judged(
     robot: &Robot,
     plan: &StagedPlan,
     states: &StagedStates,
-    (files, format, record): (&TaskFiles, Format, bool),
+    (files, format, record, comparison): (&TaskFiles, Format, bool, Option<Comparison>),
     progress: &Progress,
 ) -> Result<StagedVerdict, CliError> {
     report::file::remove(&files.verdict)?;
@@ -184,7 +226,8 @@ fn judged(
     }
     report::file::write_whole(&files.stages, report::task::stages_csv(&verdict).as_bytes())?;
     let judged = JudgedPlan { plan, holdings: &states.holdings, robot, scenario, verdict: &verdict };
-    let page = report::task::page(&judged, simulated.as_ref().map(|(trace, _)| trace))?;
+    let trace = simulated.as_ref().map(|(trace, _)| trace);
+    let page = report::task::page(&judged, trace, comparison.as_ref())?;
     report::file::write_whole(&files.page, page.as_bytes())?;
     report::file::write_whole(&files.verdict, report::json::pretty(&verdict).as_bytes())?;
     drop(writing);
@@ -192,6 +235,7 @@ fn judged(
         Format::Human => output::print(&report::task::table(&verdict))?,
         Format::Json => output::print(&report::json::pretty(&verdict))?,
     }
+    print_comparison(comparison.as_ref(), format)?;
     Ok(verdict)
 }
 

@@ -10,7 +10,6 @@ use crate::{
         staged_plan::{STAGED_FORMAT, StagedPlan, WorkedPiece},
         staged_trace::StagedTrace,
         staged_verdict::{FailedStage, PersonOverTask, StageVerdict, StagedVerdict},
-        task::Task,
         verdict::VerdictKind,
     },
     robot::Robot,
@@ -148,7 +147,7 @@ fn person_over_task(plan: &StagedPlan, scenario: &Scenario) -> Option<PersonOver
         objective += weight(worked) * comfort.objective / all;
         effort += weight(worked) * muscles.effort / all;
         least = least.min(comfort.objective);
-        accumulated_s += muscles.effort * work_s(&plan.task, worked, scenario);
+        accumulated_s += muscles.effort * plan.task.work_s(&worked.piece, scenario.simulation.hold_s);
     }
     let places: Option<Vec<_>> = worked.iter().map(|worked| Some(worked.human?.x_wb.translation.vector)).collect();
     let steps = places?.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect::<Vec<_>>();
@@ -160,10 +159,4 @@ fn person_over_task(plan: &StagedPlan, scenario: &Scenario) -> Option<PersonOver
         largest_step_m: steps.iter().copied().fold(0.0, f64::max),
         steps_m: steps.iter().sum(),
     })
-}
-
-/// How long the tool works on a piece, s.
-fn work_s(task: &Task, worked: &WorkedPiece, scenario: &Scenario) -> f64 {
-    let length_m = worked.piece.length_m();
-    if length_m > 0.0 { length_m / task.speed_m_s } else { scenario.simulation.hold_s }
 }

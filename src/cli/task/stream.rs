@@ -1,4 +1,4 @@
-//! The stages of a task as they are planned, for a robot that carries them out meanwhile (docs/method.md#117-streaming).
+//! The stages of a task as they are planned, for a robot that carries them out meanwhile (docs/method.md#118-streaming).
 
 use std::{
     fs::File,

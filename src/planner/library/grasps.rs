@@ -60,13 +60,14 @@ struct KeptGrasps {
 }
 
 impl GraspLibrary {
-    /// The library of a robot for boards of this shape that keeps a clearance, m; it has fewer than the usual number of
-    /// entries where grasps are rare.
+    /// A library without a store.
+    #[cfg(test)]
     pub fn new(robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
         Self::kept_in(None, robot, board, clearance_m)
     }
 
-    /// As [`GraspLibrary::new`], with a store that the grasps are read from and written to.
+    /// The library of a robot for boards of this shape that keeps a clearance, m, with a store that the grasps are read from and
+    /// written to; it has fewer than the usual number of entries where grasps are rare.
     pub fn kept_in(store: Option<Arc<dyn MapStore>>, robot: &Robot, board: &BoardShape, clearance_m: f64) -> Self {
         let robot = GraspingRobot::new(robot, board, clearance_m);
         Self { robot, store, drawn: MadeOnce::default(), further: MadeOnce::default() }

@@ -11,7 +11,7 @@ mod grasp_loads;
 mod grips;
 mod holds;
 mod inputs;
-pub(super) mod motion;
+mod motion;
 mod places;
 mod problem;
 mod regrasp;

@@ -33,18 +33,6 @@ pub fn between(robot: &GraspingRobot, from: &BoardGrasp, to: &BoardGrasp) -> Opt
     Some(path)
 }
 
-/// The grasp after the board has moved to a pose step by step with the least motion of each arm; `None` if an arm cannot follow.
-pub fn followed(robot: &GraspingRobot, from: &BoardGrasp, x_wo: &Pose) -> Option<BoardGrasp> {
-    let steps = steps(&from.x_wo, x_wo, 0.0);
-    let mut here = from.clone();
-    for number in 1..=steps {
-        let pose = interpolated(&from.x_wo, x_wo, number as f64 / steps as f64);
-        let seeds: Vec<_> = here.arms.iter().map(|arm| arm.q_rad.clone()).collect();
-        here = reached(robot, &here, pose, seeds.into_iter())?;
-    }
-    Some(here)
-}
-
 /// The same grasp with the board at another pose, each arm near its seed.
 fn reached(
     robot: &GraspingRobot,
