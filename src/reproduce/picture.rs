@@ -1,7 +1,7 @@
 //! A plan as SVG: robot, board, person and tool as convex primitives, seen from the right and from above. The line of sight
 //! is dashed; the view from above also shows the sector in front of the person that the tool tip must be over.
 //!
-//! Overlapping primitives of a link may be drawn in the wrong order, see [`crate::report::projection`].
+//! Overlapping primitives of a link may be drawn in the wrong order: bodies are drawn in the order of their centres.
 
 use std::fmt::Write as _;
 
