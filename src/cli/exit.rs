@@ -2,7 +2,10 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use crate::{model::verdict::Verdict, scenario::InputError};
+use crate::{
+    model::verdict::{Verdict, VerdictKind},
+    scenario::InputError,
+};
 
 /// The result of a command, in increasing order of precedence: of several scenarios the greatest one determines the exit
 /// code.
@@ -38,10 +41,14 @@ impl Exit {
 
     /// The result for one verdict.
     pub fn of(verdict: &Verdict) -> Self {
-        use crate::model::verdict::VerdictKind::Infeasible;
-        match (verdict.met, verdict.verdict) {
+        Self::judged(verdict.met, verdict.verdict)
+    }
+
+    /// The result for a verdict of this kind, which is the expected one if it is `met`.
+    pub fn judged(met: bool, verdict: VerdictKind) -> Self {
+        match (met, verdict) {
             (true, _) => Self::Met,
-            (false, Infeasible) => Self::Infeasible,
+            (false, VerdictKind::Infeasible) => Self::Infeasible,
             (false, _) => Self::NotMet,
         }
     }

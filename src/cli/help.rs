@@ -70,7 +70,7 @@ Examples:
   benchdog task scenarios/whole-circle.toml     plan, simulate and judge 16 pieces of a circle
   benchdog task scenarios/whole-circle.toml --plan-only
   benchdog task scenarios/whole-circle.toml --stream       each stage is written as soon as it is planned
-  benchdog task scenarios/whole-circle.toml --compare      what the motions and regrasps are worth
+  benchdog task scenarios/whole-circle.toml --compare      beside one hold, separate and random holds
   benchdog simulate out/whole-circle/plan.json  judge the staged plan again, or that of another planner
 
 The folder of the task has plan.json, verdict.json, stages.csv, path.csv, report.html and recording.rrd.

@@ -17,7 +17,7 @@ pub struct TaskArgs {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Plan stage by stage while the robot carries out the ones before, and write each stage to `stages.jsonl` as soon as it is
-    /// planned; the loads and regrasps of so many pieces of the path are known ahead [default of PIECES: 3]
+    /// planned; the loads and regrasps of the next PIECES pieces of the path are known ahead [3 without a number]
     #[arg(long, value_name = "PIECES", num_args = 0..=1, require_equals = true, default_missing_value = "3", value_parser = clap::value_parser!(u16).range(1..))]
     pub stream: Option<u16>,
     /// Write no recording

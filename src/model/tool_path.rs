@@ -69,6 +69,13 @@ impl Piece {
         self.to_m - self.from_m
     }
 
+    /// Its weight in means over a path: its length, m, or 1 of a hole.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        let length_m = self.length_m();
+        if length_m > 0.0 { length_m } else { 1.0 }
+    }
+
     /// Its middle, m from the stroke's beginning.
     #[must_use]
     pub fn middle_m(&self) -> f64 {

@@ -8,7 +8,7 @@ pub use super::one_hold::PlansByPiece;
 use super::{
     outcome::PlanError,
     params::comparison::RANDOM_PLANS,
-    planner::Planner,
+    planner::{Planner, Search},
     task,
     watch::{Counter, Phase, Watch, go_on},
 };
@@ -43,30 +43,24 @@ pub fn compared_plans(
     watch: &dyn Watch,
 ) -> Result<ComparedPlans, PlanError> {
     let pieces = task::pieces(scenario, task);
-    let one_hold = planner.search(scenario).watch(watch).one_hold(&pieces)?;
-    let separate = completed(planner, &pieces, separate, watch)?;
+    let search = || planner.search(scenario).watch(watch);
+    let one_hold = search().one_hold(&pieces)?;
+    let separate = completed(search(), &pieces, separate)?;
     let random = random_plans(planner, &pieces, watch)?;
     Ok(ComparedPlans { one_hold, separate, random })
 }
 
 /// The plans of pieces by themselves, with those that are not known.
-fn completed(
-    planner: &Planner,
-    pieces: &[Scenario],
-    separate: &[Option<Plan>],
-    watch: &dyn Watch,
-) -> Result<PlansByPiece, PlanError> {
+fn completed(search: Search<'_>, pieces: &[Scenario], separate: &[Option<Plan>]) -> Result<PlansByPiece, PlanError> {
     let is_missing = |piece: &usize| !matches!(separate.get(*piece), Some(Some(_)));
     let missing: Vec<_> = (0..pieces.len()).filter(is_missing).collect();
-    // Threads that make the same map would make it twice.
-    for &piece in &missing {
-        planner.search(&pieces[piece]).watch(watch).prepare()?;
+    if missing.is_empty() {
+        return Ok(separate.to_vec());
     }
-    let missing_pieces: Vec<_> = missing.iter().map(|&piece| pieces[piece].clone()).collect();
-    let planned = all_searched_once(planner, &missing_pieces, Phase::Pieces, watch)?;
+    let planned = search.separate(missing.iter().map(|&piece| &pieces[piece]))?;
     let mut all: PlansByPiece = separate.iter().cloned().chain(std::iter::repeat(None)).take(pieces.len()).collect();
-    for (piece, plan) in missing.into_iter().zip(planned) {
-        all[piece] = plan;
+    for (piece, outcome) in missing.into_iter().zip(planned) {
+        all[piece] = outcome.found();
     }
     Ok(all)
 }
@@ -82,21 +76,7 @@ fn random_plans(planner: &Planner, pieces: &[Scenario], watch: &dyn Watch) -> Re
         pieces.iter().map(random)
     };
     let scenarios: Vec<_> = (0..RANDOM_PLANS).flat_map(with_seed).collect();
-    let plans = all_searched_once(planner, &scenarios, Phase::RandomHolds, watch)?;
-    Ok(plans.chunks(pieces.len().max(1)).map(<[_]>::to_vec).collect())
-}
-
-/// The plan of each scenario that one search finds.
-fn all_searched_once(
-    planner: &Planner,
-    scenarios: &[Scenario],
-    phase: Phase,
-    watch: &dyn Watch,
-) -> Result<PlansByPiece, PlanError> {
-    if scenarios.is_empty() {
-        return Ok(Vec::new());
-    }
-    let counter = Counter::new(watch, phase, scenarios.len());
+    let counter = Counter::new(watch, Phase::RandomHolds, scenarios.len());
     let plan = |scenario: &Scenario| {
         let plan = planner.search(scenario).watch(&counter).searched_once()?;
         counter.advance();
@@ -104,5 +84,5 @@ fn all_searched_once(
     };
     let plans = scenarios.par_iter().map(plan).collect::<Result<Vec<_>, PlanError>>()?;
     go_on(watch)?;
-    Ok(plans)
+    Ok(plans.chunks(pieces.len().max(1)).map(<[_]>::to_vec).collect())
 }

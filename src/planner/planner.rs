@@ -516,22 +516,9 @@ impl<'a> Search<'a> {
         };
         let pieces = task::pieces(&scenario, task);
         let chosen = task::planned_by_themselves(pieces.len());
-        // Threads that make the same map would make it twice.
-        for &piece in &chosen {
-            planner.warm_starts(&maps, &pieces[piece], watch)?;
-        }
-        let counter = Counter::new(watch, Phase::Pieces, chosen.len());
-        let plan = |&piece: &usize| -> Result<(usize, Outcome<Plan>), PlanError> {
-            let warm = planner.warm_starts(&maps, &pieces[piece], &counter)?;
-            // A piece has neighbours that are searched too.
-            let found = best_plan(&pieces[piece], &maps, &warm, false, &counter)?;
-            counter.advance();
-            Ok((piece, found))
-        };
-        let planned = chosen.par_iter().map(plan).collect::<Result<Vec<_>, _>>()?;
-        go_on(watch)?;
+        let planned = planner.search(&scenario).watch(watch).separate(chosen.iter().map(|&piece| &pieces[piece]))?;
         let mut separate = vec![None; pieces.len()];
-        for (piece, outcome) in planned {
+        for (piece, outcome) in chosen.into_iter().zip(planned) {
             match outcome {
                 Outcome::Found(plan) => separate[piece] = Some(plan),
                 Outcome::Infeasible(why) => return Ok(Err(TaskInfeasible::new(task, piece, Some(why)))),
@@ -540,6 +527,32 @@ impl<'a> Search<'a> {
         let robot = &maps.library.robot;
         let search = TaskSearch { task, scenario: &scenario, pieces: &pieces, separate: &separate, robot, watch };
         Ok(search.run(ahead, ready)?.map(|staged| TaskPlan { staged, separate: separate.clone() }))
+    }
+
+    /// The best plan for each of these pieces of one task by itself, or why there is no plan. The optima of a normalised objective are
+    /// filled in.
+    pub(super) fn separate<'s>(
+        self,
+        pieces: impl Iterator<Item = &'s Scenario>,
+    ) -> Result<Vec<Outcome<Plan>>, PlanError> {
+        let Self { planner, scenario, watch } = self;
+        let maps = planner.maps(scenario);
+        let pieces: Vec<_> = pieces.collect();
+        // Threads that make the same map would make it twice.
+        for piece in &pieces {
+            planner.warm_starts(&maps, piece, watch)?;
+        }
+        let counter = Counter::new(watch, Phase::Pieces, pieces.len());
+        let plan = |piece: &&Scenario| -> Result<Outcome<Plan>, PlanError> {
+            let warm = planner.warm_starts(&maps, piece, &counter)?;
+            // A piece has neighbours that are searched too.
+            let found = best_plan(piece, &maps, &warm, false, &counter)?;
+            counter.advance();
+            Ok(found)
+        };
+        let planned = pieces.par_iter().map(plan).collect::<Result<_, _>>()?;
+        go_on(watch)?;
+        Ok(planned)
     }
 
     /// The plans of one hold for as many of a path's pieces as possible, with the person's best response. The pieces are of one task

@@ -1,5 +1,10 @@
 //! CSV files with a header and rows of text.
 
+/// The text of a figure with this number of digits after the point; empty if it does not exist.
+pub(crate) fn cell(figure: Option<f64>, digits: usize) -> String {
+    figure.map_or_else(String::new, |figure| format!("{figure:.digits$}"))
+}
+
 /// The text of a CSV file: comma-separated, lines end with `\n`, cells are quoted if necessary.
 ///
 /// # Panics

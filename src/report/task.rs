@@ -5,7 +5,7 @@ use maud::{Markup, PreEscaped, html};
 use super::{
     columns::aligned,
     comparison::{self, Comparison},
-    csv_text::csv_text,
+    csv_text::{cell, csv_text},
     html::document,
     plot::{Line, Plot},
     stages::{self, JudgedPlan},
@@ -47,7 +47,6 @@ pub fn path_csv(plan: &StagedPlan, best: &[Option<f64>]) -> String {
         "x_m",
         "y_m",
     ];
-    let text = |value: Option<f64>, digits: usize| value.map_or_else(String::new, |value| format!("{value:.digits$}"));
     let rows = plan.worked_pieces().enumerate().map(|(number, (stage, worked))| {
         let comfort = worked.comfort.as_ref();
         let objective = comfort.map(|comfort| comfort.objective);
@@ -59,14 +58,14 @@ pub fn path_csv(plan: &StagedPlan, best: &[Option<f64>]) -> String {
             (worked.piece.stroke + 1).to_string(),
             format!("{:.4}", worked.piece.from_m),
             format!("{:.4}", worked.piece.to_m),
-            text(objective, 4),
-            text(objective.zip(best).map(|(objective, best)| objective / best), 4),
-            text(comfort.map(|comfort| comfort.muscular_regularised), 4),
-            text(comfort.map(|comfort| comfort.peripersonal_m), 4),
-            text(worked.muscles.as_ref().map(|muscles| muscles.effort), 6),
-            text(worked.stability.as_ref().map(|stability| stability.compliant_load_factor), 4),
-            text(place.map(|place| place.x), 4),
-            text(place.map(|place| place.y), 4),
+            cell(objective, 4),
+            cell(objective.zip(best).map(|(objective, best)| objective / best), 4),
+            cell(comfort.map(|comfort| comfort.muscular_regularised), 4),
+            cell(comfort.map(|comfort| comfort.peripersonal_m), 4),
+            cell(worked.muscles.as_ref().map(|muscles| muscles.effort), 6),
+            cell(worked.stability.as_ref().map(|stability| stability.compliant_load_factor), 4),
+            cell(place.map(|place| place.x), 4),
+            cell(place.map(|place| place.y), 4),
         ]
     });
     csv_text(&header, rows)

@@ -127,7 +127,7 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
             staged.name
         ));
     }
-    Ok(exit(&verdict))
+    Ok(Exit::judged(verdict.met, verdict.verdict))
 }
 
 /// Says how long a plan took, and what it has.
@@ -149,8 +149,8 @@ struct FoundTask {
     planned_s: Option<Vec<f64>>,
 }
 
-/// Searches the plan of a task: as a whole, or with so many pieces ahead; then its stages are written to a file as soon as they are
-/// planned.
+/// Searches the plan of a task: as a whole, or in parts with this number of pieces ahead, whose stages are written to a file as soon as
+/// they are planned.
 fn found(search: Search<'_>, task: &Task, ahead: Option<u16>, path: &Path) -> Result<FoundTask, CliError> {
     report::file::remove(path)?;
     let Some(pieces) = ahead else { return Ok(FoundTask { plan: search.task(task)?, planned_s: None }) };
@@ -196,7 +196,7 @@ pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progr
     report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
     let is_recorded = args.report.record != RecordChoice::Never;
     let output = (&files, args.report.format, is_recorded, None);
-    judged(scenario, robot, plan, states, output, progress).map(|of| exit(&of))
+    judged(scenario, robot, plan, states, output, progress).map(|of| Exit::judged(of.met, of.verdict))
 }
 
 /// Simulates and judges a plan, writes verdict, table and report, and prints the table.
@@ -237,14 +237,6 @@ fn judged(
     }
     print_comparison(comparison.as_ref(), format)?;
     Ok(verdict)
-}
-
-fn exit(verdict: &StagedVerdict) -> Exit {
-    match (verdict.met, verdict.verdict) {
-        (true, _) => Exit::Met,
-        (false, VerdictKind::Infeasible) => Exit::Infeasible,
-        (false, _) => Exit::NotMet,
-    }
 }
 
 /// Prints why no plan was found.

@@ -12,6 +12,7 @@ use crate::{
         staged_verdict::{FailedStage, PersonOverTask, StageVerdict, StagedVerdict},
         verdict::VerdictKind,
     },
+    report::comparison::{PieceFigures, Totals},
     robot::Robot,
     sim::{self, Conditions},
 };
@@ -138,25 +139,20 @@ fn reason(judgement: &Judgement) -> String {
 
 /// The person over the pieces of a plan; `None` unless all of them have comfort and muscles.
 fn person_over_task(plan: &StagedPlan, scenario: &Scenario) -> Option<PersonOverTask> {
-    let worked: Vec<&WorkedPiece> = plan.worked_pieces().map(|(_, worked)| worked).collect();
-    let weight = |worked: &WorkedPiece| if worked.piece.length_m() > 0.0 { worked.piece.length_m() } else { 1.0 };
-    let all: f64 = worked.iter().map(|worked| weight(worked)).sum();
-    let (mut objective, mut least, mut effort, mut accumulated_s) = (0.0, f64::INFINITY, 0.0, 0.0);
-    for worked in &worked {
-        let (comfort, muscles) = (worked.comfort.as_ref()?, worked.muscles.as_ref()?);
-        objective += weight(worked) * comfort.objective / all;
-        effort += weight(worked) * muscles.effort / all;
-        least = least.min(comfort.objective);
-        accumulated_s += muscles.effort * plan.task.work_s(&worked.piece, scenario.simulation.hold_s);
-    }
-    let places: Option<Vec<_>> = worked.iter().map(|worked| Some(worked.human?.x_wb.translation.vector)).collect();
-    let steps = places?.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect::<Vec<_>>();
+    let of_piece = |worked: &WorkedPiece| {
+        let work_s = plan.task.work_s(&worked.piece, scenario.simulation.hold_s);
+        Some((worked.piece.weight(), work_s, PieceFigures::of_worked(worked)?))
+    };
+    let totals = Totals::over(&plan.worked_pieces().map(|(_, worked)| of_piece(worked)).collect::<Option<Vec<_>>>()?);
+    let place = |worked: &WorkedPiece| Some(worked.human?.x_wb.translation.vector);
+    let places: Vec<_> = plan.worked_pieces().map(|(_, worked)| place(worked)).collect::<Option<_>>()?;
+    let steps_m: Vec<_> = places.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
     Some(PersonOverTask {
-        mean_objective: objective,
-        least_objective: least,
-        mean_effort: effort,
-        accumulated_effort_s: accumulated_s,
-        largest_step_m: steps.iter().copied().fold(0.0, f64::max),
-        steps_m: steps.iter().sum(),
+        mean_objective: totals.mean_objective?,
+        least_objective: totals.least_objective?,
+        mean_effort: totals.mean_effort?,
+        accumulated_effort_s: totals.accumulated_effort_s?,
+        largest_step_m: steps_m.iter().copied().fold(0.0, f64::max),
+        steps_m: steps_m.iter().sum(),
     })
 }

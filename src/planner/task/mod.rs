@@ -132,8 +132,8 @@ impl TaskSearch<'_> {
         let mut transitions = Transitions::new(&mut problem, &holds);
         let mut stages = Stages::new(self, &holds);
         let mut start = Start { piece: 0, hold: None };
-        // Postures beside the robot are searched for only if those beside the board alone are too few.
         let mut all_served = holds.served_by_some();
+        // Postures beside the robot are searched for only if those beside the board alone are too few.
         for serving in [&holds.serving, &holds.serving_nearby] {
             let graph = Graph { arcs: &holds.arcs, serving, costs };
             let to_end = graph.costs_to_end();
@@ -150,7 +150,9 @@ impl TaskSearch<'_> {
                 // Each round adds stages, or excludes a step of this way.
                 if stages.add(&mut transitions, &steps) {
                     start = Start { piece: stages.served(), hold: steps.last().map(Step::end) };
-                    stages.plan.iter().for_each(&mut *ready);
+                    if let Some(plan) = &stages.plan {
+                        ready(plan);
+                    }
                 }
                 if start.piece == pieces.len() {
                     watch.tell(&Event::Found);

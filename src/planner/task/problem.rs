@@ -78,6 +78,11 @@ impl<'a> TaskProblem<'a> {
         self.evaluators.len()
     }
 
+    /// Where a piece is on the path.
+    pub fn piece(&self, piece: usize) -> Piece {
+        self.pieces_of_path[piece]
+    }
+
     pub fn of_piece(&self, piece: usize) -> &Problem<'a> {
         &self.evaluators[piece].problem
     }
@@ -89,7 +94,7 @@ impl<'a> TaskProblem<'a> {
 
     /// The operations where a piece begins and ends, with the tool rolled; a hole has none beside its own.
     pub fn operations_at_ends(&self, piece: usize, roll_rad: f64) -> Vec<Operation> {
-        let Piece { stroke, from_m, to_m } = self.pieces_of_path[piece];
+        let Piece { stroke, from_m, to_m } = self.piece(piece);
         if to_m - from_m <= 2.0 * INSIDE_M {
             return Vec::new();
         }

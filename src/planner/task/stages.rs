@@ -56,8 +56,8 @@ impl<'b> Stages<'b> {
 
     fn added(&mut self, transitions: &mut Transitions<'_, '_>, steps: &[Step]) -> Option<()> {
         let Self { search, holds, last, .. } = *self;
-        let first = holds.holds.get(first_hold(steps)?)?;
-        let worked = worked_pieces(search, transitions, holds, (self.served(), steps))?;
+        let first = holds.holds.get(steps.first()?.begin())?;
+        let worked = worked_pieces(transitions, holds, (self.served(), steps))?;
         let regrasps = timed_regrasps(search, transitions, steps)?;
         let moves = timed_moves(search, transitions, holds, steps)?;
         let mut builder = Builder { search, transitions, stages: Vec::new(), last };
@@ -116,20 +116,12 @@ fn step_back_once(stages: &mut [Stage]) {
     }
 }
 
-fn first_hold(steps: &[Step]) -> Option<usize> {
-    steps.first().map(|step| match *step {
-        Step::Serve { hold } => hold,
-        Step::Go { from, .. } => from,
-    })
-}
-
 fn is_move(step: &Step) -> bool {
     matches!(step, Step::Go { kind: ArcKind::Move, .. })
 }
 
 /// The plans of the served pieces in their order from the first, each with its hold.
 fn worked_pieces(
-    search: &TaskSearch<'_>,
     transitions: &mut Transitions<'_, '_>,
     holds: &Holds,
     (first, steps): (usize, &[Step]),
@@ -138,10 +130,9 @@ fn worked_pieces(
         Step::Serve { hold } => Some(*hold),
         Step::Go { .. } => None,
     });
-    let pieces = search.task.pieces();
-    let mut worked = Vec::with_capacity(pieces.len());
+    let mut worked = Vec::with_capacity(steps.len());
     let mut all_accepted = true;
-    for (hold, (number, piece)) in served.zip(pieces.iter().enumerate().skip(first)) {
+    for (number, hold) in (first..).zip(served) {
         let grasp = &holds.holds[hold].grasp;
         let Some((plan, posture)) = transitions.accepted_plan(hold, number, grasp) else {
             transitions.exclude(hold, number);
@@ -150,7 +141,8 @@ fn worked_pieces(
         };
         let Plan { operation, human, comfort, muscles, stability, .. } = plan;
         let roll_rad = Some(posture.roll_rad).filter(|_| operation.kind.roll_is_free());
-        worked.push((WorkedPiece { piece: *piece, roll_rad, human, comfort, muscles, stability }, posture));
+        let piece = transitions.problem.piece(number);
+        worked.push((WorkedPiece { piece, roll_rad, human, comfort, muscles, stability }, posture));
     }
     all_accepted.then_some(worked)
 }

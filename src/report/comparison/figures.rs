@@ -131,6 +131,27 @@ pub struct Totals {
     pub effort_rate_s: Option<f64>,
 }
 
+impl Totals {
+    /// Over pieces, each with its weight ([`Piece::weight`]) and how long the tool works on it, s.
+    #[must_use]
+    pub fn over(pieces: &[(f64, f64, PieceFigures)]) -> Self {
+        let all: f64 = pieces.iter().map(|(weight, ..)| weight).sum();
+        let sum = |of: &dyn Fn(&(f64, f64, PieceFigures)) -> f64| -> Option<f64> {
+            (!pieces.is_empty()).then(|| pieces.iter().map(of).sum())
+        };
+        let mean = |of: fn(&PieceFigures) -> f64| sum(&|(weight, _, figures)| weight * of(figures) / all);
+        let accumulated_effort_s = sum(&|(_, work_s, figures)| work_s * figures.effort);
+        Self {
+            served: pieces.len(),
+            mean_objective: mean(|figures| figures.objective),
+            least_objective: pieces.iter().map(|(.., figures)| figures.objective).min_by(f64::total_cmp),
+            mean_effort: mean(|figures| figures.effort),
+            accumulated_effort_s,
+            effort_rate_s: accumulated_effort_s.map(|effort_s| effort_s / all),
+        }
+    }
+}
+
 impl Comparison {
     /// The comparison of a staged plan with these further strategies; the tool works on a hole for `hold_s`.
     #[must_use]
@@ -159,37 +180,14 @@ impl Comparison {
         self.pieces.iter().any(|piece| piece.length_m() > 0.0)
     }
 
-    /// The weight of a piece in means: its length, m, or 1 of a hole.
-    #[must_use]
-    pub fn weight(&self, piece: usize) -> f64 {
-        if self.has_length() { self.pieces[piece].length_m() } else { 1.0 }
-    }
-
-    /// The pieces that a strategy serves, with their figures.
-    fn served<'s>(&self, strategy: &'s Strategy) -> Vec<(usize, &'s PieceFigures)> {
-        strategy.pieces.iter().enumerate().filter_map(|(piece, figures)| Some((piece, figures.as_ref()?))).collect()
-    }
-
     /// The figures of a strategy over the pieces that it serves.
     #[must_use]
     pub fn totals(&self, strategy: &Strategy) -> Totals {
-        let served = self.served(strategy);
-        let weight: f64 = served.iter().map(|&(piece, _)| self.weight(piece)).sum();
-        let sum = |of: &dyn Fn(usize, &PieceFigures) -> f64| -> Option<f64> {
-            (!served.is_empty()).then(|| served.iter().map(|&(piece, figures)| of(piece, figures)).sum())
+        let of_piece = |(piece, (work_s, figures)): (&Piece, (&f64, &Option<PieceFigures>))| {
+            figures.map(|figures| (piece.weight(), *work_s, figures))
         };
-        let mean = |of: fn(&PieceFigures) -> f64| {
-            sum(&|piece, figures| self.weight(piece) * of(figures)).map(|total| total / weight)
-        };
-        let accumulated_effort_s = sum(&|piece, figures| self.work_s[piece] * figures.effort);
-        Totals {
-            served: served.len(),
-            mean_objective: mean(|figures| figures.objective),
-            least_objective: served.iter().map(|(_, figures)| figures.objective).min_by(f64::total_cmp),
-            mean_effort: mean(|figures| figures.effort),
-            accumulated_effort_s,
-            effort_rate_s: accumulated_effort_s.map(|effort_s| effort_s / weight),
-        }
+        let pieces = self.pieces.iter().zip(self.work_s.iter().zip(&strategy.pieces));
+        Totals::over(&pieces.filter_map(of_piece).collect::<Vec<_>>())
     }
 
     /// The number of pieces that both the staged plan and a strategy serve, and the ratio of their mean efforts over these; `None`

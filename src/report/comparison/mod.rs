@@ -9,13 +9,11 @@ mod tests;
 pub use figures::{Comparison, PieceFigures, Strategy, StrategyKind, Totals};
 pub(super) use section::{STYLE, section};
 
-use super::{columns::aligned, csv_text::csv_text};
+use super::{
+    columns::aligned,
+    csv_text::{cell, csv_text},
+};
 use crate::model::tool_path::Piece;
-
-/// A figure with this number of digits after the point; empty if it does not exist.
-fn text(figure: Option<f64>, digits: usize) -> String {
-    figure.map_or_else(String::new, |figure| format!("{figure:.digits$}"))
-}
 
 /// One row per strategy: the pieces that it serves, and its figures over them; `staged_ratio` is the staged plan's mean effort divided
 /// by the strategy's, over the pieces that both serve.
@@ -42,14 +40,14 @@ pub fn csv(comparison: &Comparison) -> String {
             strategy.kind.name().to_owned(),
             strategy.pieces.len().to_string(),
             totals.served.to_string(),
-            text(totals.mean_objective, 4),
-            text(totals.least_objective, 4),
-            text(totals.mean_effort, 6),
-            text(per_m, 4),
-            text(per_hole, 4),
-            text(totals.accumulated_effort_s, 4),
+            cell(totals.mean_objective, 4),
+            cell(totals.least_objective, 4),
+            cell(totals.mean_effort, 6),
+            cell(per_m, 4),
+            cell(per_hole, 4),
+            cell(totals.accumulated_effort_s, 4),
             both.to_string(),
-            text(ratio, 4),
+            cell(ratio, 4),
         ]
     });
     csv_text(&header, rows)
@@ -85,10 +83,10 @@ pub fn pieces_csv(comparison: &Comparison) -> String {
                 format!("{:.4}", piece.from_m),
                 format!("{:.4}", piece.to_m),
                 figures.map_or(0, |figures| figures.plans).to_string(),
-                text(figure(|figures| figures.objective), 4),
-                text(figure(|figures| figures.muscular_regularised), 4),
-                text(figure(|figures| figures.peripersonal_m), 4),
-                text(figure(|figures| figures.effort), 6),
+                cell(figure(|figures| figures.objective), 4),
+                cell(figure(|figures| figures.muscular_regularised), 4),
+                cell(figure(|figures| figures.peripersonal_m), 4),
+                cell(figure(|figures| figures.effort), 6),
             ]
         };
         strategy.pieces.iter().zip(&comparison.pieces).enumerate().map(row).collect::<Vec<_>>()
@@ -103,16 +101,16 @@ fn rows(comparison: &Comparison) -> Vec<Vec<String>> {
         ["strategy", "pieces", "objective mean", "least", "effort mean", per, "accumulated s", "staged / this"];
     let row = |strategy: &Strategy| {
         let totals = comparison.totals(strategy);
-        let cell = |figure: Option<f64>, digits| if figure.is_some() { text(figure, digits) } else { "-".to_owned() };
+        let shown = |figure: Option<f64>, digits| if figure.is_some() { cell(figure, digits) } else { "-".to_owned() };
         vec![
             strategy.kind.title().to_owned(),
             format!("{}/{}", totals.served, strategy.pieces.len()),
-            cell(totals.mean_objective, 1),
-            cell(totals.least_objective, 1),
-            cell(totals.mean_effort, 4),
-            cell(totals.effort_rate_s, 3),
-            cell(totals.accumulated_effort_s, 3),
-            cell(comparison.staged_ratio(strategy).1, 3),
+            shown(totals.mean_objective, 1),
+            shown(totals.least_objective, 1),
+            shown(totals.mean_effort, 4),
+            shown(totals.effort_rate_s, 3),
+            shown(totals.accumulated_effort_s, 3),
+            shown(comparison.staged_ratio(strategy).1, 3),
         ]
     };
     std::iter::once(header.map(str::to_owned).to_vec()).chain(comparison.strategies.iter().map(row)).collect()

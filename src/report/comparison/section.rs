@@ -66,7 +66,7 @@ fn plot(title: &str, comparison: &Comparison, figure: fn(&PieceFigures) -> f64) 
     let top = HEADROOM * figures.map(figure).fold(f64::MIN_POSITIVE, f64::max);
     let mut ends = vec![0.0];
     ends.extend((0..comparison.pieces.len()).scan(0.0, |end, piece| {
-        *end += comparison.weight(piece);
+        *end += comparison.pieces[piece].weight();
         Some(*end)
     }));
     let length = ends[ends.len() - 1].max(f64::MIN_POSITIVE);
