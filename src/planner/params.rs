@@ -490,6 +490,19 @@ pub mod task {
     pub const GRIP_STREAM: u128 = 1 << 65;
     /// Grips that are kept of those that reach a piece.
     pub const GRIPS_PER_PIECE: usize = 120;
+    /// Level board poses at which grips are changed if no way is found without them: step of the lattice of positions over the search
+    /// domain, m,
+    pub const LEVEL_STEP_M: f64 = 0.15;
+    /// positions of it that are used,
+    pub const LEVEL_POSITIONS: usize = 3;
+    /// holds with which the positions are tested,
+    pub const LEVEL_SAMPLE: usize = 60;
+    /// angles about the vertical,
+    pub const LEVEL_TURNS: usize = 16;
+    /// and how far the board turns beside becoming level on the way there at most, rad.
+    pub const LEVEL_TURN_RAD: f64 = 0.5;
+    /// First stream of the random numbers for grips at level poses.
+    pub const LEVEL_STREAM: u128 = 3 << 65;
     /// Largest motion of a joint to a neighbouring board pose, rad: more is a jump to another configuration.
     pub const MOST_FOLLOWED_RAD: f64 = 1.2;
     /// Postures of the map from which one for a piece is searched for.

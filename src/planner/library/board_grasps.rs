@@ -24,18 +24,36 @@ use crate::{
 };
 
 /// Collision-free grasps of a board at a pose: at most a few with one pattern, and of more than two arms at most one for each
-/// grasp of the first arm. Without any, the test at which the board failed.
+/// grasp of the first arm. The second arm's edge is the first one's or opposite to it (docs/method.md#25-edge-grasps). Without any,
+/// the test at which the board failed.
 pub fn grasps_of_board(
     robot: &GraspingRobot,
     x_wo: &Pose,
+    random: &mut Pcg64,
+) -> Result<Vec<LibraryEntry>, DrawFailure> {
+    combined(robot, x_wo, &|[first, second]| second == first || second == robot.opposite(first), random)
+}
+
+/// The same with the second arm at any edge.
+pub fn grasps_on_any_edges(
+    robot: &GraspingRobot,
+    x_wo: &Pose,
+    random: &mut Pcg64,
+) -> Result<Vec<LibraryEntry>, DrawFailure> {
+    combined(robot, x_wo, &|_| true, random)
+}
+
+fn combined(
+    robot: &GraspingRobot,
+    x_wo: &Pose,
+    edges_match: &dyn Fn([Edge; 2]) -> bool,
     random: &mut Pcg64,
 ) -> Result<Vec<LibraryEntry>, DrawFailure> {
     let reached: Vec<_> = robot.arms.iter().map(|arm| reached_grasps(robot, arm, x_wo, random)).collect();
     if let Some(arm) = reached.iter().position(Vec::is_empty) {
         return Err(DrawFailure::Reach { arm });
     }
-    let opposite = |edge| robot.opposite(edge);
-    let mut combinations = Combinations::new(&reached, &opposite);
+    let mut combinations = Combinations::new(&reached, edges_match);
     let mut entries: Vec<LibraryEntry> = Vec::new();
     let mut patterns = Vec::new();
     let most_alike = per_pattern(RESAMPLED_PER_PATTERN, robot.arms.len());
@@ -92,12 +110,12 @@ fn arms_of(robot: &GraspingRobot, violation: &Violation) -> Vec<usize> {
     arms
 }
 
-/// Every choice of one grasp per arm in which the second arm's edge is the first one's or opposite to it
-/// (docs/method.md#25-edge-grasps), in lexicographic order, without those that contain what was excluded.
+/// Every choice of one grasp per arm in which the edges of the first two arms match, in lexicographic order, without those that
+/// contain what was excluded.
 struct Combinations<'a> {
     reached: &'a [Vec<ArmGrasp>],
-    /// The edge opposite to another.
-    opposite: &'a dyn Fn(Edge) -> Edge,
+    /// True if the second gripper may hold the second edge beside the first.
+    edges_match: &'a dyn Fn([Edge; 2]) -> bool,
     /// The present choice, as indices; `None` at the end.
     numbers: Option<Vec<usize>>,
     /// Grasps of each arm that are excluded whatever the other arms do.
@@ -108,10 +126,10 @@ struct Combinations<'a> {
 
 impl<'a> Combinations<'a> {
     /// Every arm has a grasp.
-    fn new(reached: &'a [Vec<ArmGrasp>], opposite: &'a dyn Fn(Edge) -> Edge) -> Self {
+    fn new(reached: &'a [Vec<ArmGrasp>], edges_match: &'a dyn Fn([Edge; 2]) -> bool) -> Self {
         Self {
             reached,
-            opposite,
+            edges_match,
             numbers: (!reached.is_empty()).then(|| vec![0; reached.len()]),
             excluded: reached.iter().map(|grasps| vec![false; grasps.len()]).collect(),
             excluded_pairs: HashSet::new(),
@@ -132,14 +150,10 @@ impl<'a> Combinations<'a> {
         (0..numbers.len()).find(|&arm| {
             let beside = |other: usize| [(other, numbers[other]), (arm, numbers[arm])];
             self.excluded[arm][numbers[arm]]
-                || (arm == 1 && !self.edges_match([0, 1].map(|arm: usize| self.reached[arm][numbers[arm]].grasp.edge)))
+                || (arm == 1
+                    && !(self.edges_match)([0, 1].map(|arm: usize| self.reached[arm][numbers[arm]].grasp.edge)))
                 || (0..arm).any(|other| self.excluded_pairs.contains(&beside(other)))
         })
-    }
-
-    /// True if the second gripper of a plan may hold this edge beside the first.
-    fn edges_match(&self, [first, second]: [Edge; 2]) -> bool {
-        second == first || second == (self.opposite)(first)
     }
 
     /// Goes to the next grasp of an arm, with the first grasps of the arms after it.
@@ -223,7 +237,8 @@ mod tests {
                 pairs.into_iter().find(|&(a, b)| collides(own(a), own(b)))
             };
             let opposite = |Edge(edge): Edge| Edge((edge + 2) % QUARTERS);
-            let mut combinations = Combinations::new(&reached, &opposite);
+            let edges_match = |[first, second]: [Edge; 2]| second == first || second == opposite(first);
+            let mut combinations = Combinations::new(&reached, &edges_match);
             let (mut passed, mut tests) = (Vec::new(), 0);
             while let Some(arms) = combinations.next() {
                 tests += 1;
@@ -245,7 +260,7 @@ mod tests {
             }
             every.retain(|numbers| {
                 let edge = |arm: usize| Edge(edges[arm][numbers[arm]]);
-                (numbers.len() < 2 || edge(1) == edge(0) || edge(1) == opposite(edge(0))) && collision(numbers).is_none()
+                (numbers.len() < 2 || edges_match([edge(0), edge(1)])) && collision(numbers).is_none()
             });
             let sizes: Vec<usize> = edges.iter().map(Vec::len).collect();
             let pairs: usize = (0..sizes.len()).map(|b| sizes[b] * (1 + sizes[..b].iter().sum::<usize>())).sum();

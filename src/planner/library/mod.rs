@@ -16,7 +16,7 @@ mod postures;
 mod reach;
 mod resample;
 
-pub use board_grasps::grasps_of_board;
+pub use board_grasps::{grasps_of_board, grasps_on_any_edges};
 pub use draws::draw_grasp;
 pub use entry::LibraryEntry;
 pub use grasp::{ArmGrasp, BoardGrasp, GraspPattern, largest_joint_difference_rad, pattern};

@@ -6,34 +6,39 @@
 //! pieces before and after are worked on as long as the person has a posture for them. A hold is a grip (`grips.rs`) at one of
 //! these poses.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::{
     super::{
         library::{BoardGrasp, largest_joint_difference_rad},
         params::task::{COST_PER_RAD, SAME_RAD},
-        problem::posture_map,
     },
     graph::{Arc, ArcKind},
     grips::{Grip, grips},
+    level_places::{LevelHold, LevelHolds},
     places::Places,
-    problem::TaskProblem,
+    problem::{Posture, TaskProblem},
     root::Root,
 };
+
 /// A grasp of the board at a pose.
+#[derive(Clone)]
 pub struct Hold {
     pub grasp: BoardGrasp,
-    /// The number of its board pose.
-    pub place: usize,
+    /// The number of its board pose; `None` at a level pose, where no piece is served.
+    place: Option<usize>,
     /// The number of its grip.
-    grip: usize,
+    pub grip: usize,
 }
 
 /// The holds and what leads from one to another.
-pub struct Holds {
+#[derive(Clone)]
+pub struct Holds<'p> {
     pub holds: Vec<Hold>,
     pub arcs: Vec<Vec<Arc>>,
-    pub places: Places,
+    places: &'p Places,
     /// By hold and piece: what the piece costs if the hold resists its load; infinite where the person in the posture of the board
     /// alone would touch the robot or not see the work.
     pub serving: Vec<Vec<f64>>,
@@ -41,26 +46,21 @@ pub struct Holds {
     pub serving_nearby: Vec<Vec<f64>>,
 }
 
-impl Holds {
-    /// The holds that follow from the best holds of single pieces; the last piece of a closed path is beside the first one.
-    pub fn new(problem: &TaskProblem<'_>, roots: &[Root], closed: bool) -> Self {
-        let of_first = problem.of_piece(0);
-        // Force and person are the same at all pieces, seen from the tool.
-
-        let map = posture_map(of_first.scenario, &of_first.human, problem.watch);
-
-        let places = Places::new(problem, &map, roots, closed);
-
-        let grips = grips(problem, roots, &places);
-
+impl<'p> Holds<'p> {
+    /// The holds at some board poses that follow from the best holds of single pieces.
+    pub fn new(problem: &TaskProblem<'_>, roots: &[Root], places: &'p Places) -> Self {
+        let grips = grips(problem, roots, places);
         let of_grip = |(grip, Grip { at, .. }): (usize, &Grip)| {
-            at.iter().map(move |(&place, grasp)| Hold { grasp: grasp.clone(), place, grip }).collect::<Vec<_>>()
+            let hold =
+                move |(&place, grasp): (&usize, &BoardGrasp)| Hold { grasp: grasp.clone(), place: Some(place), grip };
+            at.iter().map(hold).collect::<Vec<_>>()
         };
         let holds: Vec<_> = grips.iter().enumerate().flat_map(of_grip).collect();
         let serving = |hold: &Hold| {
-            let nearby = places.costs(problem, hold.place, &hold.grasp);
+            let nearby = hold.place.map(|place| places.costs(problem, place, &hold.grasp)).unwrap_or_default();
             let is_free = |piece: usize| {
-                places.posture(hold.place, piece).is_some_and(|posture| problem.is_free(piece, &hold.grasp, &posture))
+                let posture = hold.place.and_then(|place| places.posture(place, piece));
+                posture.is_some_and(|posture| problem.is_free(piece, &hold.grasp, &posture))
             };
             let if_free = |(piece, &cost): (usize, &f64)| {
                 if cost.is_finite() && is_free(piece) { cost } else { f64::INFINITY }
@@ -68,14 +68,49 @@ impl Holds {
             (nearby.iter().enumerate().map(if_free).collect(), nearby)
         };
         let (serving, serving_nearby) = holds.par_iter().map(serving).unzip();
-
-        let arcs = arcs(&holds, &grips, &places);
-
+        let arcs = arcs(&holds, &grips, places);
         Self { holds, arcs, places, serving, serving_nearby }
     }
-}
 
-impl Holds {
+    /// These holds, and after them those at level board poses, which serve no piece.
+    pub fn with_level_places(&self, problem: &TaskProblem<'_>) -> Self {
+        let LevelHolds { holds, moves } = LevelHolds::new(problem, &self.holds);
+        let first = self.holds.len();
+        let mut all = self.clone();
+        let mut at_pose: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (number, LevelHold { grasp, grip, pose, from }) in (first..).zip(holds) {
+            all.holds.push(Hold { grasp, place: None, grip });
+            all.arcs.push(Vec::new());
+            for serving in [&mut all.serving, &mut all.serving_nearby] {
+                serving.push(vec![f64::INFINITY; problem.pieces()]);
+            }
+            from.iter().for_each(|&from| all.connect(from, number, ArcKind::Move));
+            let there = at_pose.entry(pose).or_default();
+            there.iter().for_each(|&other| all.connect(other, number, ArcKind::Regrasp));
+            there.push(number);
+        }
+        for [from, to] in moves {
+            all.connect(first + from, first + to, ArcKind::Move);
+        }
+        all
+    }
+
+    /// Arcs from one hold to another and back.
+    fn connect(&mut self, one: usize, other: usize, kind: ArcKind) {
+        for (from, to) in [(one, other), (other, one)] {
+            let arc = match kind {
+                ArcKind::Move => Some(move_to(&self.holds, from, to)),
+                ArcKind::Regrasp => regrasp_to(&self.holds, from, to),
+            };
+            self.arcs[from].extend(arc);
+        }
+    }
+
+    /// The person's posture at a piece with the board as a hold has it.
+    pub fn posture(&self, hold: usize, piece: usize) -> Option<Posture> {
+        self.places.posture(self.holds[hold].place?, piece)
+    }
+
     /// The number of pieces from the first on each of which some hold may serve.
     pub fn served_by_some(&self) -> usize {
         let pieces = self.serving_nearby.first().map_or(0, Vec::len);
@@ -107,30 +142,35 @@ fn arcs(holds: &[Hold], grips: &[Grip], places: &Places) -> Vec<Vec<Arc>> {
         count += grip.at.len();
     }
     let mut at_place: Vec<Vec<usize>> = vec![Vec::new(); places.count()];
-    for (number, hold) in holds.iter().enumerate() {
-        at_place[hold.place].push(number);
+    for (number, place) in holds.iter().enumerate().filter_map(|(number, hold)| Some((number, hold.place?))) {
+        at_place[place].push(number);
     }
     let of_hold = |(number, hold): (usize, &Hold)| {
+        let Some(place) = hold.place else { return Vec::new() };
         let own = &holds[first[hold.grip]..first[hold.grip] + grips[hold.grip].at.len()];
-        let beside = places.beside(hold.place);
-        let moves = beside.into_iter().filter_map(|place| {
-            let to = first[hold.grip] + own.binary_search_by_key(&place, |other| other.place).ok()?;
-            let turned_rad = largest_joint_difference_rad(&hold.grasp.arms, &holds[to].grasp.arms);
-            Some(Arc { to, kind: ArcKind::Move, hands: 0, extra: COST_PER_RAD * turned_rad })
+        let moves = places.beside(place).into_iter().filter_map(|beside| {
+            let to = first[hold.grip] + own.binary_search_by_key(&Some(beside), |other| other.place).ok()?;
+            Some(move_to(holds, number, to))
         });
-        // A hand that lets go needs another one that holds meanwhile.
-        let may_regrasp = hold.grasp.arms.len() > 1;
-        let others = at_place[hold.place]
-            .iter()
-            .copied()
-            .filter(|&to| may_regrasp && to != number && keeps_others_still(&hold.grasp, &holds[to].grasp));
-        let regrasps = others.map(|to| {
-            let hands = changed_arms(&hold.grasp, &holds[to].grasp).len();
-            Arc { to, kind: ArcKind::Regrasp, hands, extra: 0.0 }
-        });
-        moves.chain(regrasps.filter(|arc| arc.hands > 0)).collect()
+        let regrasps = at_place[place].iter().filter_map(|&to| regrasp_to(holds, number, to));
+        moves.chain(regrasps).collect()
     };
     holds.par_iter().enumerate().map(of_hold).collect()
+}
+
+/// The motion from a hold to another one of the same grip.
+fn move_to(holds: &[Hold], from: usize, to: usize) -> Arc {
+    let turned_rad = largest_joint_difference_rad(&holds[from].grasp.arms, &holds[to].grasp.arms);
+    Arc { to, kind: ArcKind::Move, hands: 0, extra: COST_PER_RAD * turned_rad }
+}
+
+/// The regrasp from a hold to another one at the same board pose: `None` if no hand changes its grasp, if one that keeps it would have
+/// to move, or if no hand can hold while another one lets go.
+fn regrasp_to(holds: &[Hold], from: usize, to: usize) -> Option<Arc> {
+    let [before, after] = [from, to].map(|hold| &holds[hold].grasp);
+    let hands = changed_arms(before, after).len();
+    let is_possible = hands > 0 && before.arms.len() > 1 && keeps_others_still(before, after);
+    is_possible.then_some(Arc { to, kind: ArcKind::Regrasp, hands, extra: 0.0 })
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod grasp_loads;
 mod grips;
 mod holds;
 mod inputs;
+mod level_places;
 mod motion;
 mod places;
 mod problem;
@@ -23,9 +24,12 @@ mod transitions;
 pub use graph::Ahead;
 pub use inputs::TaskSearch;
 
+use std::cell::OnceCell;
+
 use self::{
     graph::{Costs, Found, Graph, Start, Step},
     holds::Holds,
+    places::Places,
     problem::{Posture, TaskProblem},
     root::Root,
     stages::Stages,
@@ -36,6 +40,7 @@ use super::{
     library::BoardGrasp,
     outcome::{Infeasible, PlanError},
     params::task::{PLANNED_PIECES, ROOTS},
+    problem::posture_map,
     watch::{Event, Phase, begin, go_on},
 };
 use crate::model::{
@@ -127,14 +132,25 @@ impl TaskSearch<'_> {
         let mut problem = TaskProblem::new(task, pieces, self.best(), robot, watch)?;
         let roots = self.roots(&problem);
         begin(watch, Phase::Task);
-        let holds = Holds::new(&problem, &roots, self.is_closed());
+        // Force and person are the same at all pieces, seen from the tool.
+        let of_first = problem.of_piece(0);
+        let map = posture_map(of_first.scenario, &of_first.human, watch);
+        let places = Places::new(&problem, &map, &roots, self.is_closed());
+        let (holds, with_level_places) = (Holds::new(&problem, &roots, &places), OnceCell::new());
         let costs = Costs { per_move: task.move_cost, per_regrasp: task.regrasp_cost };
         let mut transitions = Transitions::new(&mut problem, &holds);
         let mut stages = Stages::new(self, &holds);
         let mut start = Start { piece: 0, hold: None };
         let mut all_served = holds.served_by_some();
-        // Postures beside the robot are searched for only if those beside the board alone are too few.
-        for serving in [&holds.serving, &holds.serving_nearby] {
+        // Postures beside the robot are searched for only if those beside the board alone are too few, and level board poses are used
+        // only if grips cannot be changed where the person works.
+        for (is_level, is_nearby) in [(false, false), (false, true), (true, false), (true, true)] {
+            let holds = match is_level {
+                false => &holds,
+                true => with_level_places.get_or_init(|| holds.with_level_places(transitions.problem)),
+            };
+            (transitions.holds, stages.holds) = (holds, holds);
+            let serving = if is_nearby { &holds.serving_nearby } else { &holds.serving };
             let graph = Graph { arcs: &holds.arcs, serving, costs };
             let to_end = graph.costs_to_end();
             loop {

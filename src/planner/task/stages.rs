@@ -30,7 +30,8 @@ use crate::{
 /// The staged plan as far as it is known.
 pub struct Stages<'b> {
     search: &'b TaskSearch<'b>,
-    holds: &'b Holds,
+    /// May be exchanged for ones that begin with these.
+    pub holds: &'b Holds<'b>,
     /// `None` before its first stage.
     pub plan: Option<StagedPlan>,
     /// The piece that was served last, with the person.
@@ -39,7 +40,7 @@ pub struct Stages<'b> {
 
 impl<'b> Stages<'b> {
     /// Without stages.
-    pub fn new(search: &'b TaskSearch<'b>, holds: &'b Holds) -> Self {
+    pub fn new(search: &'b TaskSearch<'b>, holds: &'b Holds<'b>) -> Self {
         Self { search, holds, plan: None, last: None }
     }
 
@@ -123,7 +124,7 @@ fn is_move(step: &Step) -> bool {
 /// The plans of the served pieces in their order from the first, each with its hold.
 fn worked_pieces(
     transitions: &mut Transitions<'_, '_>,
-    holds: &Holds,
+    holds: &Holds<'_>,
     (first, steps): (usize, &[Step]),
 ) -> Option<Vec<(WorkedPiece, Posture)>> {
     let served = steps.iter().filter_map(|step| match step {
@@ -183,7 +184,7 @@ type TimedMove = (Vec<BoardGrasp>, Timed);
 fn timed_moves(
     search: &TaskSearch<'_>,
     transitions: &mut Transitions<'_, '_>,
-    holds: &Holds,
+    holds: &Holds<'_>,
     steps: &[Step],
 ) -> Option<Vec<TimedMove>> {
     let mut moves = Vec::new();
@@ -202,7 +203,7 @@ fn timed_moves(
 }
 
 /// A motion over these pairs of holds: straight to the end if that is possible, else over the holds in between.
-fn timed_move(search: &TaskSearch<'_>, holds: &Holds, pairs: &[[usize; 2]]) -> Option<TimedMove> {
+fn timed_move(search: &TaskSearch<'_>, holds: &Holds<'_>, pairs: &[[usize; 2]]) -> Option<TimedMove> {
     let robot = search.robot;
     let between = |[from, to]: [usize; 2]| motion::between(robot, &holds.holds[from].grasp, &holds.holds[to].grasp);
     let ends = [pairs.first()?[0], pairs.last()?[1]];

@@ -18,7 +18,8 @@ use crate::{model::plan::Plan, statics::StabilityWorkspace};
 /// Computes what is exact, each figure once.
 pub struct Transitions<'p, 'a> {
     pub problem: &'p mut TaskProblem<'a>,
-    holds: &'p Holds,
+    /// May be exchanged for ones that begin with these.
+    pub holds: &'p Holds<'p>,
     workspace: StabilityWorkspace,
     /// By hold.
     loads: BTreeMap<usize, GraspLoads<'p>>,
@@ -29,7 +30,7 @@ pub struct Transitions<'p, 'a> {
 }
 
 impl<'p, 'a> Transitions<'p, 'a> {
-    pub fn new(problem: &'p mut TaskProblem<'a>, holds: &'p Holds) -> Self {
+    pub fn new(problem: &'p mut TaskProblem<'a>, holds: &'p Holds<'p>) -> Self {
         Self {
             problem,
             holds,
@@ -57,7 +58,7 @@ impl<'p, 'a> Transitions<'p, 'a> {
     fn serve(&mut self, number: usize, piece: usize) -> Option<Posture> {
         let holds = self.holds;
         let hold = &holds.holds[number];
-        let posture = holds.places.posture(hold.place, piece)?;
+        let posture = holds.posture(number, piece)?;
         let loads = self.loads.entry(number).or_insert_with(|| GraspLoads::new(self.problem, &hold.grasp));
         if !loads.resists_along(self.problem, &mut self.workspace, piece, posture.roll_rad) {
             return None;
@@ -137,10 +138,13 @@ impl<'p, 'a> Transitions<'p, 'a> {
         for (number, &arm) in order.iter().enumerate() {
             let mut next = here.clone();
             next.arms[arm] = after.arms[arm].clone();
-            let is_held =
-                if number == 0 { self.carries(from, Some(arm)) } else { self.grasp_carries(&here, Some(arm)) };
-            // The last one is the hold that is reached, which is clear and carries the board.
+            // The last one reaches the hold, which is clear and carries the board; before it all other arms have its grasps.
             let is_last = number + 1 == order.len();
+            let is_held = match number {
+                0 => self.carries(from, Some(arm)),
+                _ if is_last => self.carries(to, Some(arm)),
+                _ => self.grasp_carries(&here, Some(arm)),
+            };
             if !is_held || !(is_last || robot.is_clear(&next) && self.grasp_carries(&next, None)) {
                 return None;
             }
