@@ -528,6 +528,8 @@ pub mod task {
     pub const FREE_TESTS: usize = 6_000;
     /// Share of the board's weight that hands carry beside the weight while arms move: the board accelerates by that share of gravity.
     pub const CARRIED_RESERVE: f64 = 0.5;
+    /// Steps of a search that are computed at once, in parallel.
+    pub const STEPS_AT_ONCE: usize = 16;
     /// First stream of the random numbers for free motions.
     pub const SEED_STREAM: u128 = 1 << 64;
 }

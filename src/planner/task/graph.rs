@@ -12,6 +12,8 @@ mod tests;
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
+use super::super::params::task::STEPS_AT_ONCE;
+
 /// What leads from one hold to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArcKind {
@@ -73,6 +75,10 @@ pub struct ToEnd(Vec<Vec<[f64; 2]>>);
 
 /// Computes what is exact. Answers must not change.
 pub trait Exact {
+    /// Computes steps, each with the next piece before it, which will be asked for soon.
+    fn prepare(&mut self, steps: &[(usize, Step)]);
+    /// True if a step has been computed.
+    fn is_known(&self, piece: usize, step: &Step) -> bool;
     /// The cost of serving a piece, of which the graph has a lower bound; `None` if the hold cannot.
     fn serving(&mut self, hold: usize, piece: usize) -> Option<f64>;
     /// False if it is known that the hold does not serve a piece.
@@ -284,6 +290,7 @@ impl<'a> Graph<'a> {
             if exact.is_stopped() {
                 return None;
             }
+            search.prepare(&entry, exact);
             if let Some(way) = search.take(entry, exact) {
                 return Some(Found::Way(way));
             }
@@ -343,6 +350,28 @@ impl Search<'_> {
             self.number += 1;
             self.queue.push(Entry { total, cost, number: self.number, state, from, exact });
         }
+    }
+
+    /// The next piece before an entry's step and the step, if it is to be tested and has not been computed.
+    fn unknown(&self, entry: &Entry, exact: &impl Exact) -> Option<(usize, Step)> {
+        let (before, step, _) = entry.from.filter(|_| !entry.exact)?;
+        let is_tested = before.piece < self.tested && !matches!(step, Step::Go { kind: ArcKind::Move, .. });
+        let is_asked = is_tested && self.reached[self.index(entry.state)].is_none();
+        (is_asked && !exact.is_known(before.piece, &step)).then_some((before.piece, step))
+    }
+
+    /// Computes the step of the cheapest entry together with those of the cheapest ones after it: most of these are taken, too.
+    fn prepare(&mut self, entry: &Entry, exact: &mut impl Exact) {
+        let Some(first) = self.unknown(entry, exact) else { return };
+        let mut steps = vec![first];
+        let mut seen = Vec::new();
+        while steps.len() < STEPS_AT_ONCE && seen.len() < 2 * STEPS_AT_ONCE {
+            let Some(next) = self.queue.pop() else { break };
+            steps.extend(self.unknown(&next, exact).filter(|step| !steps.contains(step)));
+            seen.push(next);
+        }
+        self.queue.extend(seen);
+        exact.prepare(&steps);
     }
 
     /// Takes the cheapest entry; the way if it is at the end.

@@ -9,6 +9,7 @@ mod free_motion;
 mod graph;
 mod grasp_loads;
 mod grips;
+mod hand_changes;
 mod holds;
 mod inputs;
 mod level_places;

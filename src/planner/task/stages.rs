@@ -8,12 +8,13 @@ use super::{
         params::task::DEFAULT_SPEED_RAD_S,
     },
     graph::{ArcKind, Step},
+    hand_changes::HandChange,
     holds::Holds,
     inputs::TaskSearch,
     motion,
     problem::Posture,
     timing::{self, MotionLimits, Timed},
-    transitions::{HandChange, Transitions},
+    transitions::Transitions,
 };
 use crate::{
     collision::{PersonPart, Scene},
@@ -58,7 +59,7 @@ impl<'b> Stages<'b> {
     fn added(&mut self, transitions: &mut Transitions<'_, '_>, steps: &[Step]) -> Option<()> {
         let Self { search, holds, last, .. } = *self;
         let first = holds.holds.get(steps.first()?.begin())?;
-        let worked = worked_pieces(transitions, holds, (self.served(), steps))?;
+        let worked = worked_pieces(transitions, self.served(), steps)?;
         let regrasps = timed_regrasps(search, transitions, steps)?;
         let moves = timed_moves(search, transitions, holds, steps)?;
         let mut builder = Builder { search, transitions, stages: Vec::new(), last };
@@ -121,11 +122,11 @@ fn is_move(step: &Step) -> bool {
     matches!(step, Step::Go { kind: ArcKind::Move, .. })
 }
 
-/// The plans of the served pieces in their order from the first, each with its hold.
+/// The plans of the served pieces in their order from the first.
 fn worked_pieces(
     transitions: &mut Transitions<'_, '_>,
-    holds: &Holds<'_>,
-    (first, steps): (usize, &[Step]),
+    first: usize,
+    steps: &[Step],
 ) -> Option<Vec<(WorkedPiece, Posture)>> {
     let served = steps.iter().filter_map(|step| match step {
         Step::Serve { hold } => Some(*hold),
@@ -134,8 +135,7 @@ fn worked_pieces(
     let mut worked = Vec::with_capacity(steps.len());
     let mut all_accepted = true;
     for (number, hold) in (first..).zip(served) {
-        let grasp = &holds.holds[hold].grasp;
-        let Some((plan, posture)) = transitions.accepted_plan(hold, number, grasp) else {
+        let Some((plan, posture)) = transitions.accepted_plan(hold, number) else {
             transitions.exclude(hold, number);
             all_accepted = false;
             continue;

@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use rand_pcg::Pcg64;
+use rayon::prelude::*;
 
 use super::{
-    super::{library::BoardGrasp, params::task::SEED_STREAM},
-    graph::{Arc, ArcKind, Exact},
+    graph::{Arc, ArcKind, Exact, Step},
     grasp_loads::GraspLoads,
-    holds::{Holds, changed_arms},
+    hand_changes::{CarriedHolds, Carrying, HandChange, hand_changes},
+    holds::Holds,
     motion,
     problem::{Posture, TaskProblem},
-    regrasp,
 };
 use crate::{model::plan::Plan, statics::StabilityWorkspace};
 
@@ -27,6 +26,7 @@ pub struct Transitions<'p, 'a> {
     moves: BTreeMap<(usize, usize), bool>,
     regrasps: BTreeMap<(usize, usize), Option<Vec<HandChange>>>,
     carried: BTreeMap<(usize, Option<usize>), bool>,
+    accepted: BTreeMap<(usize, usize), Option<(Plan, Posture)>>,
 }
 
 impl<'p, 'a> Transitions<'p, 'a> {
@@ -40,6 +40,7 @@ impl<'p, 'a> Transitions<'p, 'a> {
             moves: BTreeMap::new(),
             regrasps: BTreeMap::new(),
             carried: BTreeMap::new(),
+            accepted: BTreeMap::new(),
         }
     }
 
@@ -53,28 +54,20 @@ impl<'p, 'a> Transitions<'p, 'a> {
         self.regrasps.get(&(from, to))?.as_deref()
     }
 
-    /// The person's posture at a piece if the hold resists its load: that beside the board alone or, if it touches the robot or
-    /// cannot see, the best near it.
-    fn serve(&mut self, number: usize, piece: usize) -> Option<Posture> {
-        let holds = self.holds;
-        let hold = &holds.holds[number];
-        let posture = holds.posture(number, piece)?;
-        let loads = self.loads.entry(number).or_insert_with(|| GraspLoads::new(self.problem, &hold.grasp));
-        if !loads.resists_along(self.problem, &mut self.workspace, piece, posture.roll_rad) {
-            return None;
-        }
-        if holds.serving[number][piece].is_finite() {
-            return Some(posture);
-        }
-        let link_poses = self.problem.robot.link_poses(&hold.grasp.arms);
-        let points_w = self.problem.robot_points_w(&link_poses);
-        self.problem.response_near(piece, &hold.grasp.x_wo, &posture, &link_poses, &points_w)
-    }
-
     /// The plan of a hold for a piece with the person's best response near the posture that was found; that posture itself if the
     /// better one is not accepted.
-    pub fn accepted_plan(&mut self, hold: usize, piece: usize, grasp: &BoardGrasp) -> Option<(Plan, Posture)> {
+    pub fn accepted_plan(&mut self, hold: usize, piece: usize) -> Option<(Plan, Posture)> {
+        if let Some(known) = self.accepted.get(&(hold, piece)) {
+            return known.clone();
+        }
+        let accepted = self.found_plan(hold, piece);
+        self.accepted.insert((hold, piece), accepted.clone());
+        accepted
+    }
+
+    fn found_plan(&mut self, hold: usize, piece: usize) -> Option<(Plan, Posture)> {
         let posture = self.posture(hold, piece)?;
+        let grasp = &self.holds.holds[hold].grasp;
         let link_poses = self.problem.robot.link_poses(&grasp.arms);
         let points_w = self.problem.robot_points_w(&link_poses);
         let better = self.problem.response_near(piece, &grasp.x_wo, &posture, &link_poses, &points_w);
@@ -97,102 +90,120 @@ impl<'p, 'a> Transitions<'p, 'a> {
         self.regrasps.insert((from, to), None);
     }
 
-    /// True if the arms but `without` carry the board with a reserve for its acceleration.
-    fn carries(&mut self, hold: usize, without: Option<usize>) -> bool {
-        if let Some(&known) = self.carried.get(&(hold, without)) {
-            return known;
-        }
-        let carries = self.grasp_carries(&self.holds.holds[hold].grasp, without);
-        self.carried.insert((hold, without), carries);
-        carries
-    }
-
-    fn grasp_carries(&mut self, grasp: &BoardGrasp, without: Option<usize>) -> bool {
-        GraspLoads::new(self.problem, grasp).carries(self.problem, &mut self.workspace, without)
-    }
-
     fn moves(&mut self, from: usize, to: usize) -> bool {
-        let holds = &self.holds.holds;
-        self.carries(from, None)
-            && self.carries(to, None)
-            && motion::between(self.problem.robot, &holds[from].grasp, &holds[to].grasp).is_some()
+        let (problem, holds) = (&*self.problem, self.holds);
+        let Self { workspace, carried, .. } = self;
+        let mut carrying = Carrying { known: carried, new: CarriedHolds::new(), workspace };
+        let carried = [from, to].iter().all(|&hold| carrying.carries(problem, holds, hold, None));
+        let new = carrying.new;
+        self.carried.extend(new);
+        let [from, to] = [from, to].map(|hold| &holds.holds[hold].grasp);
+        carried && motion::between(problem.robot, from, to).is_some()
     }
+}
 
-    /// The regrasps from one hold to another at the same board pose, one hand after the other, in the first order that is possible.
-    fn found_regrasps(&mut self, from: usize, to: usize) -> Option<Vec<HandChange>> {
-        let holds = &self.holds.holds;
-        let arms = changed_arms(&holds[from].grasp, &holds[to].grasp);
-        if !self.carries(from, None) || !self.carries(to, None) {
-            return None;
-        }
-        orders(arms).into_iter().find_map(|order| self.in_order(from, to, &order))
-    }
+/// What is computed at once.
+enum Asked<'p> {
+    /// These pieces with a hold.
+    Pieces { hold: usize, loads: GraspLoads<'p>, pieces: Vec<usize> },
+    /// The regrasps between two holds.
+    Regrasps([usize; 2]),
+}
 
-    /// The regrasps in this order of arms.
-    fn in_order(&mut self, from: usize, to: usize, order: &[usize]) -> Option<Vec<HandChange>> {
-        let holds = self.holds;
-        let [before, after] = [from, to].map(|hold| &holds.holds[hold].grasp);
-        let robot = self.problem.robot;
-        let mut here = before.clone();
-        let mut changes = Vec::with_capacity(order.len());
-        for (number, &arm) in order.iter().enumerate() {
-            let mut next = here.clone();
-            next.arms[arm] = after.arms[arm].clone();
-            // The last one reaches the hold, which is clear and carries the board; before it all other arms have its grasps.
-            let is_last = number + 1 == order.len();
-            let is_held = match number {
-                0 => self.carries(from, Some(arm)),
-                _ if is_last => self.carries(to, Some(arm)),
-                _ => self.grasp_carries(&here, Some(arm)),
-            };
-            if !is_held || !(is_last || robot.is_clear(&next) && self.grasp_carries(&next, None)) {
-                return None;
+/// The answers.
+enum Answer<'p> {
+    Pieces { hold: usize, loads: GraspLoads<'p>, postures: Vec<(usize, Option<Posture>)> },
+    Regrasps { between: [usize; 2], changes: Option<Vec<HandChange>>, carried: CarriedHolds },
+}
+
+impl<'p> Asked<'p> {
+    fn answer(
+        self,
+        problem: &TaskProblem<'_>,
+        holds: &Holds<'_>,
+        known: &CarriedHolds,
+        workspace: &mut StabilityWorkspace,
+    ) -> Answer<'p> {
+        match self {
+            Self::Pieces { hold, mut loads, pieces } => {
+                let served = |piece| (piece, posture(problem, holds, workspace, &mut loads, (hold, piece)));
+                let postures = pieces.into_iter().map(served).collect();
+                Answer::Pieces { hold, loads, postures }
             }
-            let ends = regrasp::ends(robot, &here, &next.arms[arm], arm)?;
-            changes.push(HandChange { arm, before: here, ends });
-            here = next;
+            Self::Regrasps(between) => {
+                let mut carrying = Carrying { known, new: CarriedHolds::new(), workspace };
+                let changes = hand_changes(problem, holds, &mut carrying, between);
+                Answer::Regrasps { between, changes, carried: carrying.new }
+            }
         }
-        Some(changes)
     }
 }
 
-/// One arm's change of its grasp.
-pub struct HandChange {
-    pub arm: usize,
-    /// All grasps before it.
-    pub before: BoardGrasp,
-    /// Its ways off the board.
-    ends: regrasp::Ends,
-}
-
-impl HandChange {
-    /// Its joint path, from random numbers of its own: it does not depend on what was asked before.
-    pub fn path(&self, problem: &TaskProblem<'_>, [from, to]: [usize; 2]) -> Option<Vec<Vec<f64>>> {
-        let stream = SEED_STREAM + ((from as u128) << 32) + ((to as u128) << 4) + self.arm as u128;
-        let mut random = Pcg64::new(u128::from(problem.of_piece(0).scenario.planner.seed), stream);
-        regrasp::path(problem.robot, &self.before, &self.ends, self.arm, &mut random)
+/// The person's posture at a piece if the hold resists its load: that beside the board alone or, if it touches the robot or cannot
+/// see, the best near it.
+fn posture(
+    problem: &TaskProblem<'_>,
+    holds: &Holds<'_>,
+    workspace: &mut StabilityWorkspace,
+    loads: &mut GraspLoads<'_>,
+    (hold, piece): (usize, usize),
+) -> Option<Posture> {
+    let posture = holds.posture(hold, piece)?;
+    if !loads.resists_along(problem, workspace, piece, posture.roll_rad) {
+        return None;
     }
-}
-
-/// All orders of these numbers.
-fn orders(numbers: Vec<usize>) -> Vec<Vec<usize>> {
-    if numbers.len() <= 1 {
-        return vec![numbers];
+    if holds.serving[hold][piece].is_finite() {
+        return Some(posture);
     }
-    let first = |place: usize| {
-        let mut rest = numbers.clone();
-        let first = rest.remove(place);
-        orders(rest).into_iter().map(move |rest| [&[first], &rest[..]].concat())
-    };
-    (0..numbers.len()).flat_map(first).collect()
+    let grasp = &holds.holds[hold].grasp;
+    let link_poses = problem.robot.link_poses(&grasp.arms);
+    let points_w = problem.robot_points_w(&link_poses);
+    problem.response_near(piece, &grasp.x_wo, &posture, &link_poses, &points_w)
 }
 
-impl Exact for Transitions<'_, '_> {
+impl<'p> Exact for Transitions<'p, '_> {
+    fn prepare(&mut self, steps: &[(usize, Step)]) {
+        let (problem, holds, known) = (&*self.problem, self.holds, &self.carried);
+        let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut asked = Vec::with_capacity(steps.len());
+        for (piece, step) in steps.iter().filter(|(piece, step)| !self.is_known(*piece, step)) {
+            match *step {
+                Step::Serve { hold } => pieces.entry(hold).or_default().push(*piece),
+                Step::Go { from, to, kind: ArcKind::Regrasp } => asked.push(Asked::Regrasps([from, to])),
+                Step::Go { kind: ArcKind::Move, .. } => {}
+            }
+        }
+        for (hold, pieces) in pieces {
+            let loads = self.loads.remove(&hold).unwrap_or_else(|| GraspLoads::new(problem, &holds.holds[hold].grasp));
+            asked.push(Asked::Pieces { hold, loads, pieces });
+        }
+        let answer =
+            |workspace: &mut StabilityWorkspace, asked: Asked<'p>| asked.answer(problem, holds, known, workspace);
+        let answers: Vec<_> = asked.into_par_iter().with_max_len(1).map_init(StabilityWorkspace::new, answer).collect();
+        for answer in answers {
+            match answer {
+                Answer::Pieces { hold, loads, postures } => {
+                    self.loads.insert(hold, loads);
+                    self.served.extend(postures.into_iter().map(|(piece, posture)| ((hold, piece), posture)));
+                }
+                Answer::Regrasps { between: [from, to], changes, carried } => {
+                    self.regrasps.insert((from, to), changes);
+                    self.carried.extend(carried);
+                }
+            }
+        }
+    }
+
+    fn is_known(&self, piece: usize, step: &Step) -> bool {
+        match *step {
+            Step::Serve { hold } => self.served.contains_key(&(hold, piece)),
+            Step::Go { from, to, kind: ArcKind::Regrasp } => self.regrasps.contains_key(&(from, to)),
+            Step::Go { from, to, kind: ArcKind::Move } => self.moves.contains_key(&(from, to)),
+        }
+    }
+
     fn serving(&mut self, hold: usize, piece: usize) -> Option<f64> {
-        if !self.served.contains_key(&(hold, piece)) {
-            let posture = self.serve(hold, piece);
-            self.served.insert((hold, piece), posture);
-        }
+        self.prepare(&[(piece, Step::Serve { hold })]);
         let posture = self.posture(hold, piece)?;
         let known = self.holds.serving[hold][piece];
         if known.is_finite() {
@@ -227,10 +238,7 @@ impl Exact for Transitions<'_, '_> {
                 self.moves.get(&key).copied().unwrap_or(false)
             }
             ArcKind::Regrasp => {
-                if !self.regrasps.contains_key(&key) {
-                    let changes = self.found_regrasps(from, arc.to);
-                    self.regrasps.insert(key, changes);
-                }
+                self.prepare(&[(0, Step::Go { from, to: arc.to, kind: arc.kind })]);
                 self.regrasps(from, arc.to).is_some()
             }
         }

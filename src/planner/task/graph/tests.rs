@@ -34,9 +34,19 @@ struct Truth {
     exists: Vec<Vec<bool>>,
     /// Exact costs that were asked for.
     asked: BTreeSet<(bool, usize, usize)>,
+    /// Steps that were to be computed.
+    prepared: Vec<(usize, Step)>,
 }
 
 impl Exact for Truth {
+    fn prepare(&mut self, steps: &[(usize, Step)]) {
+        self.prepared.extend(steps.iter().map(|(piece, step)| (*piece, *step)));
+    }
+
+    fn is_known(&self, piece: usize, step: &Step) -> bool {
+        self.prepared.contains(&(piece, *step))
+    }
+
     fn serving(&mut self, hold: usize, piece: usize) -> Option<f64> {
         self.asked.insert((false, hold, piece));
         self.serving[hold][piece]
@@ -87,7 +97,7 @@ fn drawn(seed: u64, holds: usize, pieces: usize, per_regrasp: f64) -> Drawn {
             }
         }
     }
-    let exact = Truth { arcs: arcs.clone(), serving, exists, asked: BTreeSet::new() };
+    let exact = Truth { arcs: arcs.clone(), serving, exists, asked: BTreeSet::new(), prepared: Vec::new() };
     Drawn { arcs, from_below, costs: Costs { per_move: 0.1, per_regrasp }, exact }
 }
 
@@ -163,6 +173,7 @@ fn no_way_has_fewer_regrasps_if_they_are_expensive() {
             serving: drawn.exact.serving.iter().map(|costs| costs.iter().map(zero).collect()).collect(),
             exists: drawn.exact.exists.clone(),
             asked: BTreeSet::new(),
+            prepared: Vec::new(),
         };
         let costs = Costs { per_move: 0.0, per_regrasp: 1.0 };
         let counted = Drawn { arcs: drawn.arcs.clone(), from_below: drawn.from_below.clone(), costs, exact };
