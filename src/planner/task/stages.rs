@@ -1,5 +1,9 @@
 //! From the steps of a way to the staged plan.
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use rayon::prelude::*;
+
 use super::{
     super::{
         candidate::Candidate,
@@ -37,12 +41,14 @@ pub struct Stages<'b> {
     pub plan: Option<StagedPlan>,
     /// The piece that was served last, with the person.
     last: Option<(usize, Posture)>,
+    /// By the holds between which they are.
+    regrasps: BTreeMap<[usize; 2], Option<Vec<TimedRegrasp>>>,
 }
 
 impl<'b> Stages<'b> {
     /// Without stages.
     pub fn new(search: &'b TaskSearch<'b>, holds: &'b Holds<'b>) -> Self {
-        Self { search, holds, plan: None, last: None }
+        Self { search, holds, plan: None, last: None, regrasps: BTreeMap::new() }
     }
 
     /// The number of pieces that are served.
@@ -57,10 +63,10 @@ impl<'b> Stages<'b> {
     }
 
     fn added(&mut self, transitions: &mut Transitions<'_, '_>, steps: &[Step]) -> Option<()> {
-        let Self { search, holds, last, .. } = *self;
+        let Self { search, holds, last, ref mut regrasps, .. } = *self;
         let first = holds.holds.get(steps.first()?.begin())?;
-        let worked = worked_pieces(transitions, self.served(), steps)?;
-        let regrasps = timed_regrasps(search, transitions, steps)?;
+        let worked = worked_pieces(transitions, last.map_or(0, |(piece, _)| piece + 1), steps)?;
+        let regrasps = timed_regrasps(search, transitions, regrasps, steps)?;
         let moves = timed_moves(search, transitions, holds, steps)?;
         let mut builder = Builder { search, transitions, stages: Vec::new(), last };
         let (mut worked, mut regrasps, mut moves) = (worked.into_iter(), regrasps.into_iter(), moves.into_iter());
@@ -151,30 +157,35 @@ fn worked_pieces(
 /// A change of an arm's grasp: the steps of its path, and its timing.
 type TimedRegrasp = (Vec<Vec<f64>>, Timed);
 
-/// All regrasps in their order; those between two holds without a path are excluded from the next search.
+/// All regrasps in their order, of which some are `known`; those between two holds without a path are excluded from the next search.
 fn timed_regrasps(
     search: &TaskSearch<'_>,
     transitions: &mut Transitions<'_, '_>,
+    known: &mut BTreeMap<[usize; 2], Option<Vec<TimedRegrasp>>>,
     steps: &[Step],
 ) -> Option<Vec<TimedRegrasp>> {
-    let mut regrasps = Vec::new();
-    let mut all_found = true;
-    for step in steps {
-        let &Step::Go { from, to, kind: ArcKind::Regrasp } = step else { continue };
-        let found = |change: &HandChange| {
-            let path = change.path(transitions.problem, [from, to])?;
+    let between = |step: &Step| match *step {
+        Step::Go { from, to, kind: ArcKind::Regrasp } => Some([from, to]),
+        _ => None,
+    };
+    let pairs: Vec<_> = steps.iter().filter_map(between).collect();
+    let new: BTreeSet<_> = pairs.iter().copied().filter(|pair| !known.contains_key(pair)).collect();
+    let problem = &*transitions.problem;
+    let of_pair = |[from, to]: [usize; 2]| Some(([from, to], transitions.regrasps(from, to)?));
+    let new: Vec<_> = new.into_iter().filter_map(of_pair).collect();
+    let timed = |&(between, changes): &([usize; 2], &[HandChange])| {
+        let timed = |change: &HandChange| {
+            let path = change.path(problem, between)?;
             let timed = timed(search, &path, &[change.arm])?;
             Some((path, timed))
         };
-        match transitions.regrasps(from, to)?.iter().map(found).collect::<Option<Vec<_>>>() {
-            Some(found) => regrasps.extend(found),
-            None => {
-                transitions.exclude_regrasp(from, to);
-                all_found = false;
-            }
-        }
-    }
-    all_found.then_some(regrasps)
+        (between, changes.iter().map(timed).collect())
+    };
+    known.extend(new.par_iter().map(timed).collect::<Vec<(_, Option<Vec<_>>)>>());
+    let without: Vec<_> = pairs.iter().filter(|&pair| known.get(pair).is_none_or(Option::is_none)).collect();
+    without.iter().for_each(|&&[from, to]| transitions.exclude_regrasp(from, to));
+    let found = pairs.iter().map(|pair| known.get(pair).cloned().flatten());
+    Some(found.collect::<Option<Vec<_>>>()?.concat())
 }
 
 /// A motion of the board: its steps, and their timing.
