@@ -1,6 +1,9 @@
 //! Writes the files of finished runs and reports on them.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::ErrorKind,
+    path::{Path, PathBuf},
+};
 
 use super::{
     args::{RecordChoice, ReportArgs},
@@ -12,6 +15,7 @@ use super::{
     recording,
 };
 use crate::{
+    input::{self, MOST_DOCUMENT},
     model::{plan::Plan, scenario::Scenario},
     report::{self, Outcome, SkipReason},
     robot::Robot,
@@ -106,7 +110,11 @@ pub fn protect_from_reports(args: &ReportArgs, inputs: &[PathBuf]) -> Result<(),
 /// If there is another plan.
 pub fn keep_other_plan(args: &ReportArgs, plan: &Plan) -> Result<(), CliError> {
     let path = RunFiles::new(&args.out, &plan.name).plan;
-    let Ok(bytes) = std::fs::read(&path) else { return Ok(()) };
+    let bytes = match input::bytes(&path, MOST_DOCUMENT) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::FileTooLarge => return Err(CliError::OverwritesPlan(path)),
+        Err(_) => return Ok(()),
+    };
     match serde_json::from_slice::<Plan>(&bytes) {
         Ok(other) if other.planner.is_none() || without_durations(&other) == without_durations(plan) => Ok(()),
         _ => Err(CliError::OverwritesPlan(path)),

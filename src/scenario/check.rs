@@ -5,6 +5,7 @@ use std::path::Path;
 use super::{InputError, InputErrorKind, locate};
 use crate::{
     check::{BOARD_SIDE_M, ON_BOARD_M, ON_MATERIAL, bounds, off_material},
+    input,
     model::{FORMAT, board::BoardShape, frames::Pose},
     robot::{Arm, RobotError},
 };
@@ -64,6 +65,12 @@ impl<'a> Checker<'a> {
     /// An error of a robot that cannot be loaded.
     pub fn robot(&self, key: &str, error: RobotError) -> InputError {
         self.error(key, InputErrorKind::Robot(error))
+    }
+
+    /// The text of a file that a key names, of at most this many bytes.
+    pub fn named_file(&self, key: &str, path: &Path, most_bytes: u64) -> Result<String, InputError> {
+        input::text(path, most_bytes)
+            .map_err(|source| self.error(key, InputErrorKind::Named { path: path.to_owned(), source }))
     }
 
     /// An error of a part that is checked by itself, at the part's key.
