@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     input::{self, MOST_DOCUMENT},
-    model::{plan::Plan, scenario::Scenario},
+    model::{file_name::REPORTS, plan::Plan, scenario::Scenario},
     report::{self, Outcome, SkipReason},
     robot::Robot,
 };
@@ -60,9 +60,6 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".into())
 }
-
-/// The files of the report.
-const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
 
 /// The files of a run.
 struct RunFiles {

@@ -6,7 +6,12 @@ use super::{InputError, InputErrorKind, locate};
 use crate::{
     check::{BOARD_SIDE_M, ON_BOARD_M, ON_MATERIAL, bounds, off_material},
     input,
-    model::{FORMAT, board::BoardShape, frames::Pose},
+    model::{
+        FORMAT,
+        board::BoardShape,
+        file_name::{MOST_BYTES, REPORTS},
+        frames::Pose,
+    },
     robot::{Arm, RobotError},
 };
 
@@ -90,7 +95,12 @@ impl<'a> Checker<'a> {
             && !name.starts_with('.')
             && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
         let expected = "letters, digits, `-`, `_` and `.`, since files are named after it";
-        self.that(fits, "name", format!("\"{name}\""), expected)
+        self.that(fits, "name", format!("\"{name}\""), expected)?;
+        let expected = format!("at most {MOST_BYTES}, since files are named after it");
+        self.that(name.len() <= MOST_BYTES, "name", format!("a name of {} characters", name.len()), &expected)?;
+        let is_report = REPORTS.iter().any(|report| report.eq_ignore_ascii_case(name));
+        let expected = format!("a name other than {}, which a run writes beside its folder", REPORTS.join(", "));
+        self.that(!is_report, "name", format!("\"{name}\""), &expected)
     }
 
     /// Requires the supported format.

@@ -18,6 +18,7 @@ mod interrupt;
 mod maps;
 mod margin_and_export;
 mod messages;
+mod odd_files;
 mod partial_plans;
 mod replan;
 mod reports;
