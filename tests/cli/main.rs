@@ -19,6 +19,7 @@ mod maps;
 mod margin_and_export;
 mod messages;
 mod odd_files;
+mod odd_recordings;
 mod odd_robots;
 mod partial_plans;
 mod replan;
