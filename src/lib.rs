@@ -32,6 +32,7 @@
 //! | [`check`] | a plan against its robot, tool and person |
 //! | [`complete`] | the joint angles of arms whose grippers' poses are given |
 //! | [`scenario`] | scenario and plan files: reading, checks, defaults |
+//! | [`input`] | input files up to a limit of their size, and text from them in messages |
 //! | [`robot`] | the robot from a URDF and a description file: kinematics, dynamics, inverse kinematics |
 //! | [`human`] | the person: body, arm, strength, muscular and peripersonal comfort |
 //! | [`statics`] | load factors of a grasp, with rigid and with compliant arms |
@@ -117,6 +118,7 @@ pub mod comfort;
 pub mod compare;
 pub mod complete;
 pub mod human;
+pub mod input;
 pub mod judge;
 pub mod model;
 pub mod planner;

@@ -16,6 +16,7 @@ use super::{
 };
 use crate::{
     compare::{Baseline, ChangeKind, compare as compared},
+    input::{self, MOST_DOCUMENT, shown},
     model::{FORMAT, verdict::Verdict},
     report,
     sweep::summary::SweepSummary,
@@ -95,14 +96,14 @@ fn once(is_new: bool, path: &Path, name: &str) -> Result<(), CliError> {
     if is_new {
         return Ok(());
     }
-    Err(CliError::Usage(format!("{}: name: found \"{name}\", which another result has too", path.display())))
+    Err(CliError::Usage(format!("{}: name: found \"{}\", which another result has too", path.display(), shown(name))))
 }
 
 /// Adds the results of a file.
 fn add(results: &mut Baseline, path: &Path, read: &mut Vec<PathBuf>) -> Result<(), CliError> {
     let shown = path.display();
-    let text =
-        fs::read_to_string(path).map_err(|error| CliError::Usage(format!("{shown}: failed to read: {error}")))?;
+    let text = input::text(path, MOST_DOCUMENT)
+        .map_err(|error| CliError::Usage(format!("{shown}: failed to read: {error}")))?;
     read.push(path.to_owned());
     let wrong = |error: serde_json::Error| CliError::Usage(format!("{shown}:{}: {error}", error.line()));
     let value: Value = serde_json::from_str(&text).map_err(wrong)?;

@@ -90,6 +90,14 @@ pub enum CliError {
     /// A command would overwrite one of its input files.
     #[error("failed to write {}: it is an input file of this command", .0.display())]
     OverwritesInput(PathBuf),
+    /// An output that cannot be a file.
+    #[error("failed to write {}: {problem}", path.display())]
+    NoFile {
+        /// The output.
+        path: PathBuf,
+        /// Why.
+        problem: String,
+    },
     /// A command would overwrite the plan of an earlier run with another one.
     #[error(
         "failed to write {}: it is another plan of this name; change the name of the simulated plan, or choose another --out",
@@ -148,6 +156,7 @@ impl CliError {
             | Self::Plan(_)
             | Self::Flaws(_)
             | Self::OverwritesInput(_)
+            | Self::NoFile { .. }
             | Self::OverwritesPlan(_)
             | Self::Write(_)
             | Self::Machine(_)

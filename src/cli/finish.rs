@@ -1,6 +1,9 @@
 //! Writes the files of finished runs and reports on them.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::ErrorKind,
+    path::{Path, PathBuf},
+};
 
 use super::{
     args::{RecordChoice, ReportArgs},
@@ -12,7 +15,8 @@ use super::{
     recording,
 };
 use crate::{
-    model::{plan::Plan, scenario::Scenario},
+    input::{self, MOST_DOCUMENT},
+    model::{file_name::REPORTS, plan::Plan, scenario::Scenario},
     report::{self, Outcome, SkipReason},
     robot::Robot,
 };
@@ -56,9 +60,6 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".into())
 }
-
-/// The files of the report.
-const REPORTS: [&str; 4] = ["report.html", "summary.csv", "summary.json", "junit.xml"];
 
 /// The files of a run.
 struct RunFiles {
@@ -106,7 +107,11 @@ pub fn protect_from_reports(args: &ReportArgs, inputs: &[PathBuf]) -> Result<(),
 /// If there is another plan.
 pub fn keep_other_plan(args: &ReportArgs, plan: &Plan) -> Result<(), CliError> {
     let path = RunFiles::new(&args.out, &plan.name).plan;
-    let Ok(bytes) = std::fs::read(&path) else { return Ok(()) };
+    let bytes = match input::bytes(&path, MOST_DOCUMENT) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::FileTooLarge => return Err(CliError::OverwritesPlan(path)),
+        Err(_) => return Ok(()),
+    };
     match serde_json::from_slice::<Plan>(&bytes) {
         Ok(other) if other.planner.is_none() || without_durations(&other) == without_durations(plan) => Ok(()),
         _ => Err(CliError::OverwritesPlan(path)),

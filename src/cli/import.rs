@@ -17,6 +17,7 @@ use crate::{
     complete::{ArmTask, Completer, Effort, Reached, Target},
     model::{
         FORMAT,
+        file_name::MOST_BYTES,
         frames::Pose,
         plan::{ArmHold, Plan},
     },
@@ -107,6 +108,13 @@ fn all(
                 .error(grasp, found, "names that differ in letters, digits, `-`, `_` or `.`".into())
                 .into());
         }
+        let length = plan_name(loaded, grasp).len();
+        if length > MOST_BYTES {
+            let found = format!("a name whose plan has a name of {length} characters");
+            return Err(file
+                .error(grasp, found, format!("at most {MOST_BYTES}, since files are named after it"))
+                .into());
+        }
     }
     let path_of = |grasp: &ForeignGrasp| folder.join(format!("{}.json", output::file_stem(&grasp.name)));
     inputs::protect(read, grasps.iter().map(|grasp| path_of(grasp)))?;
@@ -118,7 +126,7 @@ fn all(
         let choices: Vec<ArmChoice> = args.arm.iter().cloned().chain([own]).collect();
         let left_out = match imported(args, loaded, file, &choices) {
             Ok(Some(Imported { mut plan, notes })) => {
-                plan.name = format!("{}-{}", plan.name, output::file_stem(&grasp.name));
+                plan.name = plan_name(loaded, grasp);
                 let _writing = interrupt::writing();
                 report::file::write_whole(&path_of(grasp), report::json::plan(&plan).as_bytes())?;
                 progress.leaves("the plans that were written stay");
@@ -134,6 +142,11 @@ fn all(
     }
     progress.finish();
     Ok(exit)
+}
+
+/// The name of the plan of a grasp beside those of other grasps.
+fn plan_name(loaded: &LoadedScenario, grasp: &ForeignGrasp) -> String {
+    format!("{}-{}", loaded.scenario.name, output::file_stem(&grasp.name))
 }
 
 /// The plan of these grasps; `None` if the board has no pose at which the arms reach them.

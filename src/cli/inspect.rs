@@ -12,20 +12,21 @@ use super::{
     versions::versions,
 };
 use crate::{
-    judge::judge,
+    judge::{fingerprint, judge},
     model::{
         scenario::{Expectation, Limits},
         verdict::{Verdict, VerdictKind},
     },
-    record::{self, RecordError, RecordedRun, RecordedSummary},
+    record::{RecordError, RecordedRun, RecordedSummary, Recording},
     report::{columns, console},
     scenario,
 };
 
 /// Prints a recording's contents. If its trace is judged again, the new verdict determines the exit code.
 pub fn inspect(args: &InspectArgs) -> Result<Exit, CliError> {
-    let summary = record::read_summary(&args.recording)?;
-    let rejudged = if wants_check(args) { Some(judge_again(args)?) } else { None };
+    let recording = Recording::read(&args.recording)?;
+    let summary = recording.summary()?;
+    let rejudged = if wants_check(args) { Some(judge_again(args, recording.run()?)?) } else { None };
     match args.format {
         Format::Human => output::print(&text(&summary, rejudged.as_ref()))?,
         Format::Json => output::print(&json(&summary, rejudged.as_ref()))?,
@@ -40,8 +41,15 @@ fn wants_check(args: &InspectArgs) -> bool {
 }
 
 /// The verdict on the stored trace under the given limits.
-fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
-    let RecordedRun { scenario, verdict, trace, .. } = record::read_run(&args.recording)?;
+fn judge_again(args: &InspectArgs, recorded: RecordedRun) -> Result<Verdict, CliError> {
+    let RecordedRun { scenario, verdict, trace, .. } = recorded;
+    // Before it is judged: a damaged trace may be anything.
+    let found = fingerprint(&trace);
+    if found != verdict.fingerprint {
+        let expected = verdict.fingerprint;
+        let problem = format!("found a trace with fingerprint {found}, expected {expected}, that of the verdict");
+        return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
+    }
     let (limits, expect) = match &args.scenario {
         Some(path) => {
             let given = scenario::load(path)?.scenario;
@@ -51,11 +59,6 @@ fn judge_again(args: &InspectArgs) -> Result<Verdict, CliError> {
     };
     let given = with(limits, args.limits);
     let mut judgement = judge(&trace, &given);
-    if judgement.fingerprint != verdict.fingerprint {
-        let (found, expected) = (judgement.fingerprint, verdict.fingerprint);
-        let problem = format!("found a trace with fingerprint {found}, expected {expected}, that of the verdict");
-        return Err(RecordError::Invalid { path: args.recording.clone(), problem }.into());
-    }
     if given == scenario.limits {
         judgement.confirmation.clone_from(&verdict.confirmation);
         if verdict.verdict == VerdictKind::NoVerdict {

@@ -1,7 +1,6 @@
 //! `benchdog merge`: joins the parts of a sweep into the files that one sweep of all runs would have written.
 
 use std::{
-    fs,
     io::{self, ErrorKind},
     path::Path,
 };
@@ -14,6 +13,7 @@ use super::{
     sweep_args::MergeArgs,
 };
 use crate::{
+    input::{self, MOST_DOCUMENT, MOST_RECORDING},
     report,
     sweep::{
         info::{Shard, SweepInfo},
@@ -51,7 +51,7 @@ pub fn merge(args: &MergeArgs) -> Result<Exit, CliError> {
             return Ok(None);
         };
         let path = SweepFolder::new(part.folder).recording(index);
-        match fs::read(&path) {
+        match input::bytes(&path, MOST_RECORDING) {
             // A program without recordings made the part.
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             read => read.map(Some).map_err(|error| unreadable(&path, &error, "")),
@@ -66,7 +66,8 @@ impl<'a> Part<'a> {
         let read = |name: &str| {
             let path = files.file(name);
             let why = if name == SUMMARY { "; a part without it is not finished" } else { "" };
-            fs::read(&path).map_err(|error| unreadable(&path, &error, why))
+            let most_bytes = if name == RUNS { MOST_RECORDING } else { MOST_DOCUMENT };
+            input::bytes(&path, most_bytes).map_err(|error| unreadable(&path, &error, why))
         };
         let wrong = |name: &str, problem: String| CliError::Usage(format!("{}:{problem}", files.file(name).display()));
         let summary: SweepSummary = serde_json::from_slice(&read(SUMMARY)?)

@@ -59,6 +59,17 @@ use args::RobotCommand;
 pub use args::{Cli, Command};
 pub use exit::Exit;
 
+/// Prints no message of a panic that means that a recording is damaged: it becomes an error.
+#[cfg(feature = "recording")]
+fn leave_damage_to_decoders() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !crate::record::is_decoding() {
+            print(panic);
+        }
+    }));
+}
+
 /// Parses this process's arguments and runs the command.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -69,6 +80,8 @@ pub fn main() -> ExitCode {
             return if error.use_stderr() { Exit::Input.into() } else { Exit::Met.into() };
         }
     };
+    #[cfg(feature = "recording")]
+    leave_damage_to_decoders();
     let outcome = std::panic::catch_unwind(|| match &cli.command {
         Command::Run(args) => run::run(args),
         Command::Plan(args) => plan::plan(args),

@@ -3,21 +3,22 @@
 use std::io::{ErrorKind, Write};
 
 use super::exit::CliError;
+use crate::input::{self, printable};
 
-/// Writes text to standard output.
+/// Writes text to standard output, with control characters in it escaped.
 ///
 /// # Errors
 /// If it cannot be written for a reason other than a closed pipe.
 pub fn print(text: &str) -> Result<(), CliError> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
+    match std::io::stdout().lock().write_all(printable(text).as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Stdout(error)),
         _ => Ok(()),
     }
 }
 
-/// Writes a message to standard error. A failure to do so is ignored.
+/// Writes a message to standard error, with control characters in it escaped and long lines cut. A failure to do so is ignored.
 pub fn message(message: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{message}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", input::message(message));
 }
 
 /// A name as that of a file: letters, digits, `-`, `_` and `.`, and others as `-`.

@@ -1,11 +1,7 @@
 //! `benchdog replan`: a process that a robot program talks to. It reads requests in lines of JSON and answers each with a plan in a
 //! line of JSON.
 
-use std::{
-    io::{BufRead, Write},
-    path::Path,
-    time::Instant,
-};
+use std::{io::Write, path::Path, time::Instant};
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,6 +14,7 @@ use super::{
     progress::Progress,
 };
 use crate::{
+    input::{self, MOST_LINE},
     model::{plan::Plan, scenario::Scenario},
     planner::{Motion, Outcome, PlanError, Planner, Replanned, Replanning},
     report,
@@ -106,13 +103,15 @@ pub fn replan(args: &ReplanArgs) -> Result<Exit, CliError> {
     let mut scenario = loaded.scenario;
     let mut exit = Exit::Met;
     let source = Path::new("standard input");
-    for (number, text) in std::io::stdin().lock().lines().enumerate() {
-        let text = text.map_err(|error| CliError::Machine(format!("failed to read {}: {error}", source.display())))?;
+    let mut requests = std::io::stdin().lock();
+    for line in 1.. {
+        let text = input::line(&mut requests, MOST_LINE);
+        let unreadable = |error| CliError::Machine(format!("failed to read {}:{line}: {error}", source.display()));
+        let Some(text) = text.map_err(unreadable)? else { break };
         if text.trim().is_empty() {
             continue;
         }
         let start = Instant::now();
-        let line = number + 1;
         let answer = match read_replan_request(source, line, &text, &mut scenario) {
             Ok(request) => match answered(&mut planner, &scenario, &request, &progress) {
                 Ok(answer) => answer,

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     collision::CollisionModel,
+    input::{self, MOST_TOML},
     robot::{Chain, Finger, Gripper, Holding, InverseKinematics, MeasuredGrip, Robot, RobotError},
     setup::{Overlaps, middle, positions},
 };
@@ -111,7 +112,7 @@ fn often(robot: &Robot) -> Vec<String> {
 
 /// The lines of a description that are marked as assumed.
 fn assumed(files: &[std::path::PathBuf]) -> Vec<String> {
-    let Some(text) = files.first().and_then(|path| std::fs::read_to_string(path).ok()) else { return Vec::new() };
+    let Some(text) = files.first().and_then(|path| input::text(path, MOST_TOML).ok()) else { return Vec::new() };
     let lines = text.lines().enumerate().filter(|(_, line)| line.contains("# ASSUMED"));
     lines.map(|(number, line)| format!("line {}: {}", number + 1, line.trim())).collect()
 }

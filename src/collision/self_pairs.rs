@@ -1,5 +1,7 @@
 //! The pairs of links that must not touch, and the distance that each can be asked to keep (docs/method.md#35-clearances).
 
+use std::collections::BTreeMap;
+
 use super::{link_shapes::LinkShapes, shapes::Measure};
 use crate::robot::Robot;
 
@@ -33,22 +35,35 @@ impl SelfPair {
 pub(super) fn self_pairs(robot: &Robot, links: &[LinkShapes]) -> Vec<SelfPair> {
     let active = robot.active_joints();
     let carriers = robot.active_carriers();
-    (0..links.len())
-        .flat_map(|a| (a + 1..links.len()).map(move |b| [a, b]))
-        .filter(|&[a, b]| !links[a].pieces.is_empty() && !links[b].pieces.is_empty() && carriers[a] != carriers[b])
-        .filter(|pair| !robot.allowed_collisions.contains(pair))
-        .map(|pair| SelfPair { links: pair, most_m: most_m(robot, &active, links, pair) })
-        .collect()
+    let mut allowed = robot.allowed_collisions.clone();
+    allowed.sort_unstable();
+    let with_shapes: Vec<usize> = (0..links.len()).filter(|&link| !links[link].pieces.is_empty()).collect();
+    let mut pairs = Vec::new();
+    // What moves two links against each other follows from the joints that carry them.
+    let mut of_carriers: BTreeMap<[Option<usize>; 2], Vec<usize>> = BTreeMap::new();
+    for (place, &a) in with_shapes.iter().enumerate() {
+        for &b in &with_shapes[place + 1..] {
+            if carriers[a] != carriers[b] && allowed.binary_search(&[a, b]).is_err() {
+                of_carriers.entry([carriers[a], carriers[b]]).or_default().push(pairs.len());
+                pairs.push(SelfPair { links: [a, b], most_m: f64::INFINITY });
+            }
+        }
+    }
+    for places in of_carriers.values() {
+        let [a, b] = pairs[places[0]].links;
+        let joints = joints_between(robot, &active, a, b);
+        if joints.len() <= JOINTS_BETWEEN {
+            set_most(robot, links, &joints, places, &mut pairs);
+        }
+    }
+    pairs
 }
 
-/// A share of the largest distance of two links over the positions of the joints between them; infinite if these are many.
-fn most_m(robot: &Robot, active: &[bool], links: &[LinkShapes], [a, b]: [usize; 2]) -> f64 {
-    let joints = joints_between(robot, active, a, b);
-    if joints.len() > JOINTS_BETWEEN {
-        return f64::INFINITY;
-    }
+/// Sets the most that pairs can be asked to keep, which the same joints move: a share of their largest distance over the positions
+/// of these.
+fn set_most(robot: &Robot, links: &[LinkShapes], joints: &[usize], places: &[usize], pairs: &mut [SelfPair]) {
     let mut positions = robot.positions(&[]);
-    let mut farthest_m = 0.0_f64;
+    let mut farthest_m = vec![0.0_f64; places.len()];
     for number in 0..POSITIONS.pow(joints.len() as u32) {
         for (place, &joint) in joints.iter().enumerate() {
             let step = number / POSITIONS.pow(place as u32) % POSITIONS;
@@ -56,10 +71,15 @@ fn most_m(robot: &Robot, active: &[bool], links: &[LinkShapes], [a, b]: [usize; 
             positions[joint] = low + (high - low) * step as f64 / (POSITIONS - 1) as f64;
         }
         let poses = robot.link_poses(&positions);
-        let distance = links[a].distance_within(&poses[a], &links[b], &poses[b], f64::INFINITY, Measure::Distance);
-        farthest_m = farthest_m.max(distance);
+        for (farthest_m, &place) in farthest_m.iter_mut().zip(places) {
+            let [a, b] = pairs[place].links;
+            let distance = links[a].distance_within(&poses[a], &links[b], &poses[b], f64::INFINITY, Measure::Distance);
+            *farthest_m = farthest_m.max(distance);
+        }
     }
-    SHARE * farthest_m
+    for (farthest_m, &place) in farthest_m.iter().zip(places) {
+        pairs[place].most_m = SHARE * farthest_m;
+    }
 }
 
 /// The range of a joint, a whole turn if it has no limits.

@@ -7,6 +7,7 @@ pub mod activation_colour;
 pub mod board;
 pub mod board_mesh;
 pub mod expectation;
+pub mod file_name;
 pub mod frames;
 pub mod grasp;
 pub mod lateral;

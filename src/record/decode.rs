@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 
 use super::{
     entity::{APPLICATION, TIMELINE, entity},
-    rrd,
+    lengths,
 };
 
 /// The first bytes of every rerun recording that this version reads.
@@ -26,9 +26,8 @@ const RERUN: &str = "0.36";
 /// The chunks of the recording itself, without those of its blueprint.
 pub(super) fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
     check_header(bytes)?;
-    if !rrd::is_complete(bytes) {
-        return Err("the recording was cut short".to_owned());
-    }
+    lengths::check_footer(bytes)?;
+    lengths::check(bytes)?;
     let (mut chunks, mut is_benchdog) = (Vec::new(), false);
     for message in DecoderApp::decode_lazy(Cursor::new(bytes)) {
         match message.map_err(|error| format!("found a damaged recording: {error}"))? {
@@ -42,10 +41,13 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<Vec<Chunk>, String> {
     if is_benchdog { Ok(chunks) } else { Err("found no recording of benchdog, expected one".to_owned()) }
 }
 
+/// The bytes at the beginning of a file that say what it is.
+pub(super) const HEADER: usize = StreamHeader::ENCODED_SIZE_BYTES;
+
 /// Checks by the header that this is a rerun recording of a supported version.
-fn check_header(bytes: &[u8]) -> Result<(), String> {
+pub(super) fn check_header(bytes: &[u8]) -> Result<(), String> {
     let no_recording = "found no rerun recording, expected a file that starts with \"RRF2\"";
-    let header = bytes.get(..StreamHeader::ENCODED_SIZE_BYTES).ok_or(no_recording)?;
+    let header = bytes.get(..HEADER).ok_or(no_recording)?;
     let (magic, [major, minor, patch, _]) = (&header[..4], [header[4], header[5], header[6], header[7]]);
     let found = || format!("found a recording of rerun {major}.{minor}.{patch}, expected one of {RERUN}");
     match magic {

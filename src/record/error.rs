@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::input::one_line;
+
 /// A recording cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -26,7 +28,7 @@ pub enum RecordError {
         source: std::io::Error,
     },
     /// The file is not a recording of Benchdog, or is damaged.
-    #[error("failed to read {}: {problem}", path.display())]
+    #[error("failed to read {}: {}", path.display(), one_line(problem))]
     Invalid {
         /// The file.
         path: PathBuf,

@@ -1,17 +1,25 @@
 //! Reads the verdict, or the whole run, from a recording.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    io,
+    path::{Path, PathBuf},
+};
 
 use rerun::log::Chunk;
 
 use super::{
-    decode::{chunks, document, json, texts, times_s},
+    decode::{HEADER, check_header, chunks, document, json, texts, times_s},
     error::RecordError,
+    guard::guarded,
     plots::{FAILURE, LIMIT, NOT_JUDGED, without_time},
     stored,
     summary::{ABOUT, About},
 };
-use crate::model::{FORMAT, plan::Plan, scenario::Scenario, trace::Trace, verdict::Verdict};
+use crate::{
+    input::{self, MOST_RECORDING},
+    model::{FORMAT, plan::Plan, scenario::Scenario, trace::Trace, verdict::Verdict},
+};
 
 /// The verdict and the main figures of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,34 +71,83 @@ pub struct RecordedRun {
     pub trace: Trace,
 }
 
+/// A file with a recording of Benchdog. It is read once, since it may be a pipe.
+pub struct Recording {
+    path: PathBuf,
+    chunks: Vec<Chunk>,
+}
+
+impl Recording {
+    /// Reads a file and checks its format.
+    ///
+    /// # Errors
+    /// As for [`read_summary`].
+    pub fn read(path: &Path) -> Result<Self, RecordError> {
+        let test = |header: &[u8]| check_header(header).map_err(Unread::Problem);
+        let bytes = input::bytes_if(path, MOST_RECORDING, HEADER as u64, test).map_err(|unread| match unread {
+            Unread::File(source) => RecordError::Read { path: path.to_owned(), source },
+            Unread::Problem(problem) => RecordError::Invalid { path: path.to_owned(), problem },
+        })?;
+        let decoded = guarded(|| {
+            let chunks = chunks(&bytes)?;
+            check_format(&chunks)?;
+            Ok(chunks)
+        });
+        let chunks = decoded.map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })?;
+        Ok(Self { path: path.to_owned(), chunks })
+    }
+
+    /// The verdict and the main figures.
+    ///
+    /// # Errors
+    /// As for [`read_summary`].
+    pub fn summary(&self) -> Result<RecordedSummary, RecordError> {
+        self.extract(summary)
+    }
+
+    /// The whole run.
+    ///
+    /// # Errors
+    /// As for [`read_summary`].
+    pub fn run(&self) -> Result<RecordedRun, RecordError> {
+        self.extract(|chunks| {
+            let (scenario, plan) = stored::scenario_and_plan(chunks)?;
+            Ok(RecordedRun { scenario, plan, verdict: json(chunks, "verdict")?, trace: stored::trace(chunks)? })
+        })
+    }
+
+    fn extract<T>(&self, from: impl FnOnce(&[Chunk]) -> Result<T, String>) -> Result<T, RecordError> {
+        guarded(|| from(&self.chunks)).map_err(|problem| RecordError::Invalid { path: self.path.clone(), problem })
+    }
+}
+
+/// Why a file was not read.
+enum Unread {
+    File(io::Error),
+    Problem(String),
+}
+
+impl From<io::Error> for Unread {
+    fn from(error: io::Error) -> Self {
+        Self::File(error)
+    }
+}
+
 /// Reads the run from a recording of Benchdog.
 ///
 /// # Errors
 /// As for [`read_summary`].
 pub fn read_run(path: &Path) -> Result<RecordedRun, RecordError> {
-    read(path, |chunks| {
-        let (scenario, plan) = stored::scenario_and_plan(chunks)?;
-        Ok(RecordedRun { scenario, plan, verdict: json(chunks, "verdict")?, trace: stored::trace(chunks)? })
-    })
+    Recording::read(path)?.run()
 }
 
 /// Reads the verdict and the main figures from a recording of Benchdog.
 ///
 /// # Errors
 /// If the file cannot be read, is not a rerun recording, was written by another program or another version of the format,
-/// or is truncated.
+/// or is truncated or damaged.
 pub fn read_summary(path: &Path) -> Result<RecordedSummary, RecordError> {
-    read(path, summary)
-}
-
-/// Reads a file, checks its format, and extracts data from it.
-fn read<T>(path: &Path, extract: impl FnOnce(&[Chunk]) -> Result<T, String>) -> Result<T, RecordError> {
-    let bytes = std::fs::read(path).map_err(|source| RecordError::Read { path: path.to_owned(), source })?;
-    let extracted = chunks(&bytes).and_then(|chunks| {
-        check_format(&chunks)?;
-        extract(&chunks)
-    });
-    extracted.map_err(|problem| RecordError::Invalid { path: path.to_owned(), problem })
+    Recording::read(path)?.summary()
 }
 
 /// Checks the format version, before any data whose form depends on it.

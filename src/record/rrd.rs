@@ -23,11 +23,6 @@ pub(super) fn bytes(messages: impl IntoIterator<Item = LogMsg>) -> Result<Vec<u8
     Ok(bytes)
 }
 
-/// True if the file ends with the position of its index, as every complete file does.
-pub(super) fn is_complete(bytes: &[u8]) -> bool {
-    StreamFooter::from_rrd_bytes(bytes).is_ok()
-}
-
 /// Rewrites the index in the order of names. The encoder lists stores and columns in the order of hash maps, which differs
 /// from run to run.
 fn sort_index(bytes: &mut Vec<u8>) -> Result<(), CodecError> {

@@ -1,5 +1,6 @@
 //! A recording is written, read back, cut short and compared, byte by byte.
 
+mod damage;
 mod muscles;
 
 use std::{collections::BTreeMap, fs, path::Path};

@@ -224,7 +224,7 @@ impl Description {
     /// The first fault of the format.
     pub fn read(source: &Source<'_>) -> Result<Self, Fault> {
         let description: Self = toml::from_str(source.text)
-            .map_err(|error| source.fault(error.span().unwrap_or_default(), error.message()))?;
+            .map_err(|error| source.fault(error.span().unwrap_or_default(), error.message().replace('\n', "; ")))?;
         let format = *description.format.get_ref();
         if format != FORMAT {
             return Err(source.fault(description.format.span(), format!("format: found {format}, expected {FORMAT}")));

@@ -2,6 +2,8 @@
 
 use std::{fmt, ops::Range};
 
+use crate::input::one_line;
+
 /// An error of loading a robot.
 #[derive(Debug, thiserror::Error)]
 pub enum RobotError {
@@ -53,12 +55,16 @@ impl Faults {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (file, problem) = (one_line(&self.file), one_line(&self.problem));
         match self.line {
-            Some(line) => write!(f, "{}: line {line}: {}", self.file, self.problem),
-            None => write!(f, "{}: {}", self.file, self.problem),
+            Some(line) => write!(f, "{file}: line {line}: {problem}"),
+            None => write!(f, "{file}: {problem}"),
         }
     }
 }
+
+/// The most faults of a list: a generated file may have thousands of the same kind.
+const MOST_LISTED: usize = 100;
 
 /// One fault as it is, several as a list.
 impl fmt::Display for Faults {
@@ -67,7 +73,11 @@ impl fmt::Display for Faults {
             return fault.fmt(f);
         }
         write!(f, "{} faults", self.faults.len())?;
-        self.faults.iter().try_for_each(|fault| write!(f, "\n  {fault}"))
+        self.faults.iter().take(MOST_LISTED).try_for_each(|fault| write!(f, "\n  {fault}"))?;
+        match self.faults.len().saturating_sub(MOST_LISTED) {
+            0 => Ok(()),
+            more => write!(f, "\n  and {more} more"),
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use super::{
     tree::{Robot, RobotOptions},
     urdf::{self, UrdfSource},
 };
+use crate::input::{self, MOST_TOML, MOST_URDF};
 
 /// Names of the built-in robots.
 pub const BUILTIN: &[&str] = &["baxter", "dual-panda", "dual-ur5"];
@@ -50,13 +51,13 @@ impl Robot {
             return Err(RobotError::Unknown { found: description.into(), builtin: BUILTIN.join(", ") });
         }
         let path = relative_to.join(description);
-        let text = read_file(&path)?;
+        let text = read_file(&path, MOST_TOML)?;
         let folder = path.parent().unwrap_or(relative_to);
         let source = Source { file: &path.display().to_string(), text: &text };
         let mut urdf_path = None;
         let mut robot = build(description, &source, options, |urdf| {
             let path = urdf_path.insert(folder.join(urdf));
-            Ok((path.display().to_string(), read_file(path)?, folder))
+            Ok((path.display().to_string(), read_file(path, MOST_URDF)?, folder))
         })?;
         robot.files.splice(0..0, std::iter::once(path.clone()).chain(urdf_path));
         Ok(robot)
@@ -71,7 +72,7 @@ impl Robot {
     pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, RobotError> {
         build(name, &Source { file: name, text }, &RobotOptions::default(), |urdf| {
             let path = folder.join(urdf);
-            Ok((path.display().to_string(), read_file(&path)?, folder))
+            Ok((path.display().to_string(), read_file(&path, MOST_URDF)?, folder))
         })
     }
 
@@ -80,7 +81,7 @@ impl Robot {
     /// # Errors
     /// As for [`Robot::load`].
     pub fn bare(urdf: &Path, packages: &[PathBuf]) -> Result<(Self, Vec<f64>), RobotError> {
-        let (file, text) = (urdf.display().to_string(), read_file(urdf)?);
+        let (file, text) = (urdf.display().to_string(), read_file(urdf, MOST_URDF)?);
         let packages = Packages::new(packages.to_vec(), urdf.parent().unwrap_or(Path::new("")));
         let mut faults = Collector::default();
         let source = UrdfSource { file: &file, text: &text, packages: &packages, decomposed: &[] };
@@ -90,8 +91,8 @@ impl Robot {
     }
 }
 
-fn read_file(path: &Path) -> Result<String, RobotError> {
-    std::fs::read_to_string(path).map_err(|source| RobotError::Read { path: path.display().to_string(), source })
+fn read_file(path: &Path, most_bytes: u64) -> Result<String, RobotError> {
+    input::text(path, most_bytes).map_err(|source| RobotError::Read { path: path.display().to_string(), source })
 }
 
 /// Name and text of a URDF, and the folder of the description.
@@ -113,7 +114,13 @@ fn build<'a>(
         }
     };
     let urdf_path = Path::new(description.urdf.get_ref());
-    let (file, text, folder) = urdf(urdf_path)?;
+    let (file, text, folder) = match urdf(urdf_path) {
+        Ok(read) => read,
+        Err(error) => {
+            faults.add(source.fault(description.urdf.span(), format!("urdf: {error}")));
+            return Err(faults.into_error());
+        }
+    };
     let given = options.packages.iter().cloned().chain(description.packages.iter().map(|given| folder.join(given)));
     let urdf_folder = folder.join(urdf_path);
     let packages = Packages::new(given.collect(), urdf_folder.parent().unwrap_or(folder));

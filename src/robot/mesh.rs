@@ -17,7 +17,10 @@ use super::{
     geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry},
     tree::{Link, Robot},
 };
-use crate::model::frames::Pose;
+use crate::{
+    input::{self, MOST_MESH},
+    model::frames::Pose,
+};
 
 /// The largest distance by which a point of a mesh's hull may stick out of the shape, m: a fifth of the usual clearance.
 const HULL_TOLERANCE_M: f64 = 1e-3;
@@ -56,7 +59,7 @@ impl MeshFile {
     /// What is wrong with the file.
     pub fn read(&self) -> Result<Vec<MeshPart>, String> {
         let at = |problem: String| format!("mesh {}: {problem}", self.path.display());
-        let bytes = std::fs::read(&self.path).map_err(|error| at(format!("failed to read: {error}")))?;
+        let bytes = input::bytes(&self.path, MOST_MESH).map_err(|error| at(format!("failed to read: {error}")))?;
         let scene = mesh_loader::Loader::default()
             .load_from_slice(&with_binary_header(&self.path, bytes), &self.path)
             .map_err(|error| at(error.to_string()))?;

@@ -5,7 +5,13 @@ use std::path::Path;
 use super::{InputError, InputErrorKind, locate};
 use crate::{
     check::{BOARD_SIDE_M, ON_BOARD_M, ON_MATERIAL, bounds, off_material},
-    model::{FORMAT, board::BoardShape, frames::Pose},
+    input,
+    model::{
+        FORMAT,
+        board::BoardShape,
+        file_name::{MOST_BYTES, REPORTS},
+        frames::Pose,
+    },
     robot::{Arm, RobotError},
 };
 
@@ -66,6 +72,12 @@ impl<'a> Checker<'a> {
         self.error(key, InputErrorKind::Robot(error))
     }
 
+    /// The text of a file that a key names, of at most this many bytes.
+    pub fn named_file(&self, key: &str, path: &Path, most_bytes: u64) -> Result<String, InputError> {
+        input::text(path, most_bytes)
+            .map_err(|source| self.error(key, InputErrorKind::Named { path: path.to_owned(), source }))
+    }
+
     /// An error of a part that is checked by itself, at the part's key.
     pub fn moved(&self, error: InputError, part: &str) -> InputError {
         let key = error.key.map_or_else(|| part.to_owned(), |key| format!("{part}.{key}"));
@@ -83,7 +95,12 @@ impl<'a> Checker<'a> {
             && !name.starts_with('.')
             && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
         let expected = "letters, digits, `-`, `_` and `.`, since files are named after it";
-        self.that(fits, "name", format!("\"{name}\""), expected)
+        self.that(fits, "name", format!("\"{name}\""), expected)?;
+        let expected = format!("at most {MOST_BYTES}, since files are named after it");
+        self.that(name.len() <= MOST_BYTES, "name", format!("a name of {} characters", name.len()), &expected)?;
+        let is_report = REPORTS.iter().any(|report| report.eq_ignore_ascii_case(name));
+        let expected = format!("a name other than {}, which a run writes beside its folder", REPORTS.join(", "));
+        self.that(!is_report, "name", format!("\"{name}\""), &expected)
     }
 
     /// Requires the supported format.

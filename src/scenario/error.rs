@@ -5,6 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use crate::input::{self, one_line, shown};
+
 /// An error of an input file.
 #[derive(Debug)]
 pub struct InputError {
@@ -36,6 +38,14 @@ pub enum InputErrorKind {
         /// The values allowed.
         expected: String,
     },
+    /// A file that the key names cannot be read.
+    #[error("failed to read {}: {source}", path.display())]
+    Named {
+        /// The named file.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
     /// The robot cannot be loaded.
     #[error(transparent)]
     Robot(#[from] crate::robot::RobotError),
@@ -50,20 +60,25 @@ impl InputError {
 
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
+        f.write_str(&one_line(&self.file.display().to_string()))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
         if let Some(key) = &self.key {
-            write!(f, ": {key}")?;
+            write!(f, ": {}", shown(key))?;
         }
-        write!(f, ": {}", self.kind)
+        match &self.kind {
+            InputErrorKind::Value { found, expected } => write!(f, ": found {}, expected {expected}", shown(found)),
+            // Several faults are several lines, each of which is printable.
+            InputErrorKind::Robot(error) => write!(f, ": {error}"),
+            kind => write!(f, ": {}", one_line(&kind.to_string())),
+        }
     }
 }
 
 impl std::error::Error for InputError {}
 
-/// Reads a text file.
-pub(super) fn read_text(path: &Path) -> Result<String, InputError> {
-    std::fs::read_to_string(path).map_err(|e| InputError::file(path, e))
+/// Reads a text file of at most this many bytes.
+pub(super) fn read_text(path: &Path, most_bytes: u64) -> Result<String, InputError> {
+    input::text(path, most_bytes).map_err(|error| InputError::file(path, error))
 }

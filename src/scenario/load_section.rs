@@ -6,9 +6,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{InputError, InputErrorKind, check::Checker, error::read_text};
+use super::{InputError, InputErrorKind, check::Checker};
 use crate::{
     check::bounds,
+    input::MOST_CSV,
     model::{
         load::{ForceFrame, ForceProfile, Load},
         operation::OperationKind,
@@ -98,7 +99,9 @@ pub fn load(check: &Checker<'_>, section: &LoadSection, folder: &Path) -> Result
         },
         LoadKind::Measured => {
             let file = check.present("load.file", section.file.as_ref(), "the path of a CSV file")?;
-            ForceProfile::Measured { samples: measured(&folder.join(file))? }
+            let path = folder.join(file);
+            let text = check.named_file("load.file", &path, MOST_CSV)?;
+            ForceProfile::Measured { samples: measured(&path, &text)? }
         }
     };
     Ok(Load { frame: section.frame, profile, lateral_share: section.lateral_share.unwrap_or(0.0) })
@@ -120,13 +123,12 @@ fn check_keys(check: &Checker<'_>, section: &LoadSection) -> Result<(), InputErr
     })
 }
 
-/// Reads a file of measured forces.
+/// The measured forces of a file with this text.
 ///
 /// # Errors
-/// If the file cannot be read or has other columns, a cell that is not a finite number, times that do not increase, or
+/// If the file has other columns, a cell that is not a finite number, times that do not increase, or
 /// only zero wrenches. The error names the file and the line.
-pub fn measured(path: &Path) -> Result<Vec<[f64; 7]>, InputError> {
-    let text = read_text(path)?;
+pub fn measured(path: &Path, text: &str) -> Result<Vec<[f64; 7]>, InputError> {
     let mut reader =
         csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let mut rows: Vec<[f64; 7]> = Vec::new();

@@ -37,6 +37,7 @@ pub use staged_file::LoadedStagedPlan;
 pub use sweep_section::usual_sweep;
 
 use crate::{
+    input::{MOST_DOCUMENT, MOST_TOML},
     model::{plan::Plan, scenario::Scenario, staged_plan::STAGED_FORMAT, task::Task},
     robot::Robot,
 };
@@ -92,7 +93,7 @@ pub struct LoadedPlan {
 /// # Errors
 /// If the file, or a robot or plan that it names, cannot be read or contains an invalid value.
 pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
-    load_text(path, &error::read_text(path)?)
+    load_text(path, &error::read_text(path, MOST_TOML)?)
 }
 
 /// As [`load`], but `None` for a task file.
@@ -100,7 +101,7 @@ pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
 /// # Errors
 /// As for [`load`].
 pub fn load_unless_task(path: &Path) -> Result<Option<LoadedScenario>, InputError> {
-    let text = error::read_text(path)?;
+    let text = error::read_text(path, MOST_TOML)?;
     if is_task(&text) { Ok(None) } else { load_text(path, &text).map(Some) }
 }
 
@@ -115,7 +116,7 @@ pub fn is_task(text: &str) -> bool {
 /// # Errors
 /// As for [`load`], and if the file has no `[task]`.
 pub fn load_task(path: &Path) -> Result<(LoadedScenario, Task), InputError> {
-    let text = error::read_text(path)?;
+    let text = error::read_text(path, MOST_TOML)?;
     let loaded = load_any(path, &text)?;
     match loaded.task.clone() {
         Some(task) => Ok((loaded, task)),
@@ -155,7 +156,9 @@ fn load_any(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
     let (plan, filled_in) = match &scenario.planner.plan {
         Some(plan) => {
             let plan_path = folder.join(plan);
-            let ReadPlan { plan, filled_in, .. } = plan_file::read(&plan_path, Some(&robot), Some(&scenario))?;
+            let plan_text = check::Checker::toml(path, text).named_file("planner.plan", &plan_path, MOST_DOCUMENT)?;
+            let ReadPlan { plan, filled_in, .. } =
+                plan_file::from_text(&plan_path, &plan_text, Some(&robot), Some(&scenario))?;
             resolve::check_plan_matches(path, text, &scenario, &plan)?;
             inputs.push(plan_path);
             (Some(plan), filled_in)
@@ -177,7 +180,7 @@ fn folder_of(file: &Path) -> &Path {
 /// # Errors
 /// As [`read_plan`] and [`load`], and if the scenario is for another robot, board, operation or grip force.
 pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
-    load_plan_text(path, &error::read_text(path)?, scenario)
+    load_plan_text(path, &error::read_text(path, MOST_DOCUMENT)?, scenario)
 }
 
 /// A plan of one hold or of a task.
@@ -194,7 +197,7 @@ pub enum AnyPlan {
 /// # Errors
 /// As [`load_plan`]; if a staged plan is not one or does not fit the robot; and for a `scenario` beside a staged plan.
 pub fn load_any_plan(path: &Path, scenario: Option<&Path>) -> Result<AnyPlan, InputError> {
-    let text = error::read_text(path)?;
+    let text = error::read_text(path, MOST_DOCUMENT)?;
     if plan_file::format_of(&text) != Some(STAGED_FORMAT) {
         return load_plan_text(path, &text, scenario).map(|plan| AnyPlan::OneHold(Box::new(plan)));
     }
@@ -206,14 +209,16 @@ pub fn load_any_plan(path: &Path, scenario: Option<&Path>) -> Result<AnyPlan, In
 }
 
 fn load_plan_text(path: &Path, text: &str, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
-    let loaded = scenario.map(load).transpose()?;
+    // A scenario from a pipe can be read once.
+    let scenario_text = scenario.map(|path| error::read_text(path, MOST_TOML)).transpose()?.unwrap_or_default();
+    let loaded = scenario.map(|path| load_text(path, &scenario_text)).transpose()?;
     let of_file = loaded.as_ref().map(|loaded| &loaded.scenario);
     let ReadPlan { plan, robot, filled_in } = plan_file::from_text(path, text, None, of_file)?;
     let mut inputs = vec![path.to_owned()];
     inputs.extend(robot.files.iter().cloned());
     let mut scenario = match (loaded, &plan.scenario) {
         (Some(LoadedScenario { path, scenario, inputs: others, .. }), _) => {
-            resolve::check_plan_matches(&path, &error::read_text(&path)?, &scenario, &plan)?;
+            resolve::check_plan_matches(&path, &scenario_text, &scenario, &plan)?;
             inputs.extend(others);
             scenario
         }

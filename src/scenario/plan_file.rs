@@ -18,6 +18,7 @@ use super::{
 use crate::{
     check::{CheckedPlan, Flaw, check_plate},
     human::default_tool,
+    input::MOST_DOCUMENT,
     model::{
         plan::Plan,
         scenario::{Person, Scenario, ShoulderKind},
@@ -41,16 +42,11 @@ pub struct ReadPlan {
 /// # Errors
 /// If the file cannot be read, is not a plan of the supported format, does not determine a plan, or does not fit the robot.
 pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), InputError> {
-    let ReadPlan { plan, robot, .. } = read(path, robot, None)?;
+    let ReadPlan { plan, robot, .. } = from_text(path, &read_text(path, MOST_DOCUMENT)?, robot, None)?;
     Ok((plan, robot))
 }
 
-/// As [`read_plan`], for a plan that is judged by `scenario`; by default by its own.
-pub fn read(path: &Path, robot: Option<&Robot>, scenario: Option<&Scenario>) -> Result<ReadPlan, InputError> {
-    from_text(path, &read_text(path)?, robot, scenario)
-}
-
-/// As [`read`], from the text of the file.
+/// As [`read_plan`], from the text of the file and for a plan that is judged by `scenario`; by default by its own.
 pub fn from_text(
     path: &Path,
     text: &str,

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use super::{
     InputError,
     check::Checker,
-    error::read_text,
     load_section::{at, unreadable},
     uncertainty_section::accepted,
 };
 use crate::{
+    input::MOST_CSV,
     model::{
         load::ForceProfile,
         scenario::{Expectation, Scenario},
@@ -335,7 +335,9 @@ fn distribution(
         }
         VariableKind::Csv => {
             let file = check.present(&format!("{of}.file"), section.file.as_ref(), "the path of a CSV file")?;
-            Distribution::Measured { values: measured(&folder.join(file), section.column.as_deref())? }
+            let path = folder.join(file);
+            let text = check.named_file(&format!("{of}.file"), &path, MOST_CSV)?;
+            Distribution::Measured { values: measured(&path, &text, section.column.as_deref())? }
         }
     }))
 }
@@ -357,13 +359,12 @@ fn nominal(check: &Checker<'_>, key: &str, quantity: Quantity, scenario: &Scenar
     }
 }
 
-/// Reads measured values from a column of a CSV file; by default from its only one. In increasing order.
+/// The measured values in a column of a CSV file with this text; by default from its only one. In increasing order.
 ///
 /// # Errors
-/// If the file cannot be read, does not have the column, or has a cell that is not a finite number, or fewer than two rows. The
+/// If the file does not have the column, or has a cell that is not a finite number, or fewer than two rows. The
 /// error names the file and the line.
-fn measured(path: &Path, column: Option<&str>) -> Result<Vec<f64>, InputError> {
-    let text = read_text(path)?;
+fn measured(path: &Path, text: &str, column: Option<&str>) -> Result<Vec<f64>, InputError> {
     let mut reader =
         csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let mut records = reader.records();

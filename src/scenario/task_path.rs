@@ -6,7 +6,6 @@ use super::{
     InputError,
     check::Checker,
     crossings::{Crossing, first_crossing},
-    error::read_text,
     load_section::{at, unreadable},
 };
 use crate::model::{board::BoardShape, operation::Operation, task::Task, tool_path::Stroke};
@@ -162,13 +161,12 @@ pub fn check_crossings(check: &Checker<'_>, source: &Source, path: &[Stroke]) ->
     Err(source.located(error, second, Some(part + 1)))
 }
 
-/// Reads a file with a path: lines of the points with one number, or a hole for each row.
+/// The path of a file with this text: lines of the points with one number, or a hole for each row.
 ///
 /// # Errors
-/// If the file cannot be read or has other columns, no row, a cell that is not a number or, with holes, a stroke of
+/// If the file has other columns, no row, a cell that is not a number or, with holes, a stroke of
 /// two rows; the error names the file and the line.
-pub fn read_file(path: &Path, is_cut: bool) -> Result<(Vec<Stroke>, CsvRows), InputError> {
-    let text = read_text(path)?;
+pub fn read_file(path: &Path, text: &str, is_cut: bool) -> Result<(Vec<Stroke>, CsvRows), InputError> {
     let mut reader =
         csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let mut records = reader.records();

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     check::bounds,
+    input::MOST_CSV,
     model::{
         operation::OperationKind,
         scenario::Board,
@@ -128,7 +129,9 @@ fn read_path(check: &Checker<'_>, section: &TaskSection, folder: &Path) -> Resul
         holes.iter().map(|&point_m| Stroke::Hole { point_m }).collect()
     } else {
         let file = check.present("task.file", section.file.as_ref(), "the path of a CSV file")?;
-        let (path, rows) = read_file(&folder.join(file), section.kind == OperationKind::Cut)?;
+        let csv = folder.join(file);
+        let text = check.named_file("task.file", &csv, MOST_CSV)?;
+        let (path, rows) = read_file(&csv, &text, section.kind == OperationKind::Cut)?;
         source.csv = Some(rows);
         path
     };

@@ -18,7 +18,10 @@ use std::path::{Path, PathBuf};
 
 pub use pairs::{AllowedPair, Overlaps, Reason, middle, positions};
 
-use crate::robot::{BodyPoint, Robot, RobotError};
+use crate::{
+    input::{self, MOST_URDF},
+    robot::{BodyPoint, Robot, RobotError},
+};
 use write::{Names, Rest};
 
 /// From what a description is written.
@@ -116,7 +119,7 @@ pub fn setup(input: &SetupInput, folder: &Path) -> Result<Setup, SetupError> {
 
 fn read_srdf(path: &Path) -> Result<Vec<[String; 2]>, SetupError> {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path)
+    let text = input::text(path, MOST_URDF)
         .map_err(|error| SetupError::Srdf { file: file.clone(), problem: format!("failed to read: {error}") })?;
     srdf::disabled_pairs(&text).map_err(|problem| SetupError::Srdf { file, problem })
 }

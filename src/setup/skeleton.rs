@@ -39,8 +39,7 @@ struct Group {
 /// The runs that are long enough for an arm and not named after something else, in the order of the URDF; at most four.
 pub(super) fn arms(robot: &Robot) -> Vec<Run> {
     let group_of = group_of_links(robot);
-    let mut runs = Vec::new();
-    collect(robot, &group_of, 0, Vec::new(), &mut runs);
+    let mut runs = all_runs(robot, &group_of);
     runs = runs.into_iter().map(|run| without_finger(robot, &group_of, run)).collect();
     runs.retain(|run| {
         run.joints.len() >= LEAST_JOINTS && length_m(robot, run) >= LEAST_LENGTH_M && !is_named_otherwise(robot, run)
@@ -75,17 +74,23 @@ fn group(robot: &Robot, group_of: &[usize], first: usize) -> Group {
     Group { links, joints: (0..robot.joints.len()).filter(hangs).collect() }
 }
 
-/// Adds the run that ends at a group, and those behind it.
-fn collect(robot: &Robot, group_of: &[usize], first: usize, run: Vec<usize>, runs: &mut Vec<Run>) {
-    let Group { links, joints } = group(robot, group_of, first);
+/// All runs, each before those behind it. A list of the joints at which runs begin takes the place of recursion, since a tree may
+/// be deeper than the stack.
+fn all_runs(robot: &Robot, group_of: &[usize]) -> Vec<Run> {
     let next = |joint: usize| group_of[robot.joints[joint].child_link];
-    if let [only] = joints[..] {
-        return collect(robot, group_of, next(only), [run, vec![only]].concat(), runs);
+    let mut runs = Vec::new();
+    let mut beginnings: Vec<(usize, Vec<usize>)> = vec![(0, Vec::new())];
+    while let Some((mut first, mut run)) = beginnings.pop() {
+        let end = loop {
+            let end = group(robot, group_of, first);
+            let [only] = end.joints[..] else { break end };
+            run.push(only);
+            first = next(only);
+        };
+        beginnings.extend(end.joints.iter().rev().map(|&joint| (next(joint), vec![joint])));
+        runs.push(Run { joints: run, end_links: end.links, end_joints: end.joints });
     }
-    runs.push(Run { joints: run, end_links: links, end_joints: joints.clone() });
-    for joint in joints {
-        collect(robot, group_of, next(joint), vec![joint], runs);
-    }
+    runs
 }
 
 /// The run without its last joint if that moves the only finger of a gripper.

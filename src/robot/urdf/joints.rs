@@ -1,5 +1,7 @@
 //! Joints: kinds, axes, limits, and joints that follow others.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Unit, Vector3};
 use urdf_rs::JointType;
 
@@ -64,9 +66,13 @@ pub(super) fn resolve_mimics(
     joints: &mut [Joint],
     notes: &mut Vec<String>,
 ) -> Result<(), String> {
+    let of_file: BTreeMap<&str, &urdf_rs::Joint> =
+        robot.joints.iter().map(|joint| (joint.name.as_str(), joint)).collect();
+    let places: BTreeMap<String, usize> =
+        joints.iter().enumerate().map(|(place, joint)| (joint.name.clone(), place)).collect();
     for joint in &robot.joints {
         let leader = joint.mimic.as_ref().map(|mimic| &mimic.joint);
-        if let Some(leader) = leader.filter(|leader| robot.joints.iter().all(|other| other.name != **leader)) {
+        if let Some(leader) = leader.filter(|leader| !of_file.contains_key(leader.as_str())) {
             let name = &joint.name;
             notes.push(format!(
                 "joint {name} mimics {leader}, which is no joint of the file; it is taken to move by itself"
@@ -78,9 +84,9 @@ pub(super) fn resolve_mimics(
         // As many steps as there are joints: more would be a circle.
         for _ in 0..=joints.len() {
             let name = &joints[at].name;
-            let mimic = robot.joints.iter().find(|joint| joint.name == *name).and_then(|joint| joint.mimic.as_ref());
+            let mimic = of_file.get(name.as_str()).and_then(|joint| joint.mimic.as_ref());
             let Some(mimic) = mimic.filter(|_| joints[at].kind != JointKind::Fixed) else { break };
-            let Some(leader) = joints.iter().position(|joint| joint.name == mimic.joint) else { break };
+            let Some(&leader) = places.get(&mimic.joint) else { break };
             let [own_multiplier, own_offset] = [mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0)];
             if !(own_multiplier.is_finite() && own_offset.is_finite()) {
                 return Err(format!(
@@ -92,7 +98,9 @@ pub(super) fn resolve_mimics(
             multiplier *= own_multiplier;
             at = leader;
         }
-        if joints[at].kind != JointKind::Fixed && is_follower(robot, joints, &joints[at].name) {
+        let mimic = of_file.get(joints[at].name.as_str()).and_then(|joint| joint.mimic.as_ref());
+        let follows = mimic.is_some_and(|mimic| places.contains_key(&mimic.joint));
+        if joints[at].kind != JointKind::Fixed && follows {
             return Err(format!("joint {}: found joints that mimic each other in a circle", joints[index].name));
         }
         if at != index {
@@ -100,9 +108,4 @@ pub(super) fn resolve_mimics(
         }
     }
     Ok(())
-}
-
-fn is_follower(robot: &urdf_rs::Robot, joints: &[Joint], name: &str) -> bool {
-    let is_known = |mimic: &urdf_rs::Mimic| joints.iter().any(|joint| joint.name == mimic.joint);
-    robot.joints.iter().any(|joint| joint.name == name && joint.mimic.as_ref().is_some_and(is_known))
 }

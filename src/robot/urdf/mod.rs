@@ -5,9 +5,13 @@
 
 mod joints;
 mod links;
+mod nesting;
 mod pose;
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+};
 
 use super::{
     faults::Collector,
@@ -43,6 +47,21 @@ pub(super) struct Tree {
     pub files: Vec<PathBuf>,
 }
 
+/// The most links of a robot, and the most collision shapes of all of them: times grow with the square of both.
+const MOST_LINKS: usize = 4000;
+const MOST_SHAPES: usize = 10_000;
+
+/// Requires a robot of a size that can be computed with.
+fn check_size(robot: &urdf_rs::Robot) -> Result<(), String> {
+    let shapes: usize = robot.links.iter().map(|link| link.collision.len()).sum();
+    for (found, what, most) in [(robot.links.len(), "links", MOST_LINKS), (shapes, "collision shapes", MOST_SHAPES)] {
+        if found > most {
+            return Err(format!("found {found} {what}, expected at most {most}"));
+        }
+    }
+    Ok(())
+}
+
 /// Reads a URDF. Faults name the link or joint, the value found and the value expected; `None` if there is one.
 pub(super) fn read(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tree> {
     let mut own = Collector::default();
@@ -53,9 +72,11 @@ pub(super) fn read(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tr
 }
 
 fn read_tree(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tree> {
+    faults.keep(source.file, nesting::check(source.text))?;
     let text = without_empty_textures(source.text);
     let parsed = urdf_rs::read_from_string(&text).map_err(|error| parse_problem(source.text, &error.to_string()));
     let robot = faults.keep(source.file, parsed)?;
+    faults.keep(source.file, check_size(&robot))?;
     let index = names("link", robot.links.iter().map(|link| link.name.as_str()));
     let index = faults.keep(source.file, index)?;
     let joint_names = names("joint", robot.joints.iter().map(|joint| joint.name.as_str()));
@@ -69,9 +90,10 @@ fn read_tree(source: &UrdfSource<'_>, faults: &mut Collector) -> Option<Tree> {
         colours: links::global_colours(&robot.materials),
         tree: Tree::default(),
     };
-    builder.add(hierarchy.root, None, faults);
+    builder.add_all(faults);
     let mut tree = builder.tree;
-    if let Some(lost) = robot.links.iter().find(|link| tree.links.iter().all(|reached| reached.name != link.name)) {
+    let reached: BTreeSet<&str> = tree.links.iter().map(|link| link.name.as_str()).collect();
+    if let Some(lost) = robot.links.iter().find(|link| !reached.contains(link.name.as_str())) {
         let root = &tree.links.first()?.name;
         let problem = format!("link {}: found no chain of joints from the root {root}, expected one tree", lost.name);
         faults.add_to(source.file, problem);
@@ -88,7 +110,7 @@ fn without_empty_textures(text: &str) -> String {
 
 /// A message about a text that is not a URDF.
 fn parse_problem(text: &str, error: &str) -> String {
-    with_hint(text, format!("found malformed urdf: {error}"))
+    with_hint(text, format!("found malformed urdf: {}", error.replace('\n', "; ")))
 }
 
 /// Adds how to expand a xacro if the text is one.
@@ -135,6 +157,13 @@ impl Hierarchy {
     }
 }
 
+/// A joint and its child link, by indices into the URDF's lists, that are still to be added below a link of the tree.
+struct Waiting {
+    joint: usize,
+    link: usize,
+    parent: usize,
+}
+
 /// Builds the tree.
 struct Builder<'a> {
     source: &'a UrdfSource<'a>,
@@ -145,9 +174,27 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Adds a link and its descendants; the recursion depth is that of the tree.
-    fn add(&mut self, link: usize, parent_joint: Option<usize>, faults: &mut Collector) {
-        let placed = self.tree.links.len();
+    /// Adds all links and joints, each link before its descendants and these before its next sibling. A list of what is still to
+    /// be added takes the place of recursion, since a chain may be longer than the stack is deep.
+    fn add_all(&mut self, faults: &mut Collector) {
+        let mut waiting = Vec::new();
+        let root = self.add_link(self.hierarchy.root, None, faults);
+        self.enqueue_children(self.hierarchy.root, root, &mut waiting);
+        while let Some(Waiting { joint, link, parent }) = waiting.pop() {
+            let parent_joint = self.add_joint(joint, parent, faults);
+            let placed = self.add_link(link, Some(parent_joint), faults);
+            self.enqueue_children(link, placed, &mut waiting);
+        }
+    }
+
+    /// Appends the children of a link, the first one last.
+    fn enqueue_children(&self, link: usize, parent: usize, waiting: &mut Vec<Waiting>) {
+        let children = self.hierarchy.children[link].iter().rev();
+        waiting.extend(children.map(|&(joint, link)| Waiting { joint, link, parent }));
+    }
+
+    /// Adds a link and returns its place in the tree.
+    fn add_link(&mut self, link: usize, parent_joint: Option<usize>, faults: &mut Collector) -> usize {
         let reader = links::Reader {
             packages: self.source.packages,
             decomposed: self.source.decomposed,
@@ -158,19 +205,20 @@ impl Builder<'_> {
         self.tree.links.push(read.link);
         self.tree.notes.extend(read.notes);
         self.tree.files.extend(read.files);
-        for &(joint, child) in &self.hierarchy.children[link] {
-            let read = joints::read(&self.robot.joints[joint], placed, self.tree.links.len(), &mut self.tree.notes);
-            // After a fault the tree is not used, but what follows is still read for its faults.
-            let in_place = || {
-                let links = [placed, self.tree.links.len()];
-                (Joint::fixed(&self.robot.joints[joint].name, links, Pose::identity()), 0.0)
-            };
-            let (read, effort) = faults.keep(self.source.file, read).unwrap_or_else(in_place);
-            self.tree.joints.push(read);
-            self.tree.effort.push(effort);
-            let parent_joint = Some(self.tree.joints.len() - 1);
-            self.add(child, parent_joint, faults);
-        }
+        self.tree.links.len() - 1
+    }
+
+    /// Adds the joint that carries the next link and returns its place in the tree.
+    fn add_joint(&mut self, joint: usize, parent: usize, faults: &mut Collector) -> usize {
+        let joint = &self.robot.joints[joint];
+        let links = [parent, self.tree.links.len()];
+        let read = joints::read(joint, links[0], links[1], &mut self.tree.notes);
+        // After a fault the tree is not used, but what follows is still read for its faults.
+        let in_place = || (Joint::fixed(&joint.name, links, Pose::identity()), 0.0);
+        let (read, effort) = faults.keep(self.source.file, read).unwrap_or_else(in_place);
+        self.tree.joints.push(read);
+        self.tree.effort.push(effort);
+        self.tree.joints.len() - 1
     }
 }
 

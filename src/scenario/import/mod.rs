@@ -12,6 +12,7 @@ mod yaml;
 use std::path::{Path, PathBuf};
 
 use super::{InputError, InputErrorKind, error::read_text};
+use crate::input::MOST_DOCUMENT;
 pub use grasp::ForeignGrasp;
 
 /// The grasps of a file.
@@ -47,7 +48,7 @@ impl ForeignGrasps {
 /// # Errors
 /// If the file cannot be read, is of no known format, or has a pose that is not rigid or a name twice.
 pub fn read_grasps(path: &Path) -> Result<ForeignGrasps, InputError> {
-    let found = ForeignGrasps { path: path.to_owned(), grasps: grasps_of(path, &read_text(path)?)? };
+    let found = ForeignGrasps { path: path.to_owned(), grasps: grasps_of(path, &read_text(path, MOST_DOCUMENT)?)? };
     let Some(_) = found.grasps.first() else {
         let (found, expected) = ("no grasp".to_owned(), "at least one".to_owned());
         return Err(InputError::file(path, InputErrorKind::Value { found, expected }));
