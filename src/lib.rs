@@ -42,6 +42,7 @@
 //! | [`sim`] | rigid-body simulation of a plan |
 //! | [`judge`] | verdict on a trace |
 //! | `record` | rerun recordings (feature `recording`) |
+//! | [`pipeline`] | the verdict on a plan, its recording, the runs of a sweep: check, simulation and judge joined |
 //! | [`report`] | tables, HTML, JSON, CSV, JUnit |
 //! | [`reproduce`] | the paper's evaluation: operations, jobs, tables, pictures, conclusions |
 //! | `cli` | the commands (feature `cli`) |
@@ -121,6 +122,7 @@ pub mod human;
 pub mod input;
 pub mod judge;
 pub mod model;
+pub mod pipeline;
 pub mod planner;
 #[cfg(feature = "recording")]
 pub mod record;

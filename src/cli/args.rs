@@ -11,11 +11,13 @@ use super::{
     search_args::SearchArgs,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
     task_args::TaskArgs,
-    versions,
 };
-use crate::model::{
-    frames::{Pose, PoseRecord, RpyRecord},
-    scenario::{PlannerKind, PlannerSettings},
+use crate::{
+    model::{
+        frames::{Pose, PoseRecord, RpyRecord},
+        scenario::{PlannerKind, PlannerSettings},
+    },
+    pipeline::versions,
 };
 
 /// Plans how a two-armed robot holds a board that a person drills or cuts, and verifies the plan in simulation.

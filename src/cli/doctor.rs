@@ -5,7 +5,6 @@ use super::{
     cache,
     exit::{CliError, Exit},
     output, robot_check,
-    versions::LONG,
 };
 use crate::{
     check::CheckedPlan,
@@ -18,6 +17,7 @@ use crate::{
         trace::{Phase, Sample, Trace},
         wrench::Wrench,
     },
+    pipeline::versions::LONG,
     report::file,
     robot::{BUILTIN, Robot},
     scenario, sim,
@@ -168,7 +168,8 @@ fn maps() -> (&'static str, String) {
 
 #[cfg(feature = "recording")]
 fn viewer() -> (&'static str, String) {
-    use super::{versions::RERUN, view};
+    use super::view;
+    use crate::pipeline::versions::RERUN;
     match view::viewer_version() {
         Ok(Some(version)) if view::is_matching(&version) => ("ok", version),
         Ok(Some(version)) => ("note", format!("found {version}, expected {RERUN}; {}", view::how_to_install())),

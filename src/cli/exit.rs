@@ -4,6 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use crate::{
     model::verdict::{Verdict, VerdictKind},
+    pipeline::RunError,
     scenario::InputError,
 };
 
@@ -129,6 +130,17 @@ pub enum CliError {
     /// Standard output cannot be written.
     #[error("failed to write to standard output: {0}")]
     Stdout(std::io::Error),
+}
+
+impl From<RunError> for CliError {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Flaws(flaws) => Self::Flaws(flaws),
+            RunError::Simulation(error) => Self::Simulation(error),
+            #[cfg(feature = "recording")]
+            RunError::Record(error) => Self::Record(error),
+        }
+    }
 }
 
 impl CliError {

@@ -11,12 +11,11 @@ use super::{
     format::Format,
     inputs::{self, is_same_file},
     output,
-    pipeline::Run,
-    recording,
 };
 use crate::{
     input::{self, MOST_DOCUMENT},
     model::{file_name::REPORTS, plan::Plan, scenario::Scenario},
+    pipeline::{Run, recording},
     report::{self, Outcome, SkipReason},
     robot::Robot,
 };

@@ -9,7 +9,6 @@ use super::{
     exit::{CliError, Exit},
     format::Format,
     output,
-    versions::versions,
 };
 use crate::{
     judge::{fingerprint, judge},
@@ -17,6 +16,7 @@ use crate::{
         scenario::{Expectation, Limits},
         verdict::{Verdict, VerdictKind},
     },
+    pipeline::versions::versions,
     record::{RecordError, RecordedRun, RecordedSummary, Recording},
     report::{columns, console},
     scenario,

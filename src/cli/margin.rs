@@ -13,14 +13,13 @@ use super::{
 };
 use crate::{
     check::CheckedPlan,
-    judge::{FailingLoad, Judgement, failing_load, judge},
+    judge::{FailingLoad, failing_load},
     model::{
         scenario::Scenario,
-        stop::Stop,
         verdict::{Check, VerdictKind},
     },
+    pipeline::judge_at,
     scenario::{self, LoadedPlan},
-    sim::{self, Conditions},
 };
 
 /// The load factors of a plan by simulation and by both predictions.
@@ -132,23 +131,8 @@ pub fn simulated(
 ) -> Result<FailingLoad, CliError> {
     failing_load(guess, |factor| {
         progress.does(&format!("simulating {factor:.3} times the load"));
-        judge_at(checked, scenario, factor, progress)
+        Ok(judge_at(checked, scenario, factor, progress)?)
     })
-}
-
-/// The judgement on a plan under a multiple of its load.
-///
-/// # Errors
-/// If the simulation cannot be set up from the plan, and after a stop.
-pub fn judge_at(
-    checked: &CheckedPlan<'_>,
-    scenario: &Scenario,
-    factor: f64,
-    stop: &dyn Stop,
-) -> Result<Judgement, CliError> {
-    let conditions = Conditions::of(scenario).scaled(factor);
-    let trace = sim::simulate_until(checked, &conditions, stop).map_err(CliError::Simulation)?;
-    Ok(judge(&trace, &scenario.limits))
 }
 
 fn text(margin: &Margin) -> String {

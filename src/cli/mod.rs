@@ -21,16 +21,10 @@ mod interrupt;
 mod margin;
 mod merge;
 mod output;
-mod pipeline;
 mod plan;
 mod planners;
 mod predicted;
 mod progress;
-#[cfg(feature = "recording")]
-mod recording;
-#[cfg(not(feature = "recording"))]
-#[path = "no_recording.rs"]
-mod recording;
 mod replan;
 mod reproduce;
 mod robot;
@@ -45,9 +39,7 @@ mod sweep;
 mod sweep_args;
 mod task;
 mod task_args;
-mod task_recording;
 mod threads;
-mod versions;
 #[cfg(feature = "recording")]
 mod view;
 

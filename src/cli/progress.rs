@@ -18,6 +18,7 @@ use super::{
 };
 use crate::{
     model::stop::Stop,
+    pipeline::sweep::SweepWatch,
     planner::{Event, Part, Phase, Watch},
     report::{Outcome, console},
 };
@@ -148,6 +149,13 @@ impl Progress {
         }
     }
 
+    /// Shows that a plan is simulated now. After Ctrl-C what it interrupted stays in the message.
+    pub fn simulates(&self) {
+        if !self.is_stopped() {
+            self.does("simulating");
+        }
+    }
+
     /// Shows that a scenario has finished after `wall_s` seconds.
     pub fn ends(&self, outcome: &Outcome, wall_s: f64) {
         self.advances(Some(&format!("{} ({wall_s:.1} s)", console::line(outcome))));
@@ -239,6 +247,12 @@ fn usually(phase: Phase) -> &'static str {
 impl Stop for Progress {
     fn is_stopped(&self) -> bool {
         interrupt::requested()
+    }
+}
+
+impl SweepWatch for Progress {
+    fn finished_run(&self) {
+        self.advances(None);
     }
 }
 

@@ -6,10 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::{
-    exit::CliError,
-    sweep::study::{self, Study},
-};
+use super::exit::CliError;
 use crate::{
     check::CheckedPlan,
     model::{
@@ -18,6 +15,7 @@ use crate::{
         sweep::Sweep,
         verdict::VerdictKind,
     },
+    pipeline::sweep::{Study, screen},
     planner::{Infeasible, Outcome, Planner, Unreliable, Watch},
     scenario,
     statics::{ContactModel, InternalForces, RobustOutcome, StabilityWorkspace, Variation},
@@ -140,7 +138,7 @@ impl Demand<'_> {
         if predicted.hold(LARGEST_RATIO) < wanted || !resists_corner(&checked, scenario, &draws, wanted) {
             return Ok(fails(1.0));
         }
-        let screen = study::screen(&checked, scenario, sweep, Screen::AUDIT_SHARE, watch)?;
+        let screen = screen(&checked, scenario, sweep, Screen::AUDIT_SHARE, watch)?;
         let ratio = screen.map_or(1.0, |screen| screen.ratio);
         if predicted.hold(ratio) < wanted {
             return Ok(fails(ratio));

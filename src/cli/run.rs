@@ -13,7 +13,6 @@ use super::{
     exit::{CliError, Exit},
     finish::{self, FinishedRun, RunSummary},
     interrupt,
-    pipeline::{self, Run, verdict_without_simulation},
     planners::Planners,
     progress::Progress,
     select::{self, Selected},
@@ -21,6 +20,7 @@ use super::{
 };
 use crate::{
     model::verdict::VerdictKind,
+    pipeline::{self, Run, parallel, verdict_without_simulation},
     planner,
     report::{Outcome, SkipReason},
     scenario::LoadedScenario,
@@ -50,7 +50,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let to_be_planned: Vec<_> = to_be_planned.map(|loaded| (&loaded.robot, &loaded.scenario)).collect();
     let finished = threads::with_threads(args.jobs, || {
         runner.planners.prepare(&to_be_planned, &runner.progress);
-        threads::map_in_parallel(&scenarios, |selected| runner.run_or_skip(selected))
+        parallel::map_in_parallel(&scenarios, |selected| runner.run_or_skip(selected))
     })?;
     runner.progress.finish();
     if let Some(error) = runner.fatal.into_inner().unwrap_or_else(PoisonError::into_inner) {
@@ -118,7 +118,8 @@ impl Runner<'_> {
                 }
             },
         };
-        pipeline::run_plan(scenario, &loaded.robot, plan, &loaded.filled_in, &self.progress)
+        self.progress.simulates();
+        Ok(pipeline::run_plan(scenario, &loaded.robot, plan, &loaded.filled_in, &*self.progress)?)
     }
 
     fn reason_to_skip(&self, selected: &Selected) -> Option<SkipReason> {

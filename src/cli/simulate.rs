@@ -6,11 +6,12 @@ use super::{
     args::SimulateArgs,
     exit::{CliError, Exit},
     finish::{self, FinishedRun, RunSummary},
-    interrupt, output, pipeline,
+    interrupt, output,
     progress::Progress,
     task,
 };
 use crate::{
+    pipeline,
     report::{self, Outcome},
     scenario::{self, AnyPlan, LoadedPlan},
 };
@@ -32,6 +33,7 @@ fn one_hold(args: &SimulateArgs, plan: LoadedPlan, progress: &Progress) -> Resul
     let start = Instant::now();
     let mut writing = None;
     let mut finished = FinishedRun::catch(&plan.name.clone(), || {
+        progress.simulates();
         let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, progress)?;
         writing = Some(interrupt::writing());
         finish::write_run(run, &scenario, &robot, Some(&path), &args.report)

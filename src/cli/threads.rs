@@ -2,8 +2,6 @@
 
 use std::num::NonZero;
 
-use rayon::prelude::*;
-
 use super::exit::CliError;
 
 /// Runs `work` in a pool of this many threads, by default one per core. Whatever uses rayon inside, uses this pool.
@@ -16,20 +14,14 @@ pub fn with_threads<R: Send>(threads: Option<NonZero<usize>>, work: impl FnOnce(
     Ok(pool.install(work))
 }
 
-/// The results of a job on every item, in the order of the items. The jobs run in parallel in the current pool and start in
-/// this order.
-pub fn map_in_parallel<T: Sync, R: Send>(items: &[T], job: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    // Unlike `par_iter`, a bridge hands out the items one by one, from the first to the last.
-    let mut results: Vec<_> = items.iter().enumerate().par_bridge().map(|(index, item)| (index, job(item))).collect();
-    results.sort_unstable_by_key(|&(index, _)| index);
-    results.into_iter().map(|(_, result)| result).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use std::{collections::BTreeSet, sync::Mutex};
 
+    use rayon::prelude::*;
+
     use super::*;
+    use crate::pipeline::parallel::map_in_parallel;
 
     #[test]
     fn results_are_in_the_order_of_the_items() {

@@ -6,9 +6,8 @@ use super::{
     args::ViewArgs,
     exit::{CliError, Exit},
     output,
-    versions::RERUN,
 };
-use crate::record;
+use crate::{pipeline::versions::RERUN, record};
 
 /// The viewer's program.
 const VIEWER: &str = "rerun";

@@ -21,6 +21,7 @@ use super::{
 };
 use crate::{
     model::{operation::OperationKind, scenario::PlannerKind},
+    pipeline::parallel,
     report::{
         self,
         file::{self, WriteError},
@@ -96,7 +97,7 @@ fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result
     // An error such as a full disk would repeat, so no job starts after the first one.
     let first_error: Mutex<Option<CliError>> = Mutex::new(None);
     runner.prepare(jobs);
-    let rows = threads::map_in_parallel(jobs, |job| {
+    let rows = parallel::map_in_parallel(jobs, |job| {
         if first_error.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
             return None;
         }

@@ -19,12 +19,11 @@ use crate::{
         args::{RecordChoice, ReproduceArgs},
         exit::CliError,
         interrupt, margin,
-        pipeline::{self, Run},
         planners::Planners,
         progress::Progress,
-        recording,
     },
     model::plan::Plan,
+    pipeline::{self, Run, recording},
     planner::Outcome,
     report::file,
     reproduce::{
@@ -183,6 +182,7 @@ impl<'a> JobRunner<'a> {
 
     fn simulate(&self, job: &Job, plan: &Plan, row: &mut HoldRow) -> Result<(), CliError> {
         let start = Instant::now();
+        self.progress.simulates();
         let run = pipeline::run_plan(&job.scenario, self.robot, plan.clone(), &[], self.progress)?;
         row.simulate_ms = Some(start.elapsed().as_secs_f64() * 1e3);
         self.write_recording(job, &run)?;

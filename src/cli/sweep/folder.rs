@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{arrow, runner::JOURNAL, runner::Journal};
+use super::{arrow, journal::JOURNAL, journal::Journal};
 use crate::{
     cli::{
         exit::{CliError, Exit},

@@ -2,38 +2,34 @@
 
 mod arrow;
 pub mod folder;
-mod runner;
-pub mod study;
+mod journal;
 
 use std::path::PathBuf;
 
-use self::{
-    folder::SweepFolder,
-    runner::{Extent, Journal},
-    study::Study,
-};
+use self::{folder::SweepFolder, journal::Journal};
 use super::{
     exit::{CliError, Exit},
-    inputs, interrupt, output, pipeline,
+    inputs, interrupt, output,
     planners::Planners,
     progress::Progress,
-    recording,
     sweep_args::SweepArgs,
     threads,
-    versions::versions,
 };
 use crate::{
-    cache::hash_of,
     check::CheckedPlan,
-    model::{FORMAT, plan::Plan, scenario::Scenario, stop::Stop as _, sweep::Sweep},
-    planner::{Outcome, write_robot},
+    model::{plan::Plan, scenario::Scenario, stop::Stop as _, sweep::Sweep},
+    pipeline::{
+        self, recording,
+        sweep::{self, Description, Extent, OptionError, Study, SweepOptions, as_swept, info, why_not_simulated},
+    },
+    planner::Outcome,
     report,
     robot::Robot,
     scenario::{self, LoadedPlan},
     sweep::{
         ArmJoints, Draws,
         estimate::Estimate,
-        info::{Fingerprints, Shard, SweepInfo},
+        info::{Shard, SweepInfo},
         record::RunRecord,
     },
 };
@@ -65,7 +61,7 @@ pub fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
             }
         },
     };
-    let plan = as_written(plan, &scenario, &sweep);
+    let plan = as_swept(plan, &scenario, &sweep);
     let checked = CheckedPlan::new(&robot, &plan, &scenario.human, &scenario.tool)?;
     if let Some(reason) = why_not_simulated(&checked, &scenario) {
         progress.finish();
@@ -77,10 +73,11 @@ pub fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
     threads::with_threads(args.jobs, || {
         let screen = match args.all {
             true => None,
-            false => study::screen(&checked, &scenario, &sweep, args.audit, &*progress)?,
+            false => sweep::screen(&checked, &scenario, &sweep, args.audit, &*progress)?,
         };
         let study = Study { scenario: &scenario, checked: &checked, draws: &draws, screen };
-        let info = info(args, &study, &sweep);
+        let description = Description { sweep: &sweep, until: args.until, shard: args.shard, worst: args.worst };
+        let info = info(&study, &description);
         swept(args, &study, info, &folder, &progress)
     })?
 }
@@ -104,7 +101,8 @@ fn swept(
     progress.expect(indices.len());
     progress.does("simulating");
     let enough = |runs: &[RunRecord]| args.until.is_some_and(|width| Estimate::of(&info.expect, runs).width() <= width);
-    let records = runner::run(study, &Extent { indices, enough: &enough }, known, &mut journal, progress)?;
+    let records =
+        sweep::run(study, &Extent { indices, enough: &enough }, known, &mut |new| journal.add(new), progress)?;
     if progress.is_stopped() {
         progress.finish();
         return Ok(Exit::Interrupted);
@@ -135,71 +133,15 @@ fn subject(args: &SweepArgs, progress: &Progress) -> Result<Subject, CliError> {
 
 /// The sweep of a scenario with what the arguments override; by default the usual one.
 fn sweep_of(args: &SweepArgs, scenario: &mut Scenario, robot: &Robot, progress: &Progress) -> Result<Sweep, CliError> {
-    let range = |name: &str, found: f64, low: f64, high: f64| match (low..=high).contains(&found) {
-        true => Ok(()),
-        false => Err(CliError::Usage(format!("{name}: found {found}, expected a number from {low} to {high}"))),
-    };
-    range("--audit", args.audit, 0.0, 1.0)?;
-    args.until.map_or(Ok(()), |width| range("--until", width, 1e-4, 1.0))?;
-    let mut sweep = match scenario.sweep.take() {
-        Some(sweep) => sweep,
-        None => {
-            progress.message(&output::note("the scenario has no [sweep]: preset = \"workshop\" is used"));
-            scenario::usual_sweep(scenario, robot)?
-        }
-    };
-    sweep.runs = args.runs.map_or(sweep.runs, std::num::NonZero::get);
-    sweep.seed = args.seed.unwrap_or(sweep.seed);
-    if sweep.runs > Sweep::MOST_RUNS {
-        return Err(CliError::Usage(format!("--runs: found {}, expected at most {}", sweep.runs, Sweep::MOST_RUNS)));
+    let SweepArgs { until, all, audit, seed, .. } = *args;
+    let options = SweepOptions { runs: args.runs.map(std::num::NonZero::get), seed, until, all, audit };
+    options.check().map_err(|error: OptionError| CliError::Usage(format!("--{error}")))?;
+    if scenario.sweep.is_none() {
+        progress.message(&output::note("the scenario has no [sweep]: preset = \"workshop\" is used"));
     }
+    let sweep = options.sweep_of(scenario, robot)?;
+    scenario.sweep = None;
     Ok(sweep)
-}
-
-/// A plan as a sweep writes it: without durations, so that equal sweeps give equal files, and with the sweep in its scenario.
-fn as_written(mut plan: Plan, scenario: &Scenario, sweep: &Sweep) -> Plan {
-    if let Some(planner) = &mut plan.planner {
-        (planner.wall_ms, planner.map_ms) = (None, None);
-    }
-    plan.scenario = Some(Scenario { sweep: Some(sweep.clone()), ..scenario.clone() });
-    plan
-}
-
-/// Why no run of a plan would be simulated.
-fn why_not_simulated(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Option<String> {
-    checked.first_contact(0.0).map(|contact| contact.reason).or_else(|| checked.why_not_so(&scenario.limits))
-}
-
-fn info(args: &SweepArgs, study: &Study<'_>, sweep: &Sweep) -> SweepInfo {
-    SweepInfo {
-        format: FORMAT,
-        name: study.checked.plan().name.clone(),
-        expect: study.scenario.expect,
-        runs: sweep.runs,
-        until: args.until,
-        sampling: sweep.sampling,
-        seed: sweep.seed,
-        shard: args.shard,
-        screen: study.screen,
-        recorded: args.worst,
-        variables: sweep.variables.clone(),
-        dimensions: study.draws.dimensions().to_vec(),
-        fingerprints: Fingerprints { program: env!("BENCHDOG_PROGRAM").into(), inputs: inputs_fingerprint(study) },
-        versions: versions(),
-    }
-}
-
-/// SHA-256 of plan, scenario and robot; names of files are left out.
-fn inputs_fingerprint(study: &Study<'_>) -> String {
-    let mut scenario = study.scenario.clone();
-    scenario.robot.description.clear();
-    scenario.robot.packages.clear();
-    let plan = Plan { scenario: None, robot: String::new(), ..study.checked.plan().clone() };
-    let hash = hash_of(|text| {
-        write!(text, "{plan:?} {scenario:?} ")?;
-        write_robot(text, study.checked.robot())
-    });
-    base16ct::lower::encode_string(&hash)
 }
 
 /// The bytes of the recording of a run, which is simulated for it; `None` without recordings.
@@ -207,6 +149,7 @@ fn recording_of(study: &Study<'_>, index: u64, progress: &Progress) -> Result<Op
     let scenario = Scenario { name: format!("{}-run-{index:06}", study.scenario.name), ..study.scenario_of(index) };
     let plan = Plan { name: scenario.name.clone(), ..study.checked.plan().clone() };
     let _writing = interrupt::writing();
+    progress.simulates();
     let run = pipeline::run_plan(&scenario, study.checked.robot(), plan, &[], progress)?;
-    recording::encode(&run, &scenario, study.checked.robot())
+    Ok(recording::encode(&run, &scenario, study.checked.robot())?)
 }

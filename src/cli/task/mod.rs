@@ -1,7 +1,7 @@
 //! `benchdog task`: plans, simulates and judges a whole task; and the judgement of staged plans for `benchdog simulate`.
 
 mod compare;
-mod pipeline;
+mod staged;
 mod stream;
 
 use std::{
@@ -16,9 +16,7 @@ use super::{
     format::Format,
     inputs, interrupt, output,
     progress::Progress,
-    recording,
     task_args::TaskArgs,
-    task_recording::TaskRecording,
 };
 use crate::{
     check::StagedStates,
@@ -30,6 +28,7 @@ use crate::{
         task::Task,
         verdict::VerdictKind,
     },
+    pipeline::{recording, task_recording::TaskRecording},
     planner::{
         Planner, Search,
         task::{TaskInfeasible, TaskPlan},
@@ -38,7 +37,7 @@ use crate::{
     robot::Robot,
     scenario::{self, LoadedStagedPlan},
 };
-use pipeline::{StagedRun, run_staged};
+use staged::{StagedRun, run_staged};
 use stream::{StageStream, Waiting};
 
 /// The files of a task.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{exit::CliError, pipeline::Run, task_recording::TaskRecording};
+use super::{Run, RunError, task_recording::TaskRecording};
 use crate::{
     check::{CheckedPerson, CheckedPlan},
     human::BodyPart,
@@ -27,7 +27,7 @@ use crate::{
 ///
 /// # Errors
 /// If the recording cannot be made.
-pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, CliError> {
+pub fn encode(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Vec<u8>>, RunError> {
     let (Some(plan), Some((trace, judgement))) = (&run.plan, &run.simulated) else { return Ok(None) };
     let checked = CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool)?;
     let person = checked.person().map(|person| person_shape(person, plan.operation.kind, checked.muscle_bellies_w()));
@@ -52,7 +52,7 @@ const TASK_SAMPLE_S: f64 = 0.01;
 ///
 /// # Errors
 /// If the recording cannot be made.
-pub fn encode_task(task: &TaskRecording<'_>) -> Result<Option<Vec<u8>>, CliError> {
+pub fn encode_task(task: &TaskRecording<'_>) -> Result<Option<Vec<u8>>, RunError> {
     let TaskRecording { scenario, robot, pieces, trace, judgements, .. } = task;
     let (Some(first), [start, second, ..]) = (pieces.first(), &trace.trace.samples[..]) else { return Ok(None) };
     // That of the simulation that decides, which may be shorter than the scenario's.
@@ -120,7 +120,7 @@ fn events_of_stages(task: &TaskRecording<'_>) -> Vec<Event> {
 }
 
 /// The person from each time on at which they work on another piece, step back or come forward.
-fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, CliError> {
+fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, RunError> {
     let TaskRecording { scenario, robot, plan, pieces, trace, .. } = task;
     let mut people = Vec::new();
     let mut now = None;

@@ -2,16 +2,17 @@
 
 use crate::{
     check::CheckedPlan,
-    cli::{exit::CliError, margin, pipeline},
     judge::{Judgement, failing_load},
     model::{
         load::ForceProfile,
+        plan::Plan,
         scenario::Scenario,
         stop::Stop,
         sweep::Sweep,
         uncertainty::Uncertainty,
         verdict::{CheckKind, VerdictKind},
     },
+    pipeline::{RunError, judge_at, simulated_and_judged},
     statics::{LoadCases, ResponseOutcome, StabilityWorkspace},
     sweep::{
         Drawn, Draws,
@@ -52,7 +53,7 @@ impl Study<'_> {
     ///
     /// # Errors
     /// If the simulation cannot be set up, and after a stop.
-    pub fn run(&self, index: u64, stop: &dyn Stop) -> Result<RunRecord, CliError> {
+    pub fn run(&self, index: u64, stop: &dyn Stop) -> Result<RunRecord, RunError> {
         let Drawn { values, uncertainty } = self.draws.draw(index);
         let scenario = self.scenario_under(&uncertainty);
         let predicted = predicted(self.checked, &scenario);
@@ -62,7 +63,7 @@ impl Study<'_> {
         if screened && !audited {
             return Ok(record(Decided::Predicted, VerdictKind::Holds, None));
         }
-        let (_, judgement) = pipeline::simulated_and_judged(self.checked, &scenario, stop)?;
+        let (_, judgement) = simulated_and_judged(self.checked, &scenario, stop)?;
         let decided = if screened { Decided::Audited } else { Decided::Simulated };
         Ok(record(decided, judgement.verdict, Some(measured(&judgement))))
     }
@@ -104,13 +105,29 @@ pub fn screen(
     sweep: &Sweep,
     audit_share: f64,
     stop: &dyn Stop,
-) -> Result<Option<Screen>, CliError> {
+) -> Result<Option<Screen>, RunError> {
     let is_ramp = scenario.load.profile == ForceProfile::Ramp;
     if !is_ramp || scenario.expect.verdict != VerdictKind::Holds {
         return Ok(None);
     }
     let Some(PredictedRun { load_factor, .. }) = predicted(checked, scenario) else { return Ok(None) };
-    let simulated = failing_load(load_factor, |factor| margin::judge_at(checked, scenario, factor, stop))?;
+    let simulated = failing_load(load_factor, |factor| judge_at(checked, scenario, factor, stop))?;
     let ratio = simulated.holds_at / load_factor;
     Ok((ratio.is_finite() && ratio > 0.0).then_some(Screen { ratio, audit_share, seed: sweep.seed }))
+}
+
+/// A plan as a sweep writes it: without durations, so that equal sweeps give equal files, and with the sweep in its scenario.
+#[must_use]
+pub fn as_swept(mut plan: Plan, scenario: &Scenario, sweep: &Sweep) -> Plan {
+    if let Some(planner) = &mut plan.planner {
+        (planner.wall_ms, planner.map_ms) = (None, None);
+    }
+    plan.scenario = Some(Scenario { sweep: Some(sweep.clone()), ..scenario.clone() });
+    plan
+}
+
+/// Why no run of a plan would be simulated.
+#[must_use]
+pub fn why_not_simulated(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Option<String> {
+    checked.first_contact(0.0).map(|contact| contact.reason).or_else(|| checked.why_not_so(&scenario.limits))
 }

@@ -1,6 +1,6 @@
 //! The main path for a staged plan: check, simulate, judge.
 
-use super::super::{exit::CliError, progress::Progress, versions::versions};
+use super::super::{exit::CliError, progress::Progress};
 use crate::{
     check::{CheckedPlan, StagedStates, initial_plan},
     judge::{Judgement, StageJudgement, StagedJudgement, confirmed_staged, fingerprint, judge_staged},
@@ -12,6 +12,7 @@ use crate::{
         staged_verdict::{FailedStage, PersonOverTask, StageVerdict, StagedVerdict},
         verdict::VerdictKind,
     },
+    pipeline::versions::versions,
     report::comparison::{PieceFigures, Totals},
     robot::Robot,
     sim::{self, Conditions},

@@ -1,8 +1,24 @@
-//! The main path for one plan: check, simulate, judge.
+//! The main path for one plan: check, simulate, judge. Commands and the Python package take it.
+//!
+//! [`run_plan`] gives the verdict on a plan, [`recording`] its recording, [`sweep`] the verdicts under many deviations. This module
+//! knows no clock, terminal or file: a caller is told of progress by what it passes, and stops the work by a [`Stop`].
+
+mod error;
+pub mod parallel;
+#[cfg(feature = "recording")]
+pub mod recording;
+#[cfg(not(feature = "recording"))]
+#[path = "no_recording.rs"]
+pub mod recording;
+pub mod sweep;
+pub mod task_recording;
+pub mod versions;
 
 use std::collections::BTreeMap;
 
-use super::{exit::CliError, progress::Progress, versions::versions};
+pub use error::RunError;
+use versions::versions;
+
 use crate::{
     check::CheckedPlan,
     judge::{Judgement, confirmed, judge},
@@ -47,19 +63,18 @@ pub fn run_plan(
     robot: &Robot,
     plan: Plan,
     filled_in: &[String],
-    progress: &Progress,
-) -> Result<Run, CliError> {
-    // The best plan so far is not that of the scenario.
-    if progress.is_stopped() {
-        return Err(CliError::Simulation(SimError::Stopped));
+    stop: &dyn Stop,
+) -> Result<Run, RunError> {
+    // After a stop the plan is the best so far, not that of the scenario.
+    if stop.is_stopped() {
+        return Err(SimError::Stopped.into());
     }
-    progress.does("simulating");
-    let mut run = run_complete_plan(scenario, robot, plan, progress)?;
+    let mut run = run_complete_plan(scenario, robot, plan, stop)?;
     run.verdict.notes.splice(..0, filled_in.iter().cloned());
     Ok(run)
 }
 
-fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan, stop: &dyn Stop) -> Result<Run, CliError> {
+fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan, stop: &dyn Stop) -> Result<Run, RunError> {
     let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
     let (posture, muscles) = (checked.posture(), checked.muscles());
     let (verdict, simulated) = checked_and_judged(&checked, scenario, stop)?;
@@ -71,7 +86,7 @@ fn checked_and_judged(
     checked: &CheckedPlan<'_>,
     scenario: &Scenario,
     stop: &dyn Stop,
-) -> Result<(Verdict, Option<(Trace, Judgement)>), CliError> {
+) -> Result<(Verdict, Option<(Trace, Judgement)>), RunError> {
     if let Some(contact) = checked.first_contact(0.0) {
         return Ok((verdict_without_simulation(scenario, contact.verdict, contact.reason), None));
     }
@@ -94,13 +109,13 @@ pub fn simulated_and_judged(
     checked: &CheckedPlan<'_>,
     scenario: &Scenario,
     stop: &dyn Stop,
-) -> Result<(Trace, Judgement), CliError> {
+) -> Result<(Trace, Judgement), RunError> {
     let run = |timestep_s: f64| {
         let mut conditions = Conditions::of(scenario);
         conditions.settings.timestep_s = timestep_s;
-        let trace = sim::simulate_until(checked, &conditions, stop).map_err(CliError::Simulation)?;
+        let trace = sim::simulate_until(checked, &conditions, stop)?;
         let judgement = judge(&trace, &scenario.limits);
-        Ok::<_, CliError>((trace, judgement))
+        Ok::<_, RunError>((trace, judgement))
     };
     let (trace, judgement) = confirmed(scenario.simulation.timestep_s, run)?;
     let refuted = judgement.verdict == VerdictKind::Holds && cannot_carry_the_weight(checked, scenario);
@@ -110,6 +125,21 @@ pub fn simulated_and_judged(
     let reason =
         "the simulation holds the board, but the statics prove that the hands cannot carry its weight".to_owned();
     Ok((trace, Judgement { verdict: VerdictKind::NoVerdict, reason: Some(reason), ..judgement }))
+}
+
+/// The judgement on a plan under a multiple of its load, without confirmation.
+///
+/// # Errors
+/// If the simulation cannot be set up from the plan, and after a stop.
+pub fn judge_at(
+    checked: &CheckedPlan<'_>,
+    scenario: &Scenario,
+    factor: f64,
+    stop: &dyn Stop,
+) -> Result<Judgement, RunError> {
+    let conditions = Conditions::of(scenario).scaled(factor);
+    let trace = sim::simulate_until(checked, &conditions, stop)?;
+    Ok(judge(&trace, &scenario.limits))
 }
 
 /// True if the statics prove that the hands cannot carry the board's weight with the simulated friction and grip forces.
