@@ -43,13 +43,16 @@ mod threads;
 #[cfg(feature = "recording")]
 mod view;
 
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode, sync::Arc};
 
 use clap::Parser;
 
+use crate::planner::MapStore;
 use args::RobotCommand;
 pub use args::{Cli, Command};
+use cache::CacheArgs;
 pub use exit::Exit;
+pub use replan::MotionAnswer;
 
 /// Prints no message of a panic that means that a recording is damaged: it becomes an error.
 #[cfg(feature = "recording")]
@@ -64,12 +67,23 @@ fn leave_damage_to_decoders() {
 
 /// Parses this process's arguments and runs the command.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    run_command(std::env::args_os()).into()
+}
+
+/// The maps that commands keep: those in the program, then those in the user's folder. `None` if `BENCHDOG_CACHE` is empty.
+#[must_use]
+pub fn kept_maps() -> Option<Arc<dyn MapStore>> {
+    cache::store(CacheArgs::default())
+}
+
+/// Runs the command that these arguments say, of which the first is the program's name. Once in a process: it handles Ctrl-C.
+pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) => {
             // clap chooses the stream for help, version and usage errors; a closed stream is not an error.
             let _ = error.print();
-            return if error.use_stderr() { Exit::Input.into() } else { Exit::Met.into() };
+            return if error.use_stderr() { Exit::Input } else { Exit::Met };
         }
     };
     #[cfg(feature = "recording")]
@@ -100,19 +114,19 @@ pub fn main() -> ExitCode {
         Command::Completions(args) => completions::completions(args),
     });
     match outcome {
-        Ok(Ok(exit)) => exit.into(),
+        Ok(Ok(exit)) => exit,
         Ok(Err(error)) if error.is_stop() => {
             interrupt::explain();
-            error.exit().into()
+            error.exit()
         }
         Ok(Err(error)) => {
             output::message(&format!("error: {error}"));
-            error.exit().into()
+            error.exit()
         }
         // The default hook has printed the panic's message.
         Err(_) => {
             output::message("error: this is a bug in benchdog; please report it with the message above");
-            Exit::Bug.into()
+            Exit::Bug
         }
     }
 }

@@ -60,18 +60,18 @@ enum ResultKind {
 }
 
 /// How far arms and board are from where the plan before has them.
-#[derive(Serialize, JsonSchema)]
-struct MotionAnswer {
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct MotionAnswer {
     /// The largest difference of a joint, degrees (mm for a prismatic joint).
-    largest_joint_deg: f64,
+    pub largest_joint_deg: f64,
     /// The root of the sum of the squared differences of all joints, degrees.
-    length_deg: f64,
+    pub length_deg: f64,
     /// Distance of the board's centres, mm.
-    board_mm: f64,
+    pub board_mm: f64,
     /// Rotation of the board, degrees.
-    board_deg: f64,
+    pub board_deg: f64,
     /// True if a gripper grasps the board elsewhere or otherwise.
-    regrasps: bool,
+    pub regrasps: bool,
 }
 
 impl From<Motion> for MotionAnswer {

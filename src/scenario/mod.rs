@@ -180,7 +180,52 @@ fn folder_of(file: &Path) -> &Path {
 /// # Errors
 /// As [`read_plan`] and [`load`], and if the scenario is for another robot, board, operation or grip force.
 pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
-    load_plan_text(path, &error::read_text(path, MOST_DOCUMENT)?, scenario)
+    of_plan_text(path, &error::read_text(path, MOST_DOCUMENT)?, scenario)
+}
+
+/// The text of a file, and the path that messages name and to whose folder the files in it are relative.
+#[derive(Clone, Copy, Debug)]
+pub struct FileText<'a> {
+    /// The path; it need not exist.
+    pub path: &'a Path,
+    /// The text.
+    pub text: &'a str,
+}
+
+/// Checks and completes the text of a plan file, as [`load_plan`].
+///
+/// # Errors
+/// As [`load_plan`].
+pub fn load_plan_text(plan: FileText<'_>, scenario: Option<FileText<'_>>) -> Result<LoadedPlan, InputError> {
+    let loaded = scenario.map(|scenario| load_text(scenario.path, scenario.text)).transpose()?;
+    let scenario_text = scenario.map_or("", |scenario| scenario.text);
+    let of_file = loaded.as_ref().map(|loaded| &loaded.scenario);
+    let FileText { path, text } = plan;
+    let ReadPlan { plan, robot, filled_in } = plan_file::from_text(path, text, None, of_file)?;
+    let mut inputs = vec![path.to_owned()];
+    inputs.extend(robot.files.iter().cloned());
+    let mut scenario = match (loaded, &plan.scenario) {
+        (Some(LoadedScenario { path, scenario, inputs: others, .. }), _) => {
+            resolve::check_plan_matches(&path, scenario_text, &scenario, &plan)?;
+            inputs.extend(others);
+            scenario
+        }
+        (None, Some(scenario)) => scenario.clone(),
+        (None, None) => default_for_plan(&plan, &robot),
+    };
+    scenario.name.clone_from(&plan.name);
+    Ok(LoadedPlan { path: path.to_owned(), plan, filled_in, robot, scenario, inputs })
+}
+
+/// Checks the values of a scenario that a program has changed after it was read. An error names `path` and the key.
+///
+/// # Errors
+/// If a value is not valid.
+pub fn check_changed(path: &Path, scenario: &Scenario, robot: &Robot) -> Result<(), InputError> {
+    let check = check::Checker::toml(path, "");
+    let evaluations = scenario.planner.evaluations;
+    check.that(evaluations != Some(0), "planner.evaluations", "0", "a positive number of candidates")?;
+    resolve::check_values(&check, scenario, robot)
 }
 
 /// A plan of one hold or of a task.
@@ -199,7 +244,7 @@ pub enum AnyPlan {
 pub fn load_any_plan(path: &Path, scenario: Option<&Path>) -> Result<AnyPlan, InputError> {
     let text = error::read_text(path, MOST_DOCUMENT)?;
     if plan_file::format_of(&text) != Some(STAGED_FORMAT) {
-        return load_plan_text(path, &text, scenario).map(|plan| AnyPlan::OneHold(Box::new(plan)));
+        return of_plan_text(path, &text, scenario).map(|plan| AnyPlan::OneHold(Box::new(plan)));
     }
     if scenario.is_some() {
         let expected = "1, a plan of one hold, beside a scenario file: a staged plan is judged by the scenario in it";
@@ -208,25 +253,11 @@ pub fn load_any_plan(path: &Path, scenario: Option<&Path>) -> Result<AnyPlan, In
     staged_file::from_text(path, &text).map(|plan| AnyPlan::Staged(Box::new(plan)))
 }
 
-fn load_plan_text(path: &Path, text: &str, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
+/// The plan of a text, with the scenario of a file.
+fn of_plan_text(path: &Path, text: &str, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
     // A scenario from a pipe can be read once.
     let scenario_text = scenario.map(|path| error::read_text(path, MOST_TOML)).transpose()?.unwrap_or_default();
-    let loaded = scenario.map(|path| load_text(path, &scenario_text)).transpose()?;
-    let of_file = loaded.as_ref().map(|loaded| &loaded.scenario);
-    let ReadPlan { plan, robot, filled_in } = plan_file::from_text(path, text, None, of_file)?;
-    let mut inputs = vec![path.to_owned()];
-    inputs.extend(robot.files.iter().cloned());
-    let mut scenario = match (loaded, &plan.scenario) {
-        (Some(LoadedScenario { path, scenario, inputs: others, .. }), _) => {
-            resolve::check_plan_matches(&path, &scenario_text, &scenario, &plan)?;
-            inputs.extend(others);
-            scenario
-        }
-        (None, Some(scenario)) => scenario.clone(),
-        (None, None) => default_for_plan(&plan, &robot),
-    };
-    scenario.name.clone_from(&plan.name);
-    Ok(LoadedPlan { path: path.to_owned(), plan, filled_in, robot, scenario, inputs })
+    load_plan_text(FileText { path, text }, scenario.map(|path| FileText { path, text: &scenario_text }))
 }
 
 /// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.
