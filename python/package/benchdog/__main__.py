@@ -1,0 +1,5 @@
+"""`python -m benchdog`: the command."""
+
+from ._command import main
+
+main()
