@@ -12,11 +12,12 @@ use std::{
 };
 
 /// Folders and files that are read, relative to the repository.
-const READ: [&str; 16] = [
+const READ: [&str; 17] = [
     "src",
     "tests",
     "benches",
     "examples",
+    "python",
     "tools",
     "schemas",
     "docs",

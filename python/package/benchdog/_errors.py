@@ -9,7 +9,7 @@ class Error(ValueError):
     """An input that is not valid: a file, a text, a dict or an argument. `str()` of it is what the command prints."""
 
     file: Optional[str]
-    """The file; `<text>` or `<dict>` for what is none. `None` for an argument."""
+    """The file; `<text>` or `<dict>` for an input that has no file. `None` for an argument."""
     line: Optional[int]
     """The line of the file or text, from 1, if it is known."""
     key: Optional[str]
