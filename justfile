@@ -21,6 +21,10 @@ lint:
     cargo fmt --check
     cargo clippy --release --all-targets -- -D warnings
 
+# The Python package's wheel, in target/wheels (needs maturin)
+wheel:
+    maturin build --locked --manifest-path python/Cargo.toml --out target/wheels
+
 # Every scenario
 scenarios:
     cargo run --release -- run scenarios/*.toml
