@@ -86,7 +86,9 @@ struct State {
 
 impl State {
     fn new(scenario: &Bound<'_, PyAny>, options: &SearchOptions, cache: bool) -> PyResult<Self> {
-        let LoadedScenario { path, mut scenario, robot, .. } = Source::scenario(scenario)?.load_scenario()?;
+        let source = Source::scenario(scenario)?;
+        let loaded = Work::default().run(scenario.py(), |_| Ok(()), || source.load_scenario())??;
+        let LoadedScenario { path, mut scenario, robot, .. } = loaded;
         options.apply(&path, &mut scenario, &robot)?;
         let planner = match kept_maps().filter(|_| cache) {
             Some(store) => planner::Planner::with_store(&robot, store),
@@ -163,11 +165,12 @@ impl Planner {
         options: SearchOptions,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Py<PyAny>> {
-        let given = scenario.map(|scenario| Source::scenario(scenario)?.load_scenario()).transpose()?;
+        let given = scenario.map(Source::scenario).transpose()?;
         let plan = with_state(py, &self.0, progress, |state, work| {
             let own = state.planner.robot();
             let (path, mut scenario) = match given {
                 Some(given) => {
+                    let given = given.load_scenario()?;
                     is_robot_of(own, &given.robot)?;
                     (given.path, given.scenario)
                 }
@@ -188,8 +191,9 @@ impl Planner {
 
     /// Makes a plan the one that the next replanning starts from; false if it breaks a limit of the scenario.
     fn resume(&self, plan: &Bound<'_, PyAny>) -> PyResult<bool> {
-        let given = Source::plan(plan)?.load_plan(None)?;
+        let source = Source::plan(plan)?;
         with_state(plan.py(), &self.0, None, |state, work| {
+            let given = source.load_plan(None)?;
             is_robot_of(state.planner.robot(), &given.robot)?;
             state.planner.resume(&state.scenario, &given.plan, work).map_err(errors::planning)
         })

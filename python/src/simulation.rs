@@ -7,7 +7,7 @@ use benchdog::{
         scenario::Expectation,
         verdict::{Verdict, VerdictKind},
     },
-    pipeline::{self, Run, RunError, recording},
+    pipeline::{self, Run, recording},
     report::file,
     scenario::{self, LoadedPlan},
 };
@@ -55,22 +55,23 @@ pub fn simulate<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let py = plan.py();
     let scenario = scenario.map(Source::scenario).transpose()?;
-    let mut loaded = Source::plan(plan)?.load_plan(scenario.as_ref())?;
-    options.apply(&mut loaded)?;
-    let LoadedPlan { plan, filled_in, robot, scenario, inputs, .. } = loaded;
-    not_an_input(options.recording.as_deref(), &inputs)?;
+    let plan = Source::plan(plan)?;
     let work = Work::default();
     let job = || {
-        let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, &work)?;
-        let path = options.recording_of(&run.verdict);
-        let bytes = if path.is_some() { recording::encode(&run, &scenario, &robot)? } else { None };
-        Ok::<_, RunError>((run, path.zip(bytes)))
+        let mut loaded = plan.load_plan(scenario.as_ref())?;
+        options.apply(&mut loaded)?;
+        let LoadedPlan { plan, filled_in, robot, scenario, inputs, .. } = loaded;
+        not_an_input(options.recording.as_deref(), &inputs)?;
+        let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, &work).map_err(errors::running)?;
+        let Some(path) = options.recording_of(&run.verdict) else { return Ok((run, None)) };
+        let bytes = recording::encode(&run, &scenario, &robot).map_err(errors::running)?;
+        if let Some(bytes) = &bytes {
+            file::write_whole(&path, bytes).map_err(errors::other)?;
+        }
+        Ok::<_, PyErr>((run, bytes.map(|_| path)))
     };
-    let (run, recorded) = work.run(py, |_| Ok(()), job)?.map_err(errors::running)?;
-    if let Some((path, bytes)) = &recorded {
-        file::write_whole(path, bytes).map_err(errors::other)?;
-    }
-    fields(py, &run, recorded.map(|(path, _)| path))
+    let (run, recording) = work.run(py, |_| Ok(()), job)??;
+    fields(py, &run, recording)
 }
 
 /// Refuses to write a recording over a file that was read.

@@ -1,6 +1,6 @@
 //! Many runs of a plan under the deviations of its scenario.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use benchdog::{
     check::CheckedPlan,
@@ -10,6 +10,7 @@ use benchdog::{
         sweep::{self, Description, Extent, Study, SweepOptions, as_swept, why_not_simulated},
     },
     robot::Robot,
+    sim::SimError,
     sweep::{
         ArmJoints, Draws, estimate::Estimate, info::SweepInfo, record::RunRecord, screen::Screen, summary::summarise,
         table::RunRow,
@@ -47,9 +48,16 @@ pub struct Sweep {
     plan: Plan,
     deviations: Deviations,
     options: SweepOptions,
-    /// What the statics decide, once it is known.
-    screen: Mutex<Option<Option<Screen>>>,
-    finished: Mutex<Vec<RunRecord>>,
+    known: Mutex<Known>,
+}
+
+/// What is known of a sweep before its end.
+#[derive(Default)]
+struct Known {
+    /// What the statics decide, once it is found.
+    screen: Option<Option<Screen>>,
+    /// The finished runs.
+    runs: Vec<RunRecord>,
 }
 
 #[pymethods]
@@ -61,12 +69,12 @@ impl Sweep {
         let options = SweepOptions { runs, seed, until, all, audit };
         options.check().map_err(errors::option)?;
         let scenario = scenario.map(Source::scenario).transpose()?;
-        let loaded = Source::plan(plan)?.load_plan(scenario.as_ref())?;
+        let source = Source::plan(plan)?;
+        let loaded = Work::default().run(plan.py(), |_| Ok(()), || source.load_plan(scenario.as_ref()))??;
         let deviations = options.sweep_of(&loaded.scenario, &loaded.robot).map_err(errors::input)?;
         let scenario = Scenario { sweep: None, ..loaded.scenario };
         let plan = as_swept(loaded.plan, &scenario, &deviations);
-        let (screen, finished) = (Mutex::default(), Mutex::default());
-        Ok(Self { scenario, robot: loaded.robot, plan, deviations, options, screen, finished })
+        Ok(Self { scenario, robot: loaded.robot, plan, deviations, options, known: Mutex::default() })
     }
 
     /// The number of runs.
@@ -88,7 +96,11 @@ impl Sweep {
                 _ => Ok(()),
             }
         };
-        let (info, records) = work.run(py, &mut meanwhile, || self.done(&work))??;
+        let job = || match work.wait_for(&self.known) {
+            Some(mut known) => self.done(&mut known, &work),
+            None => Err(errors::running(SimError::Stopped.into())),
+        };
+        let (info, records) = work.run(py, &mut meanwhile, job)??;
         meanwhile(py)?;
         let dict = PyDict::new(py);
         dict.set_item("summary", document(py, &summarise(&info, &records))?)?;
@@ -99,40 +111,41 @@ impl Sweep {
 
 impl Sweep {
     /// All runs, or as many as are enough.
-    fn done(&self, work: &Work) -> PyResult<(SweepInfo, Vec<RunRecord>)> {
+    fn done(&self, known: &mut Known, work: &Work) -> PyResult<(SweepInfo, Vec<RunRecord>)> {
         let Self { scenario, robot, plan, deviations, options, .. } = self;
         let checked = CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool).map_err(errors::other)?;
         if let Some(reason) = why_not_simulated(&checked, scenario) {
             return Err(errors::other(format!("{}: not simulated: {reason}", plan.name)));
         }
         let draws = Draws::new(deviations, &ArmJoints::of(plan)).map_err(errors::other)?;
-        let screen = self.screen_of(&checked, work)?;
+        let screen = self.screen_of(&checked, known, work)?;
         let study = Study { scenario, checked: &checked, draws: &draws, screen };
         let description = Description { sweep: deviations, until: options.until, shard: None, worst: WORST };
         let info = sweep::info(&study, &description);
         let enough =
             |runs: &[RunRecord]| options.until.is_some_and(|width| Estimate::of(&info.expect, runs).width() <= width);
         let extent = Extent { indices: (0..deviations.runs).collect(), enough: &enough };
-        let known = self.finished.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let before = known.runs.clone();
         let mut keep = |new: &[RunRecord]| {
-            self.finished.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(new);
+            known.runs.extend_from_slice(new);
             Ok::<_, RunError>(())
         };
-        let records = sweep::run(&study, &extent, known, &mut keep, work).map_err(errors::running)?;
+        let records = sweep::run(&study, &extent, before, &mut keep, work).map_err(errors::running)?;
         Ok((info, records))
     }
 
     /// What the statics decide: found once.
-    fn screen_of(&self, checked: &CheckedPlan<'_>, work: &Work) -> PyResult<Option<Screen>> {
+    fn screen_of(&self, checked: &CheckedPlan<'_>, known: &mut Known, work: &Work) -> PyResult<Option<Screen>> {
         if self.options.all {
             return Ok(None);
         }
-        let Some(mut known) = work.wait_for(&self.screen) else { return Ok(None) };
-        if known.is_none() {
-            let screen = sweep::screen(checked, &self.scenario, &self.deviations, self.options.audit, work);
-            *known = Some(screen.map_err(errors::running)?);
+        if let Some(screen) = known.screen {
+            return Ok(screen);
         }
-        Ok(known.flatten())
+        let screen = sweep::screen(checked, &self.scenario, &self.deviations, self.options.audit, work);
+        let screen = screen.map_err(errors::running)?;
+        known.screen = Some(screen);
+        Ok(screen)
     }
 }
 
