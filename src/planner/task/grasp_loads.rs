@@ -69,7 +69,7 @@ impl<'g> GraspLoads<'g> {
         piece: usize,
         operation: &Operation,
     ) -> bool {
-        let operation = &Operation { wrench_o: operation.wrench_o.scaled(EARLIER_LOADS_FACTOR), ..operation.clone() };
+        let operation = &Operation { wrench_o: operation.wrench_o.scaled(EARLIER_LOADS_FACTOR), ..*operation };
         let Some(hands) = &self.hands else { return false };
         let of_piece = problem.of_piece(piece);
         let model = ContactModel::from_hands(hands.clone(), &self.object, operation);
