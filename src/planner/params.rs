@@ -494,11 +494,11 @@ pub mod task {
     /// domain, m,
     pub const LEVEL_STEP_M: f64 = 0.15;
     /// positions of it that are used,
-    pub const LEVEL_POSITIONS: usize = 3;
+    pub const LEVEL_POSITIONS: usize = 6;
     /// holds with which the positions are tested,
     pub const LEVEL_SAMPLE: usize = 60;
     /// angles about the vertical,
-    pub const LEVEL_TURNS: usize = 16;
+    pub const LEVEL_TURNS: usize = 24;
     /// and how far the board turns beside becoming level on the way there at most, rad.
     pub const LEVEL_TURN_RAD: f64 = 0.5;
     /// First stream of the random numbers for grips at level poses.
@@ -524,8 +524,15 @@ pub mod task {
     pub const WITHDRAWAL_TURNS_RAD: [f64; 3] = [0.0, 0.6, -0.6];
     /// Longest such way, m: deep pads and an edge that is passed obliquely.
     pub const WITHDRAWAL_M: f64 = 0.2;
+    /// What an arm keeps beyond the robot's clearance while it changes its grasp, m: the board slides in the grips, and in a simulated task a
+    /// gripper came 8 mm nearer to it than planned.
+    pub const MORE_CLEARANCE_M: f64 = 0.005;
     /// Collision tests of one free motion, at most: a few tenths of a second.
     pub const FREE_TESTS: usize = 6_000;
+    /// The loads of a task are multiplied by this beside the safety factor. The prediction is for a load that grows from rest, but in a hold
+    /// pads keep what they slid under the loads before: without this factor, in simulated tasks a hand turned by up to 1.2 times what
+    /// is allowed (docs/method.md#113-search).
+    pub const EARLIER_LOADS_FACTOR: f64 = 1.1;
     /// Share of the board's weight that hands carry beside the weight while arms move: the board accelerates by that share of gravity.
     pub const CARRIED_RESERVE: f64 = 0.5;
     /// Steps of a search that are computed at once, in parallel.

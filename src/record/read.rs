@@ -26,7 +26,7 @@ use crate::{
 pub struct RecordedSummary {
     /// The recorded verdict.
     pub verdict: Verdict,
-    /// The largest value of each series until the load was released.
+    /// The largest value of each series outside releases of the load.
     pub peaks: Peaks,
     /// The phases of the simulation.
     pub phases: Vec<RecordedPhase>,
@@ -36,7 +36,7 @@ pub struct RecordedSummary {
     pub end_s: f64,
 }
 
-/// The largest values of the series, from the hand-over until the load is released.
+/// The largest values of the series from the hand-over on, without the time in which a load is released.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     /// Slip of each hand, mm.
@@ -169,10 +169,9 @@ fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
     let phases: Vec<RecordedPhase> = texts(chunks, "phases", &rerun::StateChange::descriptor_state())
         .map(|(start_s, name)| RecordedPhase { name, start_s })
         .collect();
-    let release_s = phases.iter().find(|phase| phase.name == "release").map_or(f64::INFINITY, |phase| phase.start_s);
     Ok(RecordedSummary {
         verdict,
-        peaks: peaks(chunks, release_s),
+        peaks: peaks(chunks, &phases),
         events: texts(chunks, "events", &rerun::TextLog::descriptor_text())
             .map(|(time_s, text)| (time_s, without_time(&text)))
             .collect(),
@@ -181,8 +180,8 @@ fn summary(chunks: &[Chunk]) -> Result<RecordedSummary, String> {
     })
 }
 
-/// The largest values of all series before the time `end_s`.
-fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
+/// The largest values of all series outside releases of the load.
+fn peaks(chunks: &[Chunk], phases: &[RecordedPhase]) -> Peaks {
     let mut peaks = Peaks::default();
     for chunk in chunks {
         let parts: Vec<String> = chunk.entity_path().iter().map(|part| part.unescaped_str().to_owned()).collect();
@@ -190,7 +189,7 @@ fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
         if folder != "plots" || [LIMIT, FAILURE].contains(&series.as_str()) || series.ends_with(NOT_JUDGED) {
             continue;
         }
-        let Some(peak) = peak(chunk, end_s) else { continue };
+        let Some(peak) = peak(chunk, phases) else { continue };
         let hand = || series.trim_end_matches(" hand").to_owned();
         match plot.as_str() {
             "slip" => drop(peaks.slip_mm.insert(hand(), peak)),
@@ -203,14 +202,18 @@ fn peaks(chunks: &[Chunk], end_s: f64) -> Peaks {
     peaks
 }
 
-/// The largest scalar of a chunk before the time `end_s`; `None` in a chunk without scalars.
-fn peak(chunk: &Chunk, end_s: f64) -> Option<f64> {
+/// The largest scalar of a chunk outside releases of the load; `None` in a chunk without scalars.
+fn peak(chunk: &Chunk, phases: &[RecordedPhase]) -> Option<f64> {
+    let is_released = |time_s: f64| {
+        let phase = phases.partition_point(|phase| phase.start_s <= time_s).checked_sub(1).map(|last| &phases[last]);
+        phase.is_some_and(|phase| phase.name == "release")
+    };
     let component = rerun::Scalars::descriptor_scalars().component;
     let values = chunk.iter_slices::<f64>(component).map(|slice| slice.first().copied());
     times_s(chunk)
         .into_iter()
         .zip(values)
-        .filter(|(time_s, _)| *time_s < end_s)
+        .filter(|(time_s, _)| !is_released(*time_s))
         .filter_map(|(_, value)| value)
         .reduce(f64::max)
 }

@@ -331,6 +331,18 @@ fn what_happens_after_the_load_is_no_peak() {
 }
 
 #[test]
+fn what_happens_between_two_releases_is_a_peak() {
+    let mut example = example();
+    // As in a task: the load is released, and another one follows.
+    for sample in &mut example.trace.samples[231..] {
+        sample.phase = Phase::Hold;
+    }
+    example.measures.judged = example.measures.time_s.len();
+    *example.measures.deflection_mm.last_mut().unwrap() = 99.0;
+    assert_eq!(read(&encode(&example.input()).unwrap()).unwrap().peaks.deflection_mm, 99.0);
+}
+
+#[test]
 fn equal_inputs_give_equal_bytes_and_small_files() {
     let bytes = encode(&example().input()).unwrap();
     assert!(bytes == encode(&example().input()).unwrap(), "two recordings of one run differ");

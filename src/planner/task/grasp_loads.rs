@@ -9,7 +9,7 @@ use super::{
         candidate::Candidate,
         contact::{hand_models, placed_object, plan_arms},
         library::BoardGrasp,
-        params::task::CARRIED_RESERVE,
+        params::task::{CARRIED_RESERVE, EARLIER_LOADS_FACTOR},
     },
     problem::TaskProblem,
 };
@@ -38,7 +38,7 @@ impl<'g> GraspLoads<'g> {
         Self { grasp, object, hands, at_rest: None }
     }
 
-    /// True if the grasp resists the load in the middle of a piece.
+    /// True if the grasp resists the load in the middle of a piece, [`EARLIER_LOADS_FACTOR`] times.
     pub fn resists(
         &mut self,
         problem: &TaskProblem<'_>,
@@ -69,6 +69,7 @@ impl<'g> GraspLoads<'g> {
         piece: usize,
         operation: &Operation,
     ) -> bool {
+        let operation = &Operation { wrench_o: operation.wrench_o.scaled(EARLIER_LOADS_FACTOR), ..*operation };
         let Some(hands) = &self.hands else { return false };
         let of_piece = problem.of_piece(piece);
         let model = ContactModel::from_hands(hands.clone(), &self.object, operation);

@@ -17,21 +17,12 @@ use super::{
     },
     graph::{Arc, ArcKind},
     grips::{Grip, grips},
+    hold::Hold,
     level_places::{LevelHold, LevelHolds},
     places::Places,
     problem::{Posture, TaskProblem},
     root::Root,
 };
-
-/// A grasp of the board at a pose.
-#[derive(Clone)]
-pub struct Hold {
-    pub grasp: BoardGrasp,
-    /// The number of its board pose; `None` at a level pose, where no piece is served.
-    place: Option<usize>,
-    /// The number of its grip.
-    pub grip: usize,
-}
 
 /// The holds and what leads from one to another.
 #[derive(Clone)]

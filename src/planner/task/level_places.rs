@@ -18,7 +18,7 @@ use super::{
         library::{BoardGrasp, GraspingRobot, grasps_on_any_edges},
         params::task::{LEVEL_POSITIONS, LEVEL_SAMPLE, LEVEL_STEP_M, LEVEL_STREAM, LEVEL_TURN_RAD, LEVEL_TURNS},
     },
-    holds::Hold,
+    hold::Hold,
     motion,
     problem::TaskProblem,
 };
@@ -258,7 +258,7 @@ mod tests {
         ) {
             let chosen = covering(&sets, most);
             prop_assert!(chosen.len() <= most);
-            let mut covered = vec![false; 12];
+            let mut covered = [false; 12];
             for &set in &chosen {
                 let new = |set: usize| (0..12).filter(|&at| sets[set][at] && !covered[at]).count();
                 prop_assert!(new(set) > 0 && (0..sets.len()).all(|other| new(other) <= new(set)));

@@ -10,6 +10,7 @@ mod graph;
 mod grasp_loads;
 mod grips;
 mod hand_changes;
+mod hold;
 mod holds;
 mod inputs;
 mod level_places;

@@ -2,7 +2,8 @@
 //!
 //! The open gripper leaves the board in the board's plane, a planner of free motions (`free_motion.rs`) brings the arm beside the
 //! new grasp, and the gripper comes onto the board in its plane. On the first and the last way its fingers may be beside the
-//! board, as they are in a grasp; in between the whole arm keeps its clearance from robot and board.
+//! board, as they are in a grasp; in between the whole arm keeps its clearance from robot and board. The clearance is larger than that
+//! of a hold: the board has slid in the hands that hold it.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
@@ -10,7 +11,9 @@ use rand_pcg::Pcg64;
 use super::{
     super::{
         library::{ArmGrasp, BoardGrasp, GraspingArm, GraspingRobot},
-        params::task::{FREE_TESTS, STEP_M, STEP_RAD, WITHDRAWAL_ANGLES_RAD, WITHDRAWAL_M, WITHDRAWAL_TURNS_RAD},
+        params::task::{
+            FREE_TESTS, MORE_CLEARANCE_M, STEP_M, STEP_RAD, WITHDRAWAL_ANGLES_RAD, WITHDRAWAL_M, WITHDRAWAL_TURNS_RAD,
+        },
     },
     free_motion::{self, FreeMotion},
 };
@@ -90,7 +93,8 @@ impl<'a> FreeArm<'a> {
             .collect();
         let link_poses = self.robot.robot.link_poses(&self.robot.robot.positions(&states));
         let holding = &self.holding[usize::from(at_board)];
-        let scene = Scene { holding, ..self.robot.scene(&link_poses, self.from.x_wo) };
+        let planned = self.robot.scene(&link_poses, self.from.x_wo);
+        let scene = Scene { holding, clearance_m: planned.clearance_m + MORE_CLEARANCE_M, ..planned };
         self.robot.collision.first_violation(&scene).is_none()
     }
 

@@ -21,7 +21,7 @@ pub struct Transitions<'p, 'a> {
     pub holds: &'p Holds<'p>,
     workspace: StabilityWorkspace,
     /// By hold.
-    loads: BTreeMap<usize, GraspLoads<'p>>,
+    loads: BTreeMap<usize, Box<GraspLoads<'p>>>,
     served: BTreeMap<(usize, usize), Option<Posture>>,
     moves: BTreeMap<(usize, usize), bool>,
     regrasps: BTreeMap<(usize, usize), Option<Vec<HandChange>>>,
@@ -105,14 +105,14 @@ impl<'p, 'a> Transitions<'p, 'a> {
 /// What is computed at once.
 enum Asked<'p> {
     /// These pieces with a hold.
-    Pieces { hold: usize, loads: GraspLoads<'p>, pieces: Vec<usize> },
+    Pieces { hold: usize, loads: Box<GraspLoads<'p>>, pieces: Vec<usize> },
     /// The regrasps between two holds.
     Regrasps([usize; 2]),
 }
 
 /// The answers.
 enum Answer<'p> {
-    Pieces { hold: usize, loads: GraspLoads<'p>, postures: Vec<(usize, Option<Posture>)> },
+    Pieces { hold: usize, loads: Box<GraspLoads<'p>>, postures: Vec<(usize, Option<Posture>)> },
     Regrasps { between: [usize; 2], changes: Option<Vec<HandChange>>, carried: CarriedHolds },
 }
 
@@ -174,7 +174,10 @@ impl<'p> Exact for Transitions<'p, '_> {
             }
         }
         for (hold, pieces) in pieces {
-            let loads = self.loads.remove(&hold).unwrap_or_else(|| GraspLoads::new(problem, &holds.holds[hold].grasp));
+            let loads = self
+                .loads
+                .remove(&hold)
+                .unwrap_or_else(|| Box::new(GraspLoads::new(problem, &holds.holds[hold].grasp)));
             asked.push(Asked::Pieces { hold, loads, pieces });
         }
         let answer =
