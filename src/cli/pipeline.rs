@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{exit::CliError, progress::Progress, versions::versions};
 use crate::{
     check::CheckedPlan,
-    judge::{Judgement, confirmed, judge},
+    judge::{CRITERIA, Judgement, confirmed, judge},
     model::{
         FORMAT,
         lateral::LateralPush,
@@ -143,6 +143,7 @@ fn push_note(push: &LateralPush, load: &Load) -> String {
 pub fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
     Verdict {
         format: FORMAT,
+        criteria: CRITERIA,
         name: scenario.name.clone(),
         verdict,
         expected: scenario.expect.verdict,
