@@ -75,7 +75,7 @@ fn names() -> Vec<&'static str> {
     chapters().iter().flat_map(|chapter| &chapter.sections).map(|section| section.name).collect()
 }
 
-/// The section of a name; empty if there is none, which the parser of the arguments excludes.
+/// The section of a name; empty if no section has it, which the parser of the arguments excludes.
 fn section_text(name: &str) -> String {
     let sections = chapters().into_iter().flat_map(|chapter| chapter.sections);
     sections

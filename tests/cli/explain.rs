@@ -100,7 +100,9 @@ fn unknown_names(text: &str, names: &BTreeSet<String>, help: &str, robot: &str, 
         let words: Vec<_> = token.split(' ').collect();
         match words[..] {
             ["benchdog", command] => help.contains(&format!("Usage: benchdog {command} ")),
-            [option, ..] if option.starts_with("--") => help.contains(&format!("{option} ")),
+            [option, ..] if option.starts_with("--") => {
+                help.split(|c: char| !c.is_alphanumeric() && c != '-').any(|word| word == option)
+            }
             _ => {
                 names.contains(plain)
                     || is_scenario_key(schema, plain)
