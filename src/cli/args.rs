@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::{
     cache::{CacheArgs, CacheCommand},
+    explain::ExplainArgs,
     format::Format,
     help,
     search_args::SearchArgs,
@@ -50,6 +51,8 @@ pub enum Command {
     Curve(CurveArgs),
     /// Plan, simulate and report the paper's evaluation: 25 operations, four planners
     Reproduce(ReproduceArgs),
+    /// Say what a verdict or a check means, how it is measured and what helps if it fails
+    Explain(ExplainArgs),
     /// Print the JSON Schema of a file format
     Schema(SchemaArgs),
     /// Simulate a plan many times with parameters drawn at random: how likely does it hold?

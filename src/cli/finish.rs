@@ -196,13 +196,15 @@ fn write_or_remove(path: &Path, bytes: Option<Vec<u8>>) -> Result<(), CliError> 
     Ok(())
 }
 
-/// The table of outcomes; for a single run also its checks.
+/// The table of outcomes; for a single run also its checks; a hint if a verdict is not the expected one.
 fn text(outcomes: &[Outcome], wall_s: &[Option<f64>]) -> String {
     let mut text = report::console::table(outcomes, wall_s);
     if let [Outcome::Judged { verdict, posture, recording, .. }] = outcomes {
         text.push('\n');
         text.push_str(&report::console::details(verdict, posture.as_deref(), recording.as_deref()));
     }
+    let unexpected = outcomes.iter().filter_map(Outcome::verdict).filter(|verdict| !verdict.met);
+    text.push_str(&report::console::hint(unexpected.map(|verdict| verdict.verdict)));
     text
 }
 

@@ -172,6 +172,15 @@ sensitivity.csv, the muscular curve and pictures/, which are equal for equal run
 which is not; recordings/; and work/, from which a stopped run continues. The exit code is 1 if
 one of the 100 plans failed in simulation, 3 if a planner found no plan.";
 
+/// `benchdog explain --help`.
+pub const EXPLAIN: &str = "\
+Examples:
+  benchdog explain                list all verdicts, checks and self-checks
+  benchdog explain pivots         what a verdict means, and what helps
+  benchdog explain chatter        what a check measures, with its limit
+
+The text is that of docs/verdicts.md.";
+
 /// `benchdog schema --help`.
 pub const SCHEMA: &str = "\
 Example:

@@ -109,6 +109,7 @@ fn text(summary: &RecordedSummary, rejudged: Option<&Verdict>) -> String {
     if let Some(verdict) = rejudged {
         text.push_str("\njudged again\n");
         text.push_str(&console::details(verdict, None, None));
+        text.push_str(&console::hint((!verdict.met).then_some(verdict.verdict)));
     }
     text
 }

@@ -8,6 +8,7 @@ mod completions;
 mod curve;
 mod doctor;
 mod exit;
+mod explain;
 mod export;
 mod finish;
 mod format;
@@ -97,6 +98,7 @@ pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Simulate(args) => simulate::simulate(args),
         Command::Curve(args) => curve::curve(args),
         Command::Reproduce(args) => reproduce::reproduce(args),
+        Command::Explain(args) => explain::explain(args),
         Command::Schema(args) => schema::schema(args),
         Command::Sweep(args) => sweep::sweep(args),
         Command::Merge(args) => merge::merge(args),

@@ -20,3 +20,16 @@ impl From<Capsule> for PersonPart {
         Self { name, p0_w, p1_w, radius_m, robot_clearance_m, board_clearance_m }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_of_verdicts_states_the_clearances_to_the_person() {
+        let page = include_str!("../../docs/verdicts.md").split_whitespace().collect::<Vec<_>>().join(" ");
+        let [robot_mm, board_mm] = [ROBOT_CLEARANCE_M, BOARD_CLEARANCE_M].map(|m| 1e3 * m);
+        let stated = format!("the robot at least {robot_mm} mm and the board at least {board_mm} mm from the person");
+        assert!(page.contains(&stated), "docs/verdicts.md does not say {stated:?}");
+    }
+}

@@ -12,29 +12,29 @@ use crate::model::{
 };
 
 /// A pad counts as open below this share of the grip force (docs/method.md#86-contact).
-const OPEN_SHARE: f64 = 0.05;
+pub(super) const OPEN_SHARE: f64 = 0.05;
 
 /// Limit of the time that a pad is open, ms (docs/method.md#86-contact).
-const OPEN_LIMIT_MS: f64 = 30.0;
+pub(super) const OPEN_LIMIT_MS: f64 = 30.0;
 
 /// Limit of the ratio of a measured gripper's wrench to its limits.
-const GRIP_WRENCH_LIMIT: f64 = 1.0;
+pub(super) const GRIP_WRENCH_LIMIT: f64 = 1.0;
 
 /// Limit of the time without any contact, ms (docs/method.md#86-contact).
-const CONTACT_LOST_LIMIT_MS: f64 = 0.0;
+pub(super) const CONTACT_LOST_LIMIT_MS: f64 = 0.0;
 
 /// Limit of the overlap of robot and board with the person, mm (docs/method.md#87-person-overlap).
-const PERSON_OVERLAP_LIMIT_MM: f64 = 0.0;
+pub(super) const PERSON_OVERLAP_LIMIT_MM: f64 = 0.0;
 
 /// The least permitted distance of the robot from itself and from the board, mm (docs/method.md#811-clearance).
-const CLEARANCE_LIMIT_MM: f64 = 0.0;
+pub(super) const CLEARANCE_LIMIT_MM: f64 = 0.0;
 
 /// Slip above which the board counts as dropped, mm (docs/method.md#86-contact).
 pub(super) const DROP_MM: f64 = 50.0;
 
 /// The order of checks that are crossed at the same sample; the first one determines the verdict: loss of the board,
 /// then the contacts, then consequences.
-const PRECEDENCE: [CheckKind; 12] = [
+pub(super) const PRECEDENCE: [CheckKind; 12] = [
     CheckKind::Drop,
     CheckKind::ContactLost,
     CheckKind::GripWrench,

@@ -10,13 +10,13 @@ use crate::model::{
 };
 
 /// A margin below this share of the limit does not decide alone.
-const NEAR_SHARE: f64 = 0.1;
+pub(super) const NEAR_SHARE: f64 = 0.1;
 
 /// The same for a distance whose limit is 0, mm: a tenth of the default clearance.
-const NEAR_MM: f64 = 0.5;
+pub(super) const NEAR_MM: f64 = 0.5;
 
 /// Two limits that are crossed within this time do not decide alone which one comes first, s: 5 % of the default ramp.
-const TOGETHER_S: f64 = 0.05;
+pub(super) const TOGETHER_S: f64 = 0.05;
 
 /// The judgement of a plan at a time step, confirmed at half of it if it is near to a limit or its simulation is invalid.
 /// `run` simulates at a time step, s, and judges; what it returns beside the judgement is handed back.

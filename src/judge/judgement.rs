@@ -8,6 +8,10 @@ use crate::model::{
     verdict::{Check, Confirmation, Failure, Verdict, VerdictKind},
 };
 
+/// The number of the criteria, `criteria` in verdicts: raised when a check, a fixed limit, the order or the confirmation changes such
+/// that a verdict may differ (docs/verdicts.md has a line for each number).
+pub const CRITERIA: u32 = 1;
+
 /// The judgement of a trace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judgement {
@@ -45,6 +49,7 @@ impl Judgement {
     ) -> Verdict {
         Verdict {
             format: FORMAT,
+            criteria: CRITERIA,
             name: name.to_owned(),
             verdict: self.verdict,
             expected,

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 pub use confirm::{confirmed, confirmed_staged};
 pub use failing_load::{FailingLoad, failing_load};
 pub use fingerprint::fingerprint;
-pub use judgement::Judgement;
+pub use judgement::{CRITERIA, Judgement};
 pub use staged::{StageJudgement, StagedJudgement, judge_staged};
 
 use crate::model::{

@@ -11,28 +11,28 @@ use crate::model::{
 
 /// Limit of the pads' penetration into the board, mm. Typical: 0.05 mm when a board is first gripped; 0.4 mm under 30 N
 /// on the foam board with the softest contacts that a scenario may set.
-const PENETRATION_LIMIT_MM: f64 = 2.0;
+pub(super) const PENETRATION_LIMIT_MM: f64 = 2.0;
 
 /// Limit of the rise of the energy from contacts and integration, J. Typical: 0.002 J, which contacts store and return;
 /// half a joule would throw the foam board at 2 m/s.
-const ENERGY_LIMIT_J: f64 = 0.5;
+pub(super) const ENERGY_LIMIT_J: f64 = 0.5;
 
 /// Limit of the difference between the travels of coupled fingers, mm. Typical: 0.001 mm.
-const COUPLING_LIMIT_MM: f64 = 1.0;
+pub(super) const COUPLING_LIMIT_MM: f64 = 1.0;
 
 /// Limit of the residual of the board's momentum balance, N. Typical: 1e-5 N at rest, 0.006 N with a long lever that
 /// still swings.
-const FORCE_LIMIT_N: f64 = 1.0;
+pub(super) const FORCE_LIMIT_N: f64 = 1.0;
 
 /// Limit of the fast oscillation of a pad's normal force, as a share of the grip force, and of a measured gripper's ratio. Typical: 0.003; 0.02 for hands that
 /// slide. Pads that ring reach 0.2 to 1.
-const CHATTER_LIMIT: f64 = 0.1;
+pub(super) const CHATTER_LIMIT: f64 = 0.1;
 
 /// Time over which a pad's oscillation is averaged, s.
-const CHATTER_WINDOW_S: f64 = 0.05;
+pub(super) const CHATTER_WINDOW_S: f64 = 0.05;
 
 /// Half of the longest period that counts as fast, s, if the time step is shorter.
-const CHATTER_LAG_S: f64 = 0.002;
+pub(super) const CHATTER_LAG_S: f64 = 0.002;
 
 /// Penetration, created energy and finger coupling up to the sample that decides the verdict, the momentum balance at the
 /// end of settling and of a hold that is followed by a release, and chatter from the hand-over on, the sample of this

@@ -2,6 +2,7 @@
 
 mod measured;
 mod mechanics;
+mod page;
 
 use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;

@@ -13,6 +13,10 @@ use super::verdict::{Check, Confirmation, Failure, VerdictKind};
 pub struct StagedVerdict {
     /// The file format, 2.
     pub format: u32,
+    /// The number of the criteria by which it was judged (`docs/method.md#88-verdict`); 0 in files from before they were
+    /// numbered.
+    #[serde(default)]
+    pub criteria: u32,
     /// The name of the plan.
     pub name: String,
     /// The verdict.

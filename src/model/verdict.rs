@@ -75,6 +75,10 @@ impl std::fmt::Display for VerdictKind {
 pub struct Verdict {
     /// The file format, 1.
     pub format: u32,
+    /// The number of the criteria by which it was judged (`docs/method.md#88-verdict`); 0 in files from before they were
+    /// numbered.
+    #[serde(default)]
+    pub criteria: u32,
     /// The scenario's or plan's name.
     pub name: String,
     /// The verdict.

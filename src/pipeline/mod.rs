@@ -21,7 +21,7 @@ use versions::versions;
 
 use crate::{
     check::CheckedPlan,
-    judge::{Judgement, confirmed, judge},
+    judge::{CRITERIA, Judgement, confirmed, judge},
     model::{
         FORMAT,
         lateral::LateralPush,
@@ -173,6 +173,7 @@ fn push_note(push: &LateralPush, load: &Load) -> String {
 pub fn verdict_without_simulation(scenario: &Scenario, verdict: VerdictKind, reason: String) -> Verdict {
     Verdict {
         format: FORMAT,
+        criteria: CRITERIA,
         name: scenario.name.clone(),
         verdict,
         expected: scenario.expect.verdict,

@@ -153,7 +153,7 @@ fn people(task: &TaskRecording<'_>) -> Result<Vec<(f64, PersonShape)>, RunError>
 
 /// The verdict of a task in the form of a plan of one hold: of each check that with the least margin.
 fn verdict_of_task(task: &TaskRecording<'_>, fingerprint: String) -> Verdict {
-    let StagedVerdict { name, verdict, expected, met, failed, confirmation, stages, versions, seed, .. } =
+    let StagedVerdict { criteria, name, verdict, expected, met, failed, confirmation, stages, versions, seed, .. } =
         task.verdict.clone();
     let mut checks: Vec<Check> = Vec::new();
     for check in stages.iter().flat_map(|stage| &stage.checks) {
@@ -165,6 +165,7 @@ fn verdict_of_task(task: &TaskRecording<'_>, fingerprint: String) -> Verdict {
     }
     Verdict {
         format: FORMAT,
+        criteria,
         name,
         verdict,
         expected,

@@ -275,6 +275,7 @@ fn verdict(trace: &Trace, measures: &Measures) -> Verdict {
     let peak = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     Verdict {
         format: 1,
+        criteria: 1,
         name: "cut-05".into(),
         verdict: VerdictKind::Pivots,
         expected: VerdictKind::Holds,

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{Outcome, Status, columns::aligned, explanation, muscles, number_of, posture};
 use crate::model::{
     plan::PostureFigures,
-    verdict::{Check, CheckKind, Verdict},
+    verdict::{Check, CheckKind, Verdict, VerdictKind},
 };
 
 /// The cell of a figure that does not exist.
@@ -80,6 +80,24 @@ pub fn details(verdict: &Verdict, posture: Option<&PostureFigures>, recording: O
     }
     text.push_str(&aligned(&notes, 2));
     text
+}
+
+/// The line below a table of verdicts of these kinds that are not the expected ones; empty without one.
+///
+/// `benchdog explain slips says what this means and what helps`
+#[must_use]
+pub fn hint(unexpected: impl IntoIterator<Item = VerdictKind>) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for kind in unexpected {
+        if !names.contains(&kind.name()) {
+            names.push(kind.name());
+        }
+    }
+    match names[..] {
+        [] => String::new(),
+        [name] => format!("benchdog explain {name} says what this means and what helps\n"),
+        _ => format!("benchdog explain NAME says what a verdict means and what helps: {}\n", names.join(", ")),
+    }
 }
 
 fn met(verdict: &Verdict) -> &'static str {

@@ -22,6 +22,7 @@ fn check(name: CheckKind, value: f64, limit: f64) -> Check {
 fn holding() -> Verdict {
     Verdict {
         format: 1,
+        criteria: 1,
         name: "drill-center".into(),
         verdict: VerdictKind::Holds,
         expected: VerdictKind::Holds,
@@ -101,6 +102,17 @@ fn outcomes() -> Vec<Outcome> {
         Outcome::Crashed { name: "bad.toml".into(), message: "line 3: found \"x\", expected a number".into() },
         Outcome::Skipped { name: "cut-04".into(), reason: SkipReason::Filtered },
     ]
+}
+
+#[test]
+fn the_hint_names_each_unexpected_verdict_once() {
+    use VerdictKind::{Pivots, Slips};
+    assert_eq!(console::hint([]), "");
+    for kinds in [vec![Pivots], vec![Pivots; 3]] {
+        assert_eq!(console::hint(kinds), "benchdog explain pivots says what this means and what helps\n");
+    }
+    let two = "benchdog explain NAME says what a verdict means and what helps: pivots, slips\n";
+    assert_eq!(console::hint([Pivots, Slips, Pivots]), two);
 }
 
 #[test]

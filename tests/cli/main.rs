@@ -12,6 +12,7 @@ mod bounds;
 mod commands;
 mod compare;
 mod determinism;
+mod explain;
 mod import;
 mod inputs;
 mod interrupt;

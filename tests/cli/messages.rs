@@ -95,6 +95,7 @@ fn the_help_of_every_command() {
         "view",
         "cache",
         "doctor",
+        "explain",
         "schema",
         "completions",
     ] {

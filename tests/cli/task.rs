@@ -31,7 +31,12 @@ fn simulated(plan: &Value) -> (Value, Option<i32>) {
     let out = argument(folder.path()).to_owned();
     let output = benchdog(folder.path(), &["simulate", "plan.json", "--out", &out]);
     assert!(output.status.code().is_some_and(|code| code < 2), "{}", stderr(&output));
-    (json(&folder.path().join(plan["name"].as_str().unwrap()).join("verdict.json")), output.status.code())
+    let verdict = json(&folder.path().join(plan["name"].as_str().unwrap()).join("verdict.json"));
+    assert_eq!(verdict["criteria"], benchdog::judge::CRITERIA);
+    let hint = format!("benchdog explain {} says", verdict["verdict"].as_str().unwrap());
+    let is_hinted = String::from_utf8_lossy(&output.stdout).contains(&hint);
+    assert_eq!(is_hinted, verdict["met"] == false, "{verdict}");
+    (verdict, output.status.code())
 }
 
 /// The numbers, from 1, of the stages of a kind.

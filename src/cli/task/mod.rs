@@ -231,7 +231,10 @@ fn judged(
     report::file::write_whole(&files.verdict, report::json::pretty(&verdict).as_bytes())?;
     drop(writing);
     match format {
-        Format::Human => output::print(&report::task::table(&verdict))?,
+        Format::Human => {
+            let hint = report::console::hint((!verdict.met).then_some(verdict.verdict));
+            output::print(&format!("{}{hint}", report::task::table(&verdict)))?;
+        }
         Format::Json => output::print(&report::json::pretty(&verdict))?,
     }
     print_comparison(comparison.as_ref(), format)?;

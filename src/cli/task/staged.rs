@@ -3,7 +3,7 @@
 use super::super::{exit::CliError, progress::Progress};
 use crate::{
     check::{CheckedPlan, StagedStates, initial_plan},
-    judge::{Judgement, StageJudgement, StagedJudgement, confirmed_staged, fingerprint, judge_staged},
+    judge::{CRITERIA, Judgement, StageJudgement, StagedJudgement, confirmed_staged, fingerprint, judge_staged},
     model::{
         measures::EventKind,
         scenario::Scenario,
@@ -77,6 +77,7 @@ fn refused(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Option<(VerdictKin
 fn empty_verdict(scenario: &Scenario, plan: &StagedPlan) -> StagedVerdict {
     StagedVerdict {
         format: STAGED_FORMAT,
+        criteria: CRITERIA,
         name: plan.name.clone(),
         verdict: VerdictKind::NoVerdict,
         expected: scenario.expect.verdict,

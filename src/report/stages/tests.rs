@@ -103,6 +103,7 @@ fn verdict() -> StagedVerdict {
     };
     StagedVerdict {
         format: STAGED_FORMAT,
+        criteria: 1,
         name: "stages".into(),
         verdict: VerdictKind::Holds,
         expected: VerdictKind::Holds,
