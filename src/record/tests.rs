@@ -2,6 +2,7 @@
 
 mod damage;
 mod muscles;
+mod peaks;
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -322,25 +323,6 @@ fn what_is_recorded_is_read_back() {
     assert_eq!(summary.peaks.slip_mm, BTreeMap::from([("left".into(), 0.3), ("right".into(), 0.3)]));
     assert_eq!(summary.peaks.rotation_deg["left"], 0.04_f64.to_degrees());
     assert_eq!(summary.peaks.torque_ratio, example.verdict.peak_torque_ratio);
-}
-
-#[test]
-fn what_happens_after_the_load_is_no_peak() {
-    let mut example = example();
-    *example.measures.deflection_mm.last_mut().unwrap() = 99.0;
-    assert_eq!(read(&encode(&example.input()).unwrap()).unwrap().peaks.deflection_mm, 6.0);
-}
-
-#[test]
-fn what_happens_between_two_releases_is_a_peak() {
-    let mut example = example();
-    // As in a task: the load is released, and another one follows.
-    for sample in &mut example.trace.samples[231..] {
-        sample.phase = Phase::Hold;
-    }
-    example.measures.judged = example.measures.time_s.len();
-    *example.measures.deflection_mm.last_mut().unwrap() = 99.0;
-    assert_eq!(read(&encode(&example.input()).unwrap()).unwrap().peaks.deflection_mm, 99.0);
 }
 
 #[test]

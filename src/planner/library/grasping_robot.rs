@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::{
-    grasp::{ArmGrasp, BoardGrasp},
+    grasp::{ArmGrasp, BoardGrasp, largest_joint_difference_rad},
     palm::Palm,
     reach::ReachMap,
 };
@@ -147,6 +147,16 @@ impl GraspingRobot {
             own.q_rad = found.unwrap_or_default();
             reached
         })
+    }
+
+    /// The same grasp with the board at another pose, if the arms follow it there from their configurations, no joint by `most_rad` or
+    /// more, and the robot is clear.
+    pub fn followed(&self, from: &BoardGrasp, x_wo: Pose, most_rad: f64) -> Option<BoardGrasp> {
+        let mut there = BoardGrasp { x_wo, arms: from.arms.clone() };
+        let reached = self.follow(&mut there.arms, &x_wo)
+            && largest_joint_difference_rad(&from.arms, &there.arms) < most_rad
+            && self.is_clear(&there);
+        reached.then_some(there)
     }
 
     /// True if the pads of an arm's gripper lie on the board and its palm is clear of it.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::{
     super::{
         domain::{ANGLE_RAD, uniform},
-        library::{BoardGrasp, GraspingRobot, grasps_of_board, largest_joint_difference_rad},
+        library::{BoardGrasp, GraspingRobot, grasps_of_board},
         params::task::{DRAWN_BOARDS, GRIP_STREAM, GRIPS_PER_PIECE, MOST_FOLLOWED_RAD, NEAR_GRASP, NEAR_GRIPS},
     },
     grasp_loads::GraspLoads,
@@ -80,11 +80,7 @@ fn near_root(robot: &GraspingRobot, root: &Root, places: &Places, random: &mut P
 
 /// The same grip at another board pose, if the arms follow the board there without a collision.
 fn followed(robot: &GraspingRobot, from: &BoardGrasp, places: &Places, place: usize) -> Option<BoardGrasp> {
-    let mut there = BoardGrasp { x_wo: places.x_wo(place)?, arms: from.arms.clone() };
-    let reached = robot.follow(&mut there.arms, &there.x_wo)
-        && largest_joint_difference_rad(&from.arms, &there.arms) < MOST_FOLLOWED_RAD
-        && robot.is_clear(&there);
-    reached.then_some(there)
+    robot.followed(from, places.x_wo(place)?, MOST_FOLLOWED_RAD)
 }
 
 /// A grip with all board poses that it reaches over neighbouring ones.

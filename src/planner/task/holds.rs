@@ -18,7 +18,7 @@ use super::{
     graph::{Arc, ArcKind},
     grips::{Grip, grips},
     hold::Hold,
-    level_places::{LevelHold, LevelHolds},
+    level_poses::{LevelHold, LevelHolds},
     places::Places,
     problem::{Posture, TaskProblem},
     root::Root,
@@ -64,7 +64,7 @@ impl<'p> Holds<'p> {
     }
 
     /// These holds, and after them those at level board poses, which serve no piece.
-    pub fn with_level_places(&self, problem: &TaskProblem<'_>) -> Self {
+    pub fn with_level_poses(&self, problem: &TaskProblem<'_>) -> Self {
         let LevelHolds { holds, moves } = LevelHolds::new(problem, &self.holds);
         let first = self.holds.len();
         let mut all = self.clone();

@@ -13,7 +13,7 @@ mod hand_changes;
 mod hold;
 mod holds;
 mod inputs;
-mod level_places;
+mod level_poses;
 mod motion;
 mod places;
 mod problem;
@@ -138,7 +138,7 @@ impl TaskSearch<'_> {
         let of_first = problem.of_piece(0);
         let map = posture_map(of_first.scenario, &of_first.human, watch);
         let places = Places::new(&problem, &map, &roots, self.is_closed());
-        let (holds, with_level_places) = (Holds::new(&problem, &roots, &places), OnceCell::new());
+        let (holds, with_level_poses) = (Holds::new(&problem, &roots, &places), OnceCell::new());
         let costs = Costs { per_move: task.move_cost, per_regrasp: task.regrasp_cost };
         let mut transitions = Transitions::new(&mut problem, &holds);
         let mut stages = Stages::new(self, &holds);
@@ -149,7 +149,7 @@ impl TaskSearch<'_> {
         for (is_level, is_nearby) in [(false, false), (false, true), (true, false), (true, true)] {
             let holds = match is_level {
                 false => &holds,
-                true => with_level_places.get_or_init(|| holds.with_level_places(transitions.problem)),
+                true => with_level_poses.get_or_init(|| holds.with_level_poses(transitions.problem)),
             };
             (transitions.holds, stages.holds) = (holds, holds);
             let serving = if is_nearby { &holds.serving_nearby } else { &holds.serving };

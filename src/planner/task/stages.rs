@@ -63,9 +63,10 @@ impl<'b> Stages<'b> {
     }
 
     fn added(&mut self, transitions: &mut Transitions<'_, '_>, steps: &[Step]) -> Option<()> {
+        let served = self.served();
         let Self { search, holds, last, ref mut regrasps, .. } = *self;
         let first = holds.holds.get(steps.first()?.begin())?;
-        let worked = worked_pieces(transitions, last.map_or(0, |(piece, _)| piece + 1), steps)?;
+        let worked = worked_pieces(transitions, served, steps)?;
         let regrasps = timed_regrasps(search, transitions, regrasps, steps)?;
         let moves = timed_moves(search, transitions, holds, steps)?;
         let mut builder = Builder { search, transitions, stages: Vec::new(), last };

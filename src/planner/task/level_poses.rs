@@ -104,26 +104,25 @@ fn brought(robot: &GraspingRobot, poses: &LevelPoses, first: usize, of_grip: &[H
 fn grown(robot: &GraspingRobot, poses: &LevelPoses, source: AtPoses) -> (AtPoses, Vec<[usize; 2]>) {
     let mut open: VecDeque<_> = source.keys().copied().collect();
     let mut at = source;
-    let mut moves = Vec::new();
     while let Some(here) = open.pop_front() {
         for next in poses.beside(here) {
-            if !at.contains_key(&next) {
-                let Some(there) = reached(robot, &at[&here].0, poses.x_wo(next)) else { continue };
+            if !at.contains_key(&next)
+                && let Some(there) = reached(robot, &at[&here].0, poses.x_wo(next))
+            {
                 at.insert(next, (there, None));
                 open.push_back(next);
-                moves.push([here, next]);
-            } else if !moves.contains(&[next, here]) && !moves.contains(&[here, next]) {
-                moves.push([here, next]);
             }
         }
     }
+    let later =
+        |&here: &usize| poses.beside(here).into_iter().filter(move |&next| next > here).map(move |next| [here, next]);
+    let moves = at.keys().flat_map(later).filter(|[_, next]| at.contains_key(next)).collect();
     (at, moves)
 }
 
 /// The same grip at another board pose, if the arms reach it there from their configurations without a collision.
 fn reached(robot: &GraspingRobot, from: &BoardGrasp, x_wo: Pose) -> Option<BoardGrasp> {
-    let mut there = BoardGrasp { x_wo, arms: from.arms.clone() };
-    (robot.follow(&mut there.arms, &x_wo) && robot.is_clear(&there)).then_some(there)
+    robot.followed(from, x_wo, f64::INFINITY)
 }
 
 /// Level poses: every rotation at every position.
