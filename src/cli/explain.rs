@@ -43,8 +43,8 @@ struct Chapter {
 struct Section {
     /// The heading: the name in files and tables.
     name: &'static str,
-    /// What is below the heading.
-    body: &'static str,
+    /// What is below the heading, without its picture.
+    body: String,
 }
 
 impl Section {
@@ -67,7 +67,8 @@ fn chapters() -> Vec<Chapter> {
 
 fn section(text: &'static str) -> Section {
     let (name, body) = text.split_once('\n').unwrap_or((text, ""));
-    Section { name: name.trim(), body: body.trim() }
+    let paragraphs = body.trim().split("\n\n").filter(|paragraph| !paragraph.starts_with("!["));
+    Section { name: name.trim(), body: paragraphs.collect::<Vec<_>>().join("\n\n") }
 }
 
 /// Every name that has a section, in the order of the page.

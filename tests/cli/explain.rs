@@ -23,13 +23,18 @@ fn page() -> String {
     fs::read_to_string(root().join("docs/verdicts.md")).unwrap().replace("\r\n", "\n")
 }
 
-/// The sections of a chapter: name and text.
+fn is_picture(paragraph: &str) -> bool {
+    paragraph.starts_with("![")
+}
+
+/// The sections of a chapter: name and text without its picture.
 fn sections(page: &str, chapter: &str) -> Vec<(String, String)> {
     let (_, text) = page.split_once(&format!("\n## {chapter}\n")).unwrap_or_else(|| panic!("no chapter {chapter}"));
     let text = text.split("\n## ").next().unwrap();
     let section = |text: &str| {
         let (name, body) = text.split_once('\n').unwrap();
-        (name.to_owned(), body.trim().to_owned())
+        let paragraphs = body.trim().split("\n\n").filter(|paragraph| !is_picture(paragraph));
+        (name.to_owned(), paragraphs.collect::<Vec<_>>().join("\n\n"))
     };
     text.split("\n### ").skip(1).map(section).collect()
 }
@@ -59,6 +64,17 @@ fn every_verdict_check_and_self_check_has_its_section() {
     let count = all_sections(&page).len();
     assert_eq!(count, verdicts.len() + kinds::<CheckKind>("CheckKind").len(), "a name has two sections");
     assert_eq!(page.matches("\n### ").count(), count, "a section is in another chapter");
+}
+
+#[test]
+fn every_verdict_has_its_picture() {
+    let page = page();
+    for (name, _) in sections(&page, "Verdicts") {
+        let file = format!("verdicts/{name}.svg");
+        let pictures: Vec<_> = page.split("\n\n").filter(|text| is_picture(text) && text.contains(&file)).collect();
+        assert_eq!(pictures.len(), 1, "{name}");
+        assert!(root().join("docs").join(&file).is_file(), "{file}");
+    }
 }
 
 #[test]
