@@ -22,6 +22,7 @@ mod messages;
 mod odd_files;
 mod odd_recordings;
 mod odd_robots;
+mod pages;
 mod partial_plans;
 mod replan;
 mod reports;
