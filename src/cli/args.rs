@@ -347,10 +347,7 @@ pub struct CurveArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::REPRODUCE)]
 pub struct ReproduceArgs {
-    /// Plan the same operations for a person who stands naturally, with the intrinsic metric; report the postures
-    #[arg(long)]
-    pub natural: bool,
-    /// Use fewer seeds of the random planner; omit failing loads and the sensitivity analysis
+    /// Use fewer seeds of the random planner; omit failing loads, sensitivity analysis, fronts and the whole circle
     #[arg(long)]
     pub quick: bool,
     /// Only operations whose name contains this text or, if it has one of * ? [, matches it as a pattern; may be repeated
@@ -362,7 +359,7 @@ pub struct ReproduceArgs {
     /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Never)]
     pub record: RecordChoice,
-    /// Folder for the results; by default `results`, with --natural `results/natural`, with --quick `out/reproduce-quick`
+    /// Folder for the results; by default `results`, with --quick `out/reproduce-quick`
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Maps between runs.
