@@ -2,7 +2,7 @@
 
 use std::{fmt, ops::Range};
 
-use crate::input::one_line;
+use crate::input::{did_you_mean, one_line};
 
 /// An error of loading a robot.
 #[derive(Debug, thiserror::Error)]
@@ -16,7 +16,10 @@ pub enum RobotError {
         source: std::io::Error,
     },
     /// Neither a built-in robot nor a file.
-    #[error("found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file")]
+    #[error(
+        "found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file{}",
+        did_you_mean(found, builtin.split(", "))
+    )]
     Unknown {
         /// The name or path.
         found: String,

@@ -6,6 +6,7 @@
 mod arrays;
 mod check;
 mod crossings;
+mod draft;
 pub mod error;
 pub mod file;
 mod fill_in;
@@ -28,7 +29,9 @@ mod uncertainty_section;
 
 use std::path::{Path, PathBuf};
 
+use draft::{Draft, TomlDocument};
 pub use error::{InputError, InputErrorKind};
+use file::ScenarioFile;
 use plan_file::ReadPlan;
 pub use plan_file::read_plan;
 pub use replan_request::{ReplanRequest, read_replan_request};
@@ -144,8 +147,7 @@ fn load_any(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
     if let Ok(probe) = toml::from_str::<check::FormatProbe>(text) {
         check::Checker::toml(path, text).format(probe.format)?;
     }
-    let file = file::parse(path, text)?;
-    let Resolved { scenario, task, robot } = resolve::resolve(path, text, &file)?;
+    let (file, Resolved { scenario, task, robot }) = read_and_resolve(path, text)?;
     let folder = folder_of(path);
     let mut inputs = vec![path.to_owned()];
     inputs.extend(robot.files.iter().cloned());
@@ -166,6 +168,27 @@ fn load_any(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
         None => (None, Vec::new()),
     };
     Ok(LoadedScenario { path: path.to_owned(), scenario, robot, task, plan, filled_in, inputs })
+}
+
+/// The values of a scenario file, and what they resolve to.
+///
+/// # Errors
+/// All faults that do not follow from others.
+fn read_and_resolve(path: &Path, text: &str) -> Result<(ScenarioFile, Resolved), InputError> {
+    let mut draft = Draft::new(path, TomlDocument::parse(path, text)?);
+    let mut known = None;
+    while let Some(file) = draft.read::<ScenarioFile>() {
+        match resolve::resolve(path, text, &file, &mut known) {
+            Ok(resolved) if draft.is_whole() => return Ok((file, resolved)),
+            Ok(_) => break,
+            Err(error) => {
+                if !draft.refuse(error) {
+                    break;
+                }
+            }
+        }
+    }
+    Err(draft.into_error())
 }
 
 /// The folder that the paths in a file are relative to.
