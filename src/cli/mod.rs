@@ -36,6 +36,7 @@ mod schema;
 mod search_args;
 mod select;
 mod simulate;
+mod streams;
 mod sweep;
 mod sweep_args;
 mod task;

@@ -4,18 +4,18 @@ use std::{num::NonZero, path::PathBuf};
 
 use clap::Args;
 
-use super::{cache::CacheArgs, format::Format, help};
+use super::{cache::CacheArgs, format::Format, help, streams::input_file};
 use crate::sweep::{info::Shard, screen::Screen};
 
 /// `benchdog sweep`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::SWEEP)]
 pub struct SweepArgs {
-    /// Scenario file (.toml) or plan file (.json)
-    #[arg(value_name = "SCENARIO|PLAN")]
+    /// Scenario file (.toml) or plan file (.json); - is standard input, either of them
+    #[arg(value_name = "SCENARIO|PLAN", value_parser = input_file())]
     pub input: PathBuf,
     /// Of a plan: scenario that applies instead of the one in the plan
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = input_file())]
     pub scenario: Option<PathBuf>,
     /// Number of runs; overrides the scenario's
     #[arg(long, value_name = "N")]

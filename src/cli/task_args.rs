@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{cache::CacheArgs, format::Format, help, search_args::SearchArgs};
+use super::{cache::CacheArgs, format::Format, help, search_args::SearchArgs, streams::input_file};
 
 /// `benchdog task`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::TASK)]
 pub struct TaskArgs {
-    /// Task file: a scenario with [task] in place of [operation]
-    #[arg(value_name = "TASK")]
+    /// Task file: a scenario with [task] in place of [operation]; - is standard input
+    #[arg(value_name = "TASK", value_parser = input_file())]
     pub task: PathBuf,
     /// Folder for the plan, the verdict, the tables and the report
     #[arg(long, value_name = "DIR", default_value = "out")]

@@ -132,5 +132,14 @@ impl std::error::Error for InputError {}
 
 /// Reads a text file of at most this many bytes.
 pub(super) fn read_text(path: &Path, most_bytes: u64) -> Result<String, InputError> {
-    input::text(path, most_bytes).map_err(|error| InputError::file(path, error))
+    let bytes = input::bytes(path, most_bytes).map_err(|error| InputError::file(path, error))?;
+    if bytes.starts_with(RECORDING) {
+        let problem =
+            "found a recording, expected text; `benchdog inspect` judges recordings, `benchdog view` shows them";
+        return Err(InputError::file(path, InputErrorKind::Syntax(problem.to_owned())));
+    }
+    input::text_of(bytes).map_err(|error| InputError::file(path, error))
 }
+
+/// The first bytes of a recording of rerun.
+const RECORDING: &[u8] = b"RRF2";
