@@ -63,12 +63,19 @@ pub fn bytes_if<E: From<io::Error>>(
     test: impl FnOnce(&[u8]) -> Result<(), E>,
 ) -> Result<Vec<u8>, E> {
     if path == Path::new(STDIN) {
-        return rest_of(standard_input()?, None, (most_bytes, count), test);
+        let bytes = rest_of(standard_input()?, None, (most_bytes, count), test)?;
+        return Ok(read(path, bytes));
     }
     let file = File::open(path).map_err(|error| similar::of_opening(path, error))?;
     let metadata = file.metadata()?;
     let length = metadata.is_file().then_some(metadata.len());
-    rest_of(file, length, (most_bytes, count), test)
+    rest_of(file, length, (most_bytes, count), test).map(|bytes| read(path, bytes))
+}
+
+/// The bytes that were read from a file, and an event that says so.
+fn read(path: &Path, bytes: Vec<u8>) -> Vec<u8> {
+    tracing::info!(file = %path.display(), bytes = bytes.len(), "read");
+    bytes
 }
 
 /// The standard input, which can be read once.

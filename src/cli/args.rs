@@ -2,13 +2,15 @@
 
 use std::{num::NonZero, path::PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 
 use super::{
     cache::{CacheArgs, CacheCommand},
     explain::ExplainArgs,
     format::Format,
     help,
+    out_folder::OutFolder,
+    output::ColorWhen,
     search_args::SearchArgs,
     streams::input_file,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
@@ -26,6 +28,12 @@ use crate::{
 #[derive(Debug, Parser)]
 #[command(name = "benchdog", version, long_version = versions::LONG.as_str(), about, after_help = help::EXIT_CODES)]
 pub struct Cli {
+    /// When messages and tables have colours
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = ColorWhen::Auto, help_heading = "Global options")]
+    pub color: ColorWhen,
+    /// Say on standard error what is done: files, maps, searches, simulations; -vv also their parts
+    #[arg(short, long, global = true, action = ArgAction::Count, help_heading = "Global options")]
+    pub verbose: u8,
     /// The command.
     #[command(subcommand)]
     pub command: Command,
@@ -137,9 +145,10 @@ pub struct ReportArgs {
     /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Always)]
     pub record: RecordChoice,
-    /// Folder for plans, verdicts, recordings and reports
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
+    /// Folder for plans, verdicts, recordings and reports; or that of each scenario with {name}, {kind} or {seed}, such as
+    /// 'out/{name}-{seed}'
+    #[arg(long, value_name = "DIR", default_value = "out", value_parser = OutFolder::parser())]
+    pub out: OutFolder,
 }
 
 /// `benchdog run`.

@@ -11,7 +11,9 @@ use super::{
     args::{ReportArgs, SimulateArgs},
     exit::{CliError, Exit},
     finish::{self, FinishedRun, RunSummary},
-    interrupt, output,
+    interrupt,
+    out_folder::Values,
+    output,
     progress::Progress,
     select, task, threads,
 };
@@ -33,8 +35,9 @@ pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
 }
 
 fn one_hold(args: &SimulateArgs, loaded: LoadedPlan, progress: &Progress) -> Result<Exit, CliError> {
-    check_outputs(&args.report, &loaded, &loaded.inputs)?;
-    report::file::check_folder(&args.report.out)?;
+    let folder = folder_of(&loaded, args);
+    check_outputs(&args.report, &loaded, &folder, &loaded.inputs)?;
+    report::file::check_folder(&args.report.out.of_all())?;
     let start = Instant::now();
     let mut writing = None;
     let LoadedPlan { path, plan, filled_in, robot, scenario, .. } = loaded;
@@ -42,7 +45,7 @@ fn one_hold(args: &SimulateArgs, loaded: LoadedPlan, progress: &Progress) -> Res
         progress.simulates();
         let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, progress)?;
         writing = Some(interrupt::writing());
-        finish::write_run(run, &scenario, &robot, Some(&path), &args.report)
+        finish::write_run(run, &scenario, &robot, Some(&path), (&folder, args.report.record))
     })?;
     finished.wall_s = Some(start.elapsed().as_secs_f64());
     progress.finish();
@@ -55,10 +58,15 @@ fn one_hold(args: &SimulateArgs, loaded: LoadedPlan, progress: &Progress) -> Res
     Ok(summary.exit)
 }
 
+/// The folder of a plan's results.
+fn folder_of(loaded: &LoadedPlan, args: &SimulateArgs) -> PathBuf {
+    args.report.out.of_one(&Values::of(&loaded.scenario, Some(&loaded.plan)))
+}
+
 /// Refuses to overwrite an input file or another plan.
-fn check_outputs(report: &ReportArgs, loaded: &LoadedPlan, inputs: &[PathBuf]) -> Result<(), CliError> {
-    finish::protect(report, &loaded.plan.name, Some(&loaded.path), inputs)?;
-    finish::keep_other_plan(report, &loaded.plan)
+fn check_outputs(report: &ReportArgs, loaded: &LoadedPlan, folder: &Path, inputs: &[PathBuf]) -> Result<(), CliError> {
+    finish::protect(report, folder, Some(&loaded.path), inputs)?;
+    finish::keep_other_plan(folder, &loaded.plan)
 }
 
 /// Simulates plans in parallel. All plans and the output folder are checked before the first one is simulated.
@@ -66,8 +74,12 @@ fn several(args: &SimulateArgs, paths: &[PathBuf]) -> Result<Exit, CliError> {
     let progress = Progress::counting("reading the plans", "the finished plans are reported")?;
     let plans = read(args, paths)?;
     let inputs: Vec<_> = plans.iter().flat_map(|loaded| loaded.inputs.clone()).collect();
-    plans.iter().try_for_each(|loaded| check_outputs(&args.report, loaded, &inputs))?;
-    report::file::check_folder(&args.report.out)?;
+    let folders: Vec<_> = plans.iter().map(|loaded| folder_of(loaded, args)).collect();
+    let names = plans.iter().map(|loaded| loaded.plan.name.as_str());
+    finish::folders_differ(names.zip(folders.iter().map(PathBuf::as_path)))?;
+    let mut planned = plans.iter().zip(&folders);
+    planned.try_for_each(|(loaded, folder)| check_outputs(&args.report, loaded, folder, &inputs))?;
+    report::file::check_folder(&args.report.out.of_all())?;
     progress.expect(plans.len());
     progress.keep();
     // The first error that affects all plans, such as a full disk.
@@ -102,7 +114,8 @@ fn one_of_several(args: &SimulateArgs, loaded: &LoadedPlan, progress: &Progress)
     let mut finished = FinishedRun::catch(&plan.name, || {
         progress.simulates();
         let run = pipeline::run_plan(scenario, robot, plan.clone(), filled_in, progress)?;
-        finish::write_run(run, scenario, robot, Some(path), &args.report)
+        let folder = folder_of(loaded, args);
+        finish::write_run(run, scenario, robot, Some(path), (&folder, args.report.record))
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     finished.wall_s = Some(wall_s);

@@ -4,7 +4,7 @@ use std::{num::NonZero, path::PathBuf};
 
 use clap::Args;
 
-use super::{cache::CacheArgs, format::Format, help, streams::input_file};
+use super::{cache::CacheArgs, format::Format, help, out_folder::OutFolder, streams::input_file};
 use crate::sweep::{info::Shard, screen::Screen};
 
 /// `benchdog sweep`.
@@ -44,9 +44,9 @@ pub struct SweepArgs {
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
-    /// Folder of the sweep
-    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
-    pub out: PathBuf,
+    /// Folder of the sweep; {name}, {kind} and {seed} in it are filled in
+    #[arg(long, value_name = "DIR", default_value = "out/sweep", value_parser = OutFolder::parser())]
+    pub out: OutFolder,
     /// Maps between runs.
     #[command(flatten)]
     pub cache: CacheArgs,

@@ -196,7 +196,11 @@ fn read_and_resolve(path: &Path, text: &str) -> Result<(ScenarioFile, Resolved),
     let mut known = None;
     while let Some(file) = draft.read::<ScenarioFile>() {
         match resolve::resolve(path, text, &file, &mut known) {
-            Ok(resolved) if draft.is_whole() => return Ok((file, resolved)),
+            Ok(resolved) if draft.is_whole() => {
+                let Resolved { scenario, robot, .. } = &resolved;
+                tracing::debug!(scenario = scenario.name, robot = robot.description, "checked a scenario");
+                return Ok((file, resolved));
+            }
             Ok(_) => break,
             Err(error) => {
                 if !draft.refuse(error) {

@@ -9,7 +9,9 @@ use std::path::PathBuf;
 use self::{folder::SweepFolder, journal::Journal};
 use super::{
     exit::{CliError, Exit},
-    inputs, interrupt, output,
+    inputs, interrupt,
+    out_folder::Values,
+    output,
     planners::Planners,
     progress::Progress,
     streams,
@@ -48,9 +50,10 @@ pub fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
     let progress = Progress::begin("reading the scenario", "the finished runs are kept: the same command goes on")?;
     let Subject { mut scenario, robot, plan, inputs } = subject(args, &progress)?;
     let sweep = sweep_of(args, &mut scenario, &robot, &progress)?;
-    let folder = SweepFolder::new(&args.out);
+    let out = args.out.filled(&Values::of(&scenario, None).with(&scenario.name, sweep.seed));
+    let folder = SweepFolder::new(&out);
     inputs::protect(&inputs, folder.files())?;
-    report::file::check_folder(&args.out)?;
+    report::file::check_folder(&out)?;
     let plan = match plan {
         Some(plan) => plan,
         None => match Planners::new(args.cache).timed_plan(&scenario, &robot, &*progress)? {
