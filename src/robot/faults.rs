@@ -18,7 +18,7 @@ pub enum RobotError {
     /// Neither a built-in robot nor a file.
     #[error(
         "found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file{}",
-        did_you_mean(found, builtin.split(", "))
+        hint(found, builtin)
     )]
     Unknown {
         /// The name or path.
@@ -29,6 +29,18 @@ pub enum RobotError {
     /// A description or URDF that cannot be used.
     #[error("{0}")]
     Invalid(Faults),
+}
+
+/// What a user of an unknown robot may have meant.
+fn hint(found: &str, builtin: &str) -> String {
+    match found.rsplit('.').next() {
+        Some("urdf") => format!("; `benchdog robot new {found} -o robot.toml` writes the description of a URDF"),
+        Some("xacro") => {
+            "; `xacro FILE -o robot.urdf` makes a URDF, and `benchdog robot new robot.urdf -o robot.toml` its description".to_owned()
+        }
+        Some("yaml" | "yml") => "; descriptions are in TOML".to_owned(),
+        _ => did_you_mean(found, builtin.split(", ")),
+    }
 }
 
 /// What is wrong with a robot's files, in the order of the lines; at least one fault.
