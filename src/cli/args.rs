@@ -28,8 +28,8 @@ use crate::{
 #[derive(Debug, Parser)]
 #[command(name = "benchdog", version, long_version = versions::LONG.as_str(), about, after_help = help::EXIT_CODES)]
 pub struct Cli {
-    /// When messages and tables have colours
-    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = ColorWhen::Auto, help_heading = "Global options")]
+    /// When messages and tables have colours: auto, always or never
+    #[arg(long, global = true, hide_possible_values = true, value_enum, value_name = "WHEN", default_value_t = ColorWhen::Auto, help_heading = "Global options")]
     pub color: ColorWhen,
     /// Say on standard error what is done: files, maps, searches, simulations; -vv also their parts
     #[arg(short, long, global = true, action = ArgAction::Count, help_heading = "Global options")]

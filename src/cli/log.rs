@@ -43,7 +43,7 @@ pub fn begin(verbose: u8) {
     if filter == Targets::new().with_target("benchdog", LevelFilter::OFF) {
         return;
     }
-    let lines = fmt::layer().without_time().with_writer(|| Lines).with_filter(filter);
+    let lines = fmt::layer().with_ansi(false).without_time().with_writer(|| Lines).with_filter(filter);
     IS_ON.store(tracing::subscriber::set_global_default(Registry::default().with(lines)).is_ok(), Ordering::SeqCst);
 }
 

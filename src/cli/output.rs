@@ -17,7 +17,7 @@ use crate::input::{self, printable};
 /// When messages and tables have colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum ColorWhen {
-    /// On a terminal, unless NO_COLOR is set or TERM is dumb; elsewhere if CLICOLOR_FORCE is set
+    /// On a terminal, unless NO_COLOR is set or TERM is `dumb`; elsewhere if CLICOLOR_FORCE is set
     #[default]
     Auto,
     /// Always

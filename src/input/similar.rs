@@ -1,7 +1,6 @@
 //! What a user may have meant by a mistyped name: the most similar one of those that are known.
 
 use std::{
-    ffi::OsStr,
     io,
     path::{Path, PathBuf},
 };
@@ -15,15 +14,29 @@ const MOST_ENTRIES: usize = 10_000;
 /// The most similar of some names, if one is similar; of equally similar ones the first.
 #[must_use]
 pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let lower = found.to_lowercase();
+    most_similar(known.into_iter().filter(|name| *name != found).map(|name| (similarity(found, name), name)))
+}
+
+fn similarity(a: &str, b: &str) -> f64 {
+    strsim::jaro_winkler(&a.to_lowercase(), &b.to_lowercase())
+}
+
+fn most_similar<'a>(names: impl Iterator<Item = (f64, &'a str)>) -> Option<&'a str> {
     let mut best: Option<(f64, &str)> = None;
-    for name in known.into_iter().filter(|name| *name != found) {
-        let similarity = strsim::jaro_winkler(&lower, &name.to_lowercase());
+    for (similarity, name) in names {
         if similarity >= LEAST_SIMILARITY && best.is_none_or(|(most, _)| similarity > most) {
             best = Some((similarity, name));
         }
     }
     best.map(|(_, name)| name)
+}
+
+/// The similarity of the names of two files. An extension that both have says nothing.
+fn similarity_of_files(a: &str, b: &str) -> f64 {
+    match (a.rsplit_once('.'), b.rsplit_once('.')) {
+        (Some((a, of_a)), Some((b, of_b))) if of_a == of_b => similarity(a, b),
+        _ => similarity(a, b),
+    }
 }
 
 /// The end of a message about an unknown name: `; did you mean "friction"?`, or nothing.
@@ -81,7 +94,8 @@ fn similar_file(path: &Path) -> Option<PathBuf> {
     let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     names.sort();
     let known = names.iter().map(String::as_str).filter(|known| !known.starts_with('.'));
-    nearest(name.to_str()?, known).map(|name| folder.join(OsStr::new(name)))
+    let found = name.to_str()?;
+    most_similar(known.map(|known| (similarity_of_files(found, known), known))).map(|name| folder.join(name))
 }
 
 #[cfg(test)]
@@ -126,5 +140,6 @@ mod tests {
         assert_eq!(similar("scenaros/quickstart.toml"), found);
         assert_eq!(similar("scenaros/other.toml"), None);
         assert_eq!(similar("plan.json"), None);
+        assert_eq!(similar("scenarios/a.toml"), None, "the extension alone is no similarity");
     }
 }
