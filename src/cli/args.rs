@@ -29,7 +29,8 @@ use crate::{
 #[command(name = "benchdog", version, long_version = versions::LONG.as_str(), about, after_help = help::EXIT_CODES)]
 pub struct Cli {
     /// When messages and tables have colours: auto, always or never
-    #[arg(long, global = true, hide_possible_values = true, value_enum, value_name = "WHEN", default_value_t = ColorWhen::Auto, help_heading = "Global options")]
+    #[arg(long, global = true, help_heading = "Global options", value_name = "WHEN")]
+    #[arg(value_enum, default_value_t = ColorWhen::Auto, hide_possible_values = true)]
     pub color: ColorWhen,
     /// Say on standard error what is done: files, maps, searches, simulations; -vv also their parts
     #[arg(short, long, global = true, action = ArgAction::Count, help_heading = "Global options")]

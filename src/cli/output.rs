@@ -66,7 +66,7 @@ impl ColorWhen {
 }
 
 /// Writes text for people to a stream: with colours if it is to have them, and else byte for byte.
-fn write(mut stream: impl RawStream + AsLockedWrite + Write, text: &str) -> std::io::Result<()> {
+fn write(mut stream: impl RawStream + AsLockedWrite, text: &str) -> std::io::Result<()> {
     match AutoStream::choice(&stream) {
         ColorChoice::Never => stream.write_all(text.as_bytes()),
         choice => AutoStream::new(stream, choice).write_all(painted(text).as_bytes()),
