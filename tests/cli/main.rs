@@ -13,6 +13,7 @@ mod commands;
 mod compare;
 mod determinism;
 mod explain;
+mod habits;
 mod import;
 mod inputs;
 mod interrupt;

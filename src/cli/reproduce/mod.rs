@@ -59,7 +59,7 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     } else {
         write_results(&reproduction, &operations, &first.robot, &out)?;
     }
-    output::print(&summary(&reproduction, &out))?;
+    output::report(&summary(&reproduction, &out))?;
     Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
 }
 
