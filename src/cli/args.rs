@@ -9,6 +9,8 @@ use super::{
     explain::ExplainArgs,
     format::Format,
     help,
+    init::InitArgs,
+    man::ManArgs,
     search_args::SearchArgs,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
     task_args::TaskArgs,
@@ -33,6 +35,8 @@ pub struct Cli {
 /// A command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Write a starter scenario, plans of it, tests and a workflow into a folder
+    Init(InitArgs),
     /// Plan, simulate, judge, record and report scenarios
     Run(RunArgs),
     /// Plan a scenario and write the plan
@@ -81,6 +85,8 @@ pub enum Command {
     Doctor(DoctorArgs),
     /// Print a shell's completion script
     Completions(CompletionsArgs),
+    /// Print the manual page, or write those of all commands
+    Man(ManArgs),
 }
 
 /// A command about robots.

@@ -10,7 +10,18 @@ Exit codes:
   70   a bug in benchdog
   130  interrupted; finished work is reported
 
-Start with: benchdog run scenarios/quickstart.toml";
+Start with: benchdog init my-boards";
+
+/// `benchdog init --help`.
+pub const INIT: &str = "\
+Examples:
+  benchdog init my-boards                     a folder with everything to begin with
+  benchdog init my-cuts --example cut
+  benchdog init --example your-plan           into the working directory
+
+Writes a README, scenarios whose comments explain the keys, plans of them, a test for pytest and a
+workflow for GitHub. The files need nothing outside the folder. A folder that has one of them is
+refused before anything is written.";
 
 /// `benchdog run --help`.
 pub const RUN: &str = "\
@@ -243,3 +254,9 @@ Examples:
   benchdog completions bash > ~/.local/share/bash-completion/completions/benchdog
   benchdog completions zsh > ~/.zfunc/_benchdog
   benchdog completions fish > ~/.config/fish/completions/benchdog.fish";
+
+/// `benchdog man --help`.
+pub const MAN: &str = "\
+Examples:
+  benchdog man | man -l -
+  benchdog man --out ~/.local/share/man/man1";
