@@ -10,7 +10,6 @@ use super::{
     format::Format,
     help,
     init::InitArgs,
-    man::ManArgs,
     search_args::SearchArgs,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
     task_args::TaskArgs,
@@ -484,6 +483,15 @@ pub struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
+}
+
+/// `benchdog man`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::MAN)]
+pub struct ManArgs {
+    /// Folder for the pages of all commands; by default the page of benchdog itself goes to standard output
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// A planner.

@@ -1,34 +1,22 @@
 //! `benchdog man`: manual pages, one for each command, from the definition of the command line.
 
-use std::{
-    io::{self, Write as _},
-    path::PathBuf,
-};
+use std::io::{self, Write as _};
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Command, CommandFactory};
 use clap_mangen::{
     Man,
     roff::{Roff, roman},
 };
 
 use super::{
-    args::Cli,
+    args::{Cli, ManArgs},
     exit::{CliError, Exit},
-    help, interrupt, output,
+    interrupt, output,
 };
 use crate::report::file;
 
 /// The program, at the foot of each page.
 const VERSION: &str = concat!("benchdog ", env!("CARGO_PKG_VERSION"));
-
-/// `benchdog man`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = help::MAN)]
-pub struct ManArgs {
-    /// Folder for the pages of all commands; by default the page of benchdog itself goes to standard output
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-}
 
 /// Prints the main page, or writes all pages.
 pub fn man(args: &ManArgs) -> Result<Exit, CliError> {
