@@ -9,6 +9,7 @@ use super::{
     explain::ExplainArgs,
     format::Format,
     help,
+    init::InitArgs,
     out_folder::OutFolder,
     output::ColorWhen,
     search_args::SearchArgs,
@@ -43,6 +44,8 @@ pub struct Cli {
 /// A command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Write a starter scenario, plans of it, tests and a workflow into a folder
+    Init(InitArgs),
     /// Plan, simulate, judge, record and report scenarios
     Run(RunArgs),
     /// Plan a scenario and write the plan
@@ -91,6 +94,8 @@ pub enum Command {
     Doctor(DoctorArgs),
     /// Print a shell's completion script
     Completions(CompletionsArgs),
+    /// Print the manual page, or write those of all commands
+    Man(ManArgs),
 }
 
 /// A command about robots.
@@ -498,6 +503,15 @@ pub struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
+}
+
+/// `benchdog man`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::MAN)]
+pub struct ManArgs {
+    /// Folder for the pages of all commands; by default the page of benchdog itself goes to standard output
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// A planner.

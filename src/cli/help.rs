@@ -13,7 +13,18 @@ Exit codes:
 NO_COLOR=1 turns colours off, CLICOLOR_FORCE=1 on.
 BENCHDOG_LOG has a filter in place of -v, such as benchdog::planner=debug.
 
-Start with: benchdog run scenarios/quickstart.toml";
+Start with: benchdog init my-boards";
+
+/// `benchdog init --help`.
+pub const INIT: &str = "\
+Examples:
+  benchdog init my-boards                     a folder with everything to begin with
+  benchdog init my-cuts --example cut
+  benchdog init --example your-plan           into the working directory
+
+Writes a README, scenarios whose comments explain the keys, plans of them, a test for pytest and a
+workflow for GitHub. The files need nothing outside the folder. A folder that has one of them is
+refused before anything is written.";
 
 /// `benchdog run --help`.
 pub const RUN: &str = "\
@@ -250,3 +261,9 @@ Examples:
   benchdog completions bash > ~/.local/share/bash-completion/completions/benchdog
   benchdog completions zsh > ~/.zfunc/_benchdog
   benchdog completions fish > ~/.config/fish/completions/benchdog.fish";
+
+/// `benchdog man --help`.
+pub const MAN: &str = "\
+Examples:
+  benchdog man | man -l -
+  benchdog man --out ~/.local/share/man/man1";

@@ -15,11 +15,13 @@ mod format;
 mod front;
 mod help;
 mod import;
+mod init;
 mod inputs;
 #[cfg(feature = "recording")]
 mod inspect;
 mod interrupt;
 mod log;
+mod man;
 mod margin;
 mod merge;
 mod out_folder;
@@ -100,6 +102,7 @@ pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     #[cfg(feature = "recording")]
     leave_damage_to_decoders();
     let outcome = std::panic::catch_unwind(|| match &cli.command {
+        Command::Init(args) => init::init(args),
         Command::Run(args) => run::run(args),
         Command::Plan(args) => plan::plan(args),
         Command::Replan(args) => replan::replan(args),
@@ -124,6 +127,7 @@ pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Cache(command) => cache::cache(command),
         Command::Doctor(args) => doctor::doctor(args),
         Command::Completions(args) => completions::completions(args),
+        Command::Man(args) => man::man(args),
     });
     match outcome {
         Ok(Ok(exit)) => exit,

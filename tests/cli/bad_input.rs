@@ -157,7 +157,7 @@ fn a_format_from_the_future() {
     assert_scenario_refused(
         "format = 1",
         "format = 2",
-        "bad.toml:1: format: found 2, expected 1, the only format that benchdog 0.1.0 reads",
+        "bad.toml:1: format: found 2, expected 1, the only format that benchdog 0.2.0 reads",
     );
 }
 
@@ -264,7 +264,7 @@ fn a_plan_of_a_format_from_the_future() {
     assert_plan_refused(
         "\"format\": 1,",
         "\"format\": 3, \"colour\": \"blue\",",
-        "bad.json:2: format: found 3, expected 1, the only format that benchdog 0.1.0 reads",
+        "bad.json:2: format: found 3, expected 1, the only format that benchdog 0.2.0 reads",
     );
 }
 
