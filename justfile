@@ -41,6 +41,10 @@ snapshots:
 maps:
     BENCHDOG_WRITE_MAPS=1 cargo test --release --test cli maps_of_the_program
 
+# Write the plans of `benchdog init` again after a change of the planner or of their scenarios
+init-plans:
+    tools/init_plans.py target/release/benchdog
+
 # Licences, duplicate crates and sources of the dependencies (needs cargo-deny)
 deny:
     cargo deny check licenses bans sources

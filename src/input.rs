@@ -2,12 +2,20 @@
 //!
 //! Every module that reads a file that a user names reads it here. Knows no format.
 
+mod similar;
+
 use std::{
     borrow::Cow,
     fs::File,
-    io::{self, BufRead, Read as _},
+    io::{self, BufRead, Read},
     path::Path,
+    sync::atomic::{AtomicBool, Ordering},
 };
+
+pub use similar::{did_you_mean, meant_by, meant_by_value};
+
+/// The path that stands for the standard input, in messages as well. Commands have it for the argument `-`.
+pub const STDIN: &str = "<stdin>";
 
 const MIB: u64 = 1 << 20;
 
@@ -54,16 +62,46 @@ pub fn bytes_if<E: From<io::Error>>(
     count: u64,
     test: impl FnOnce(&[u8]) -> Result<(), E>,
 ) -> Result<Vec<u8>, E> {
-    let file = File::open(path)?;
+    if path == Path::new(STDIN) {
+        let bytes = rest_of(standard_input()?, None, (most_bytes, count), test)?;
+        return Ok(read(path, bytes));
+    }
+    let file = File::open(path).map_err(|error| similar::of_opening(path, error))?;
     let metadata = file.metadata()?;
-    let mut file = file.take(most_bytes + 1);
+    let length = metadata.is_file().then_some(metadata.len());
+    rest_of(file, length, (most_bytes, count), test).map(|bytes| read(path, bytes))
+}
+
+/// The bytes that were read from a file, and an event that says so.
+fn read(path: &Path, bytes: Vec<u8>) -> Vec<u8> {
+    tracing::info!(file = %path.display(), bytes = bytes.len(), "read");
+    bytes
+}
+
+/// The standard input, which can be read once.
+fn standard_input() -> io::Result<io::Stdin> {
+    static IS_READ: AtomicBool = AtomicBool::new(false);
+    match IS_READ.swap(true, Ordering::SeqCst) {
+        true => Err(io::Error::other("found `-` twice, expected it once: the standard input can be read once")),
+        false => Ok(io::stdin()),
+    }
+}
+
+/// The bytes of a stream of this length, if it is known, after a test of the first `count` ones.
+fn rest_of<E: From<io::Error>>(
+    stream: impl Read,
+    length: Option<u64>,
+    (most_bytes, count): (u64, u64),
+    test: impl FnOnce(&[u8]) -> Result<(), E>,
+) -> Result<Vec<u8>, E> {
+    let mut file = stream.take(most_bytes + 1);
     let mut bytes = Vec::new();
     if count > 0 {
         file.by_ref().take(count).read_to_end(&mut bytes)?;
         test(&bytes)?;
     }
-    if metadata.is_file() && metadata.len() > most_bytes {
-        return Err(too_large(&format!("{:.1} MiB", metadata.len() as f64 / MIB as f64), most_bytes).into());
+    if let Some(length) = length.filter(|length| *length > most_bytes) {
+        return Err(too_large(&format!("{:.1} MiB", length as f64 / MIB as f64), most_bytes).into());
     }
     file.read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most_bytes {

@@ -12,7 +12,7 @@ use std::{
 };
 
 /// Folders and files that are read, relative to the repository.
-const READ: [&str; 17] = [
+const READ: [&str; 20] = [
     "src",
     "tests",
     "benches",
@@ -28,6 +28,9 @@ const READ: [&str; 17] = [
     "README.md",
     "ARCHITECTURE.md",
     "CHANGELOG.md",
+    "CITATION.cff",
+    "CONTRIBUTING.md",
+    "SECURITY.md",
     "Cargo.toml",
     "justfile",
 ];

@@ -56,18 +56,19 @@ pub fn other(error: impl ToString) -> PyErr {
     Fault { message: text.clone(), text, ..Fault::default() }.into()
 }
 
-/// An error of an input file. One of a dict has no line: that would be one of its text as TOML or JSON.
+/// An error of an input file. One of a dict has no line: that would be one of its text as TOML or JSON. Of several faults the text has
+/// all, and the parts are those of the first.
 pub fn input(error: InputError) -> PyErr {
-    let line = error.line.filter(|_| error.file != Path::new(DICT));
-    let error = InputError { line, ..error };
+    let error = if error.file == Path::new(DICT) { error.without_lines() } else { error };
     let text = error.to_string();
-    let (found, expected) = match &error.kind {
+    let Some(first) = error.faults().first() else { return other(text) };
+    let (found, expected) = match &first.kind {
         InputErrorKind::Value { found, expected } => (Some(found.clone()), Some(expected.clone())),
         _ => (None, None),
     };
-    let message = error.kind.to_string();
-    let file = Some(error.file.display().to_string());
-    Fault { text, file, line, key: error.key, found, expected, message }.into()
+    let message = first.kind.to_string();
+    let file = Some(first.file.display().to_string());
+    Fault { text, file, line: first.line, key: first.key.clone(), found, expected, message }.into()
 }
 
 /// An error of a search. One that was stopped is not read: the exception that stopped it is.

@@ -2,14 +2,18 @@
 
 use std::{num::NonZero, path::PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 
 use super::{
     cache::{CacheArgs, CacheCommand},
     explain::ExplainArgs,
     format::Format,
     help,
+    init::InitArgs,
+    out_folder::OutFolder,
+    output::ColorWhen,
     search_args::SearchArgs,
+    streams::input_file,
     sweep_args::{CompareArgs, MergeArgs, SweepArgs},
     task_args::TaskArgs,
 };
@@ -25,6 +29,13 @@ use crate::{
 #[derive(Debug, Parser)]
 #[command(name = "benchdog", version, long_version = versions::LONG.as_str(), about, after_help = help::EXIT_CODES)]
 pub struct Cli {
+    /// When messages and tables have colours: auto, always or never
+    #[arg(long, global = true, help_heading = "Global options", value_name = "WHEN")]
+    #[arg(value_enum, default_value_t = ColorWhen::Auto, hide_possible_values = true)]
+    pub color: ColorWhen,
+    /// Say on standard error what is done: files, maps, searches, simulations; -vv also their parts
+    #[arg(short, long, global = true, action = ArgAction::Count, help_heading = "Global options")]
+    pub verbose: u8,
     /// The command.
     #[command(subcommand)]
     pub command: Command,
@@ -33,6 +44,8 @@ pub struct Cli {
 /// A command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Write a starter scenario, plans of it, tests and a workflow into a folder
+    Init(InitArgs),
     /// Plan, simulate, judge, record and report scenarios
     Run(RunArgs),
     /// Plan a scenario and write the plan
@@ -81,6 +94,8 @@ pub enum Command {
     Doctor(DoctorArgs),
     /// Print a shell's completion script
     Completions(CompletionsArgs),
+    /// Print the manual page, or write those of all commands
+    Man(ManArgs),
 }
 
 /// A command about robots.
@@ -136,17 +151,18 @@ pub struct ReportArgs {
     /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Always)]
     pub record: RecordChoice,
-    /// Folder for plans, verdicts, recordings and reports
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
+    /// Folder for plans, verdicts, recordings and reports; or that of each scenario with {name}, {kind} or {seed}, such as
+    /// 'out/{name}-{seed}'
+    #[arg(long, value_name = "DIR", default_value = "out", value_parser = OutFolder::parser())]
+    pub out: OutFolder,
 }
 
 /// `benchdog run`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::RUN)]
 pub struct RunArgs {
-    /// Scenario files, folders with scenario files, or patterns such as 'grasps/**/*.toml'
-    #[arg(required = true, value_name = "SCENARIO")]
+    /// Scenario files, folders with scenario files, or patterns such as 'grasps/**/*.toml'; - is standard input
+    #[arg(required = true, value_name = "SCENARIO", value_parser = input_file())]
     pub scenarios: Vec<PathBuf>,
     /// Run only scenarios whose name contains this text or, if it has one of * ? [, matches it as a pattern; may be repeated
     #[arg(long, value_name = "TEXT")]
@@ -172,9 +188,10 @@ pub struct RunArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::PLAN)]
 pub struct PlanArgs {
-    /// Scenario file
+    /// Scenario file; - is standard input
+    #[arg(value_parser = input_file())]
     pub scenario: PathBuf,
-    /// File for the plan, by default standard output; with --top the folder for plan-1.json, plan-2.json, ...
+    /// File for the plan, by default or with - standard output; with --top the folder for plan-1.json, plan-2.json, ...
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Write the best K plans that differ in an edge, by 50 mm or 15 degrees of the board, or by 30 degrees of a joint
@@ -239,7 +256,8 @@ impl PlannerArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::FRONT)]
 pub struct FrontArgs {
-    /// Scenario file
+    /// Scenario file; - is standard input
+    #[arg(value_parser = input_file())]
     pub scenario: PathBuf,
     /// Folder for `front.csv`, `front.svg` and the plans
     #[arg(long, value_name = "DIR", default_value = "out")]
@@ -256,11 +274,15 @@ pub struct FrontArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::SIMULATE)]
 pub struct SimulateArgs {
-    /// Plan file
-    pub plan: PathBuf,
-    /// Scenario whose friction, phases, limits and expectation apply instead of those in the plan
-    #[arg(long, value_name = "FILE")]
+    /// Plan files, folders with plan files, or patterns such as 'plans/*.json'; - is standard input
+    #[arg(required = true, value_name = "PLAN", value_parser = input_file())]
+    pub plans: Vec<PathBuf>,
+    /// Scenario whose friction, phases, limits and expectation apply instead of those in each plan
+    #[arg(long, value_name = "FILE", value_parser = input_file())]
     pub scenario: Option<PathBuf>,
+    /// Number of threads for several plans; by default one per core. The results do not depend on it
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<NonZero<usize>>,
     /// Reports and recordings.
     #[command(flatten)]
     pub report: ReportArgs,
@@ -271,10 +293,10 @@ pub struct SimulateArgs {
 #[command(after_help = help::IMPORT)]
 pub struct ImportArgs {
     /// File with grasps: isaac_grasp 1.0 or messages of moveit_msgs/Grasp in YAML; or 4x4 matrices, in JSON or as rows of numbers
-    #[arg(value_name = "GRASPS")]
+    #[arg(value_name = "GRASPS", value_parser = input_file())]
     pub grasps: PathBuf,
     /// Scenario with the robot, the board and the operation
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = input_file())]
     pub scenario: PathBuf,
     /// An arm and its grasp by name; once for each arm that holds the board
     #[arg(long, required_unless_present = "all", value_name = "ARM=GRASP", value_parser = arm_choice)]
@@ -294,7 +316,7 @@ pub struct ImportArgs {
     /// Name of a frame in the file that is the robot's base; all other frames are the board's. Needs --board-pose
     #[arg(long, value_name = "NAME", requires = "board_pose")]
     pub world_frame: Option<String>,
-    /// File for the plan, by default standard output; with --all the folder for the plans
+    /// File for the plan, by default or with - standard output; with --all the folder for the plans
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
@@ -337,6 +359,7 @@ fn pose(text: &str) -> Result<Pose, String> {
 pub struct CurveArgs {
     /// Scenario of a cut: its person, tool, board, force and distance from the centre are used; by default the first cut
     /// of the paper's evaluation
+    #[arg(value_parser = input_file())]
     pub scenario: Option<PathBuf>,
     /// Folder for `muscular_curve.csv` and `muscular_curve.svg`
     #[arg(long, value_name = "DIR", default_value = "out")]
@@ -380,10 +403,11 @@ pub struct SchemaArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::MARGIN)]
 pub struct MarginArgs {
-    /// Plan file
+    /// Plan file; - is standard input
+    #[arg(value_parser = input_file())]
     pub plan: PathBuf,
     /// Scenario whose friction, load, phases, limits and expectation apply instead of those in the plan
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = input_file())]
     pub scenario: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Human)]
@@ -394,12 +418,13 @@ pub struct MarginArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::EXPORT)]
 pub struct ExportArgs {
-    /// Plan file
+    /// Plan file; - is standard input
+    #[arg(value_parser = input_file())]
     pub plan: PathBuf,
     /// Scenario whose friction, load and phases apply instead of those in the plan
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = input_file())]
     pub scenario: Option<PathBuf>,
-    /// File for the scene as MJCF, the format of MuJoCo
+    /// File for the scene as MJCF, the format of MuJoCo; - is standard output
     #[arg(long, value_name = "FILE")]
     pub mjcf: PathBuf,
 }
@@ -419,7 +444,7 @@ pub struct InspectArgs {
     #[arg(long)]
     pub check: bool,
     /// Scenario whose limits and expectation apply instead of the run's
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = input_file())]
     pub scenario: Option<PathBuf>,
     /// Limits.
     #[command(flatten)]
@@ -475,6 +500,15 @@ pub struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
+}
+
+/// `benchdog man`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = help::MAN)]
+pub struct ManArgs {
+    /// Folder for the pages of all commands; by default the page of benchdog itself goes to standard output
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// A planner.

@@ -47,7 +47,7 @@ pub fn compare(args: &CompareArgs) -> Result<Exit, CliError> {
         report::file::write_whole(path, report::compare::html(&comparison, args.tolerance).as_bytes())?;
     }
     match args.format {
-        Format::Human => output::print(&report::compare::text(&comparison))?,
+        Format::Human => output::report(&report::compare::text(&comparison))?,
         Format::Json => output::print(&report::json::pretty(&comparison))?,
     }
     Ok(if comparison.count(ChangeKind::Regression) > 0 { Exit::NotMet } else { Exit::Met })

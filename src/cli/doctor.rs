@@ -62,10 +62,10 @@ pub fn doctor(args: &DoctorArgs) -> Result<Exit, CliError> {
                 ("WRONG", message)
             }
         };
-        output::print(&format!("{mark:<5}  {what:<9} {message}\n"))?;
+        output::report(&format!("{mark:<5}  {what:<9} {message}\n"))?;
     }
     for (what, (mark, message)) in [("maps", maps()), ("viewer", viewer())] {
-        output::print(&format!("{mark:<5}  {what:<9} {message}\n"))?;
+        output::report(&format!("{mark:<5}  {what:<9} {message}\n"))?;
     }
     if wrong.is_empty() { Ok(Exit::Met) } else { Err(CliError::Machine(format!("wrong: {}", wrong.join(", ")))) }
 }

@@ -1,6 +1,7 @@
 //! Writes the files of finished runs and reports on them.
 
 use std::{
+    collections::BTreeMap,
     io::ErrorKind,
     path::{Path, PathBuf},
 };
@@ -68,9 +69,8 @@ struct RunFiles {
 }
 
 impl RunFiles {
-    /// The files of the run of a scenario or plan of this name.
-    fn new(out: &Path, name: &str) -> Self {
-        let folder = out.join(name);
+    /// The files of a run in its folder.
+    fn new(folder: &Path) -> Self {
         Self {
             plan: folder.join("plan.json"),
             recording: folder.join("recording.rrd"),
@@ -84,8 +84,8 @@ impl RunFiles {
 ///
 /// # Errors
 /// If a file of the run is one of the inputs.
-pub fn protect(args: &ReportArgs, name: &str, plan_file: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
-    let RunFiles { plan, recording, verdict } = RunFiles::new(&args.out, name);
+pub fn protect(args: &ReportArgs, folder: &Path, plan_file: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
+    let RunFiles { plan, recording, verdict } = RunFiles::new(folder);
     let is_own = plan_file.is_some_and(|file| is_same_file(file, &plan));
     let outputs = [recording, verdict].into_iter().chain((!is_own).then_some(plan)).chain(args.junit.clone());
     inputs::protect(inputs, outputs)
@@ -96,7 +96,23 @@ pub fn protect(args: &ReportArgs, name: &str, plan_file: Option<&Path>, inputs: 
 /// # Errors
 /// If a report is one of the inputs.
 pub fn protect_from_reports(args: &ReportArgs, inputs: &[PathBuf]) -> Result<(), CliError> {
-    inputs::protect(inputs, REPORTS.map(|name| args.out.join(name)))
+    inputs::protect(inputs, REPORTS.map(|name| args.out.of_all().join(name)))
+}
+
+/// Refuses a template of `--out` with which two scenarios would have one folder.
+///
+/// # Errors
+/// If two folders are the same.
+pub fn folders_differ<'a>(folders: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<(), CliError> {
+    let mut names = BTreeMap::new();
+    for (name, folder) in folders {
+        if let Some(other) = names.insert(folder, name) {
+            let folder = folder.display();
+            let problem = "expected another folder for each, such as with {name}";
+            return Err(CliError::Usage(format!("--out: found the folder {folder} for {other} and {name}, {problem}")));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses to replace a plan that Benchdog made by another plan of the same name: the file may be the only copy. The copy of
@@ -104,8 +120,8 @@ pub fn protect_from_reports(args: &ReportArgs, inputs: &[PathBuf]) -> Result<(),
 ///
 /// # Errors
 /// If there is another plan.
-pub fn keep_other_plan(args: &ReportArgs, plan: &Plan) -> Result<(), CliError> {
-    let path = RunFiles::new(&args.out, &plan.name).plan;
+pub fn keep_other_plan(folder: &Path, plan: &Plan) -> Result<(), CliError> {
+    let path = RunFiles::new(folder).plan;
     let bytes = match input::bytes(&path, MOST_DOCUMENT) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::FileTooLarge => return Err(CliError::OverwritesPlan(path)),
@@ -131,21 +147,22 @@ fn without_durations(plan: &Plan) -> Plan {
 ///
 /// # Errors
 /// If the folder cannot be written.
-pub fn prepare<'a>(args: &ReportArgs, names: impl Iterator<Item = &'a str>) -> Result<(), CliError> {
-    report::file::check_folder(&args.out)?;
+pub fn prepare<'a>(args: &ReportArgs, folders: impl Iterator<Item = &'a Path>) -> Result<(), CliError> {
+    let of_all = args.out.of_all();
+    report::file::check_folder(&of_all)?;
     for name in REPORTS {
-        report::file::remove(&args.out.join(name))?;
+        report::file::remove(&of_all.join(name))?;
     }
     if let Some(path) = &args.junit {
         report::file::remove(path)?;
     }
-    for name in names {
-        report::file::remove(&RunFiles::new(&args.out, name).verdict)?;
+    for folder in folders {
+        report::file::remove(&RunFiles::new(folder).verdict)?;
     }
     Ok(())
 }
 
-/// Writes plan, recording and, last, verdict of a run into the folder named after it. A plan that was read from its place
+/// Writes plan, recording and, last, verdict of a run into its folder. A plan that was read from its place
 /// there, `plan_file`, is left as it is.
 ///
 /// # Errors
@@ -155,10 +172,10 @@ pub fn write_run(
     scenario: &Scenario,
     robot: &Robot,
     plan_file: Option<&Path>,
-    args: &ReportArgs,
+    (folder, record): (&Path, RecordChoice),
 ) -> Result<FinishedRun, CliError> {
-    let files = RunFiles::new(&args.out, &run.verdict.name);
-    let wanted = match args.record {
+    let files = RunFiles::new(folder);
+    let wanted = match record {
         RecordChoice::Never => false,
         RecordChoice::Failed => !run.verdict.met,
         RecordChoice::Always => true,
@@ -232,7 +249,7 @@ impl From<Vec<FinishedRun>> for RunSummary {
 /// If the report cannot be written.
 pub fn report(summary: &RunSummary, args: &ReportArgs) -> Result<(), CliError> {
     match args.format {
-        Format::Human => output::print(&text(&summary.outcomes, &summary.wall_s))?,
+        Format::Human => output::report(&text(&summary.outcomes, &summary.wall_s))?,
         Format::Json => output::print(&report::json::verdicts(&summary.outcomes))?,
     }
     if let Some(path) = &args.junit {

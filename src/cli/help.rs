@@ -10,7 +10,21 @@ Exit codes:
   70   a bug in benchdog
   130  interrupted; finished work is reported
 
-Start with: benchdog run scenarios/quickstart.toml";
+NO_COLOR=1 turns colours off, CLICOLOR_FORCE=1 on.
+BENCHDOG_LOG has a filter in place of -v, such as benchdog::planner=debug.
+
+Start with: benchdog init my-boards";
+
+/// `benchdog init --help`.
+pub const INIT: &str = "\
+Examples:
+  benchdog init my-boards                     a folder with everything to begin with
+  benchdog init my-cuts --example cut
+  benchdog init --example your-plan           into the working directory
+
+Writes a README, scenarios whose comments explain the keys, plans of them, a test for pytest and a
+workflow for GitHub. The files need nothing outside the folder. A folder that has one of them is
+refused before anything is written.";
 
 /// `benchdog run --help`.
 pub const RUN: &str = "\
@@ -20,6 +34,7 @@ Examples:
   benchdog run 'grasps/**/*.toml' --jobs 4      a pattern, four threads
   benchdog run scenarios --filter cut --filter 'fails-*'
   benchdog run scenarios --record failed --fail-fast
+  benchdog run scenarios --out 'out/{kind}/{name}-{seed}'    a folder for each scenario
 
 Writes report.html, summary.csv, summary.json and junit.xml into --out, and for each scenario a
 folder with plan.json, recording.rrd and, last, verdict.json. A killed run leaves none of the four
@@ -34,6 +49,7 @@ Examples:
   benchdog plan scenarios/quickstart.toml --seed 7 | jq .comfort
   benchdog plan scenarios/quickstart.toml --planner muscular --budget fast
   benchdog plan scenarios/quickstart.toml --top 3 -o plans
+  benchdog plan - < scenarios/quickstart.toml | benchdog simulate -
 
 Ctrl-C ends the search: the best plan so far is checked and written. Before there is one, nothing is
 written. The exit code is 130.";
@@ -116,9 +132,11 @@ pub const SIMULATE: &str = "\
 Examples:
   benchdog simulate plan.json
   benchdog simulate plan.json --scenario scenarios/cut-rim.toml --format json
+  benchdog simulate a.json 'plans/*.json' more       files, patterns and folders, in parallel
 
-Writes plan.json, recording.rrd and verdict.json into a folder named after the plan in --out. If there
-is another plan in this folder, nothing is simulated or written.";
+Writes plan.json, recording.rrd and verdict.json into a folder named after the plan in --out. If
+there is another plan in this folder, or if two plans have one name, nothing is simulated or
+written.";
 
 /// `benchdog margin --help`.
 pub const MARGIN: &str = "\
@@ -243,3 +261,9 @@ Examples:
   benchdog completions bash > ~/.local/share/bash-completion/completions/benchdog
   benchdog completions zsh > ~/.zfunc/_benchdog
   benchdog completions fish > ~/.config/fish/completions/benchdog.fish";
+
+/// `benchdog man --help`.
+pub const MAN: &str = "\
+Examples:
+  benchdog man | man -l -
+  benchdog man --out ~/.local/share/man/man1";

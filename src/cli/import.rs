@@ -11,6 +11,7 @@ use super::{
     inputs, interrupt, output,
     plan::load_for_planning,
     progress::Progress,
+    streams,
 };
 use crate::{
     check::{CheckedPlan, fingers_across},
@@ -57,10 +58,14 @@ pub fn import(args: &ImportArgs) -> Result<Exit, CliError> {
     let file = read_grasps(&args.grasps)?;
     progress.does("looking for a pose of the board that the arms reach");
     let read: Vec<_> = loaded.inputs.iter().chain([&args.grasps]).cloned().collect();
-    if let (Some(arm), Some(folder)) = (&args.all, &args.output) {
-        return all(args, &loaded, &file, &read, (arm, folder), &progress);
+    let output = args.output.as_deref().and_then(streams::file);
+    match (&args.all, output) {
+        (Some(arm), Some(folder)) => return all(args, &loaded, &file, &read, (arm, folder), &progress),
+        (Some(_), None) => {
+            return Err(CliError::Usage("-o -: found standard output, expected a folder beside --all".into()));
+        }
+        (None, _) => inputs::protect(&read, output.map(Path::to_owned))?,
     }
-    inputs::protect(&read, args.output.clone())?;
     let found = imported(args, &loaded, &file, &args.arm)?;
     progress.finish();
     let _writing = interrupt::writing();
@@ -69,7 +74,7 @@ pub fn import(args: &ImportArgs) -> Result<Exit, CliError> {
         return Ok(Exit::Infeasible);
     };
     let text = report::json::plan(&plan);
-    match &args.output {
+    match output {
         Some(path) => {
             report::file::write_whole(path, text.as_bytes())?;
             output::print(&format!("{}\n", notes.join("\n")))?;

@@ -28,7 +28,7 @@ pub fn inspect(args: &InspectArgs) -> Result<Exit, CliError> {
     let summary = recording.summary()?;
     let rejudged = if wants_check(args) { Some(judge_again(args, recording.run()?)?) } else { None };
     match args.format {
-        Format::Human => output::print(&text(&summary, rejudged.as_ref()))?,
+        Format::Human => output::report(&text(&summary, rejudged.as_ref()))?,
         Format::Json => output::print(&json(&summary, rejudged.as_ref()))?,
     }
     Ok(rejudged.as_ref().map_or(Exit::Met, Exit::of))

@@ -61,7 +61,7 @@ pub fn margin(args: &MarginArgs) -> Result<Exit, CliError> {
     let margin = margin_of(&checked, &scenario, &progress)?;
     progress.finish();
     match args.format {
-        Format::Human => output::print(&text(&margin))?,
+        Format::Human => output::report(&text(&margin))?,
         Format::Json => {
             // Serialisation fails only for maps whose keys are not strings.
             let text = serde_json::to_string_pretty(&margin).expect("a margin has only string keys");

@@ -15,13 +15,18 @@ mod format;
 mod front;
 mod help;
 mod import;
+mod init;
 mod inputs;
 #[cfg(feature = "recording")]
 mod inspect;
 mod interrupt;
+mod log;
+mod man;
 mod margin;
 mod merge;
+mod out_folder;
 mod output;
+mod paint;
 mod plan;
 mod planners;
 mod predicted;
@@ -36,6 +41,7 @@ mod schema;
 mod search_args;
 mod select;
 mod simulate;
+mod streams;
 mod sweep;
 mod sweep_args;
 mod task;
@@ -46,13 +52,14 @@ mod view;
 
 use std::{ffi::OsString, process::ExitCode, sync::Arc};
 
-use clap::Parser;
+use clap::{CommandFactory as _, FromArgMatches as _};
 
 use crate::planner::MapStore;
 use args::RobotCommand;
 pub use args::{Cli, Command};
 use cache::CacheArgs;
 pub use exit::Exit;
+use output::ColorWhen;
 pub use replan::MotionAnswer;
 
 /// Prints no message of a panic that means that a recording is damaged: it becomes an error.
@@ -79,7 +86,11 @@ pub fn kept_maps() -> Option<Arc<dyn MapStore>> {
 
 /// Runs the command that these arguments say, of which the first is the program's name. Once in a process: it handles Ctrl-C.
 pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
-    let cli = match Cli::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let color = ColorWhen::of(&arguments);
+    color.apply();
+    let parsed = Cli::command().color(color.of_parser()).try_get_matches_from(arguments);
+    let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
             // clap chooses the stream for help, version and usage errors; a closed stream is not an error.
@@ -87,9 +98,11 @@ pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
             return if error.use_stderr() { Exit::Input } else { Exit::Met };
         }
     };
+    log::begin(cli.verbose);
     #[cfg(feature = "recording")]
     leave_damage_to_decoders();
     let outcome = std::panic::catch_unwind(|| match &cli.command {
+        Command::Init(args) => init::init(args),
         Command::Run(args) => run::run(args),
         Command::Plan(args) => plan::plan(args),
         Command::Replan(args) => replan::replan(args),
@@ -114,6 +127,7 @@ pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Cache(command) => cache::cache(command),
         Command::Doctor(args) => doctor::doctor(args),
         Command::Completions(args) => completions::completions(args),
+        Command::Man(args) => man::man(args),
     });
     match outcome {
         Ok(Ok(exit)) => exit,

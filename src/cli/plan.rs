@@ -9,6 +9,7 @@ use super::{
     inputs, interrupt, output,
     planners::Planners,
     progress::Progress,
+    streams,
 };
 use crate::{
     model::{plan::Plan, verdict::VerdictKind},
@@ -22,14 +23,18 @@ pub fn plan(args: &PlanArgs) -> Result<Exit, CliError> {
     let progress = Progress::begin("reading the scenario", "the best plan so far is checked and written")?;
     let mut loaded = load_for_planning(&args.scenario)?;
     args.planner.apply(&mut loaded.scenario.planner);
-    let outputs: Vec<_> = match (&args.output, args.top) {
+    let output = args.output.as_deref().and_then(streams::file);
+    let outputs: Vec<_> = match (output, args.top) {
         (Some(folder), Some(wanted)) => (1..=wanted.get()).map(|number| numbered(folder, number)).collect(),
-        (output, _) => output.iter().cloned().collect(),
+        (None, Some(_)) => {
+            return Err(CliError::Usage("-o -: found standard output, expected a folder beside --top".into()));
+        }
+        (output, None) => output.map(Path::to_owned).into_iter().collect(),
     };
     inputs::protect(&loaded.inputs, outputs)?;
-    match (args.top, &args.output) {
+    match (args.top, output) {
         (Some(wanted), Some(folder)) => top(&loaded, wanted.get(), folder, args.cache, &progress),
-        _ => one(&loaded, args.output.as_deref(), Planners::new(args.cache).robust(args.planner.robust), &progress),
+        _ => one(&loaded, output, Planners::new(args.cache).robust(args.planner.robust), &progress),
     }
 }
 

@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::{
     exit::CliError,
     interrupt::{self, Interruptible},
-    output,
+    log, output,
 };
 use crate::{
     model::stop::Stop,
@@ -95,7 +95,7 @@ impl Progress {
 
     fn new(doing: &str, ending: &'static str, items: Option<u64>) -> Result<Arc<Self>, CliError> {
         // indicatif hides the bar if standard error is not a terminal.
-        let bar = ProgressBar::new(items.unwrap_or(0));
+        let bar = if log::is_on() { ProgressBar::hidden() } else { ProgressBar::new(items.unwrap_or(0)) };
         let progress = Arc::new(Self {
             bar,
             begun: Instant::now(),

@@ -89,6 +89,9 @@ impl From<Motion> for MotionAnswer {
 
 /// Answers requests until their stream ends, or until Ctrl-C.
 pub fn replan(args: &ReplanArgs) -> Result<Exit, CliError> {
+    if std::iter::once(&args.scenario).chain(&args.plan).any(|path| path == Path::new("-")) {
+        return Err(CliError::Usage("-: found standard input, which has the requests, expected a file".into()));
+    }
     let mut loaded = load_for_planning(&args.scenario)?;
     args.search.apply(&mut loaded.scenario.planner);
     let progress = Progress::begin("reading the maps", "")?;

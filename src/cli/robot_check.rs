@@ -24,7 +24,7 @@ pub fn check(description: &Path, args: &DoctorArgs) -> Result<Exit, CliError> {
         Ok(robot) => robot,
         Err(RobotError::Invalid(faults)) => {
             let lines: Vec<String> = faults.all().iter().map(|fault| format!("WRONG  {fault}\n")).collect();
-            output::print(&lines.concat())?;
+            output::report(&lines.concat())?;
             return Err(CliError::Machine(format!("found {} faults in the description", lines.len())));
         }
         Err(error) => return Err(CliError::Robot(error)),
@@ -49,7 +49,7 @@ pub fn check(description: &Path, args: &DoctorArgs) -> Result<Exit, CliError> {
         ));
     }
     lines.extend(often(&robot));
-    output::print(&(lines.join("\n") + "\n"))?;
+    output::report(&(lines.join("\n") + "\n"))?;
     record(&robot, &joint_positions, description, args)?;
     match overlaps.len() {
         0 => Ok(Exit::Met),

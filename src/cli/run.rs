@@ -1,6 +1,7 @@
 //! `benchdog run`: plans, simulates, judges, records and reports scenarios.
 
 use std::{
+    path::PathBuf,
     sync::{
         Arc, Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -13,6 +14,7 @@ use super::{
     exit::{CliError, Exit},
     finish::{self, FinishedRun, RunSummary},
     interrupt,
+    out_folder::Values,
     planners::Planners,
     progress::Progress,
     select::{self, Selected},
@@ -33,10 +35,13 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let wanted: Vec<_> = scenarios.iter().filter(|selected| selected.wanted).collect();
     let inputs: Vec<_> = scenarios.iter().flat_map(|selected| selected.loaded.inputs.clone()).collect();
     finish::protect_from_reports(&args.report, &inputs)?;
-    for Selected { loaded, .. } in &wanted {
-        finish::protect(&args.report, &loaded.scenario.name, loaded.plan_path().as_deref(), &inputs)?;
+    let folders: Vec<_> = wanted.iter().map(|selected| folder_of(&selected.loaded, args)).collect();
+    let names = wanted.iter().map(|selected| selected.loaded.scenario.name.as_str());
+    finish::folders_differ(names.zip(folders.iter().map(PathBuf::as_path)))?;
+    for (Selected { loaded, .. }, folder) in wanted.iter().zip(&folders) {
+        finish::protect(&args.report, folder, loaded.plan_path().as_deref(), &inputs)?;
     }
-    finish::prepare(&args.report, wanted.iter().map(|selected| selected.loaded.scenario.name.as_str()))?;
+    finish::prepare(&args.report, folders.iter().map(PathBuf::as_path))?;
     progress.expect(wanted.len());
     progress.keep();
     let runner = Runner {
@@ -59,8 +64,13 @@ pub fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let summary = RunSummary::from(finished);
     // The table first: it must not depend on a disk that is full by now.
     finish::report(&summary, &args.report)?;
-    finish::write_reports(&summary.outcomes, &args.report.out)?;
+    finish::write_reports(&summary.outcomes, &args.report.out.of_all())?;
     Ok(summary.exit)
+}
+
+/// The folder of a scenario's results.
+fn folder_of(loaded: &LoadedScenario, args: &RunArgs) -> PathBuf {
+    args.report.out.of_one(&Values::of(&loaded.scenario, None))
 }
 
 /// State shared by the scenarios of a run.
@@ -102,7 +112,8 @@ impl Runner<'_> {
 
     fn run(&self, loaded: &LoadedScenario) -> Result<FinishedRun, CliError> {
         let run = self.planned_and_judged(loaded)?;
-        finish::write_run(run, &loaded.scenario, &loaded.robot, loaded.plan_path().as_deref(), &self.args.report)
+        let output = (&*folder_of(loaded, self.args), self.args.report.record);
+        finish::write_run(run, &loaded.scenario, &loaded.robot, loaded.plan_path().as_deref(), output)
     }
 
     /// Plans a scenario unless it names a plan, simulates the plan and judges it.

@@ -29,16 +29,17 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
     let mut names = BTreeMap::<String, PathBuf>::new();
     let mut selected = Vec::new();
     let mut tasks = Vec::new();
-    for path in files(arguments)? {
-        let Some(mut loaded) = scenario::load_unless_task(&path)? else {
-            tasks.push(path);
+    for path in files(arguments, SCENARIOS)? {
+        let text = scenario::scenario_text(&path)?;
+        if scenario::is_task(&text) {
+            tasks.push((path, text));
             continue;
-        };
+        }
+        let mut loaded = scenario::load_text(&path, &text)?;
         planner.apply(&mut loaded.scenario.planner);
         let name = loaded.scenario.name.clone();
         if let Some(other) = names.insert(name.clone(), path.clone()) {
-            let (path, other) = (path.display(), other.display());
-            return Err(CliError::Usage(format!("{path}: name: found \"{name}\", which is also the name of {other}")));
+            return Err(one_name_twice(&path, &name, &other));
         }
         let wanted = filters.is_empty() || filters.iter().any(|filter| filter.passes(&name));
         selected.push(Selected { loaded, wanted });
@@ -54,26 +55,50 @@ pub fn scenarios(arguments: &[PathBuf], filters: &[String], planner: &PlannerArg
     )))
 }
 
+/// Two files whose results would be written into one folder.
+pub fn one_name_twice(path: &Path, name: &str, other: &Path) -> CliError {
+    let (path, other) = (path.display(), other.display());
+    CliError::Usage(format!("{path}: name: found \"{name}\", which is also the name of {other}"))
+}
+
 /// Notes that tasks among scenarios are left out. A task alone is an error.
-fn leave_out(tasks: &[PathBuf], alone: bool) -> Result<(), CliError> {
-    for path in tasks {
+fn leave_out(tasks: &[(PathBuf, String)], alone: bool) -> Result<(), CliError> {
+    for (path, text) in tasks {
         if alone {
-            scenario::load(path)?;
+            scenario::load_text(path, text)?;
         }
         output::message(&format!("{}: a task, left out: it is run by `benchdog task`", path.display()));
     }
     Ok(())
 }
 
+/// What the files of a command are.
+#[derive(Clone, Copy)]
+struct Kind {
+    extension: &'static str,
+    name: &'static str,
+}
+
+const SCENARIOS: Kind = Kind { extension: "toml", name: "scenarios" };
+const PLANS: Kind = Kind { extension: "json", name: "plans" };
+
+/// The plan files that the arguments name, in this order; those of a folder or pattern are sorted by name.
+///
+/// # Errors
+/// If a folder or pattern has none, or cannot be read.
+pub fn plans(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
+    files(arguments, PLANS)
+}
+
 /// The files that the arguments name. An existing path is never a pattern, even if it contains * ? or [.
-fn files(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
+fn files(arguments: &[PathBuf], kind: Kind) -> Result<Vec<PathBuf>, CliError> {
     let mut files = Vec::new();
     for argument in arguments {
         let text = argument.to_string_lossy();
         if argument.is_dir() {
-            files.extend(scenarios_in(argument)?);
+            files.extend(files_in(argument, kind)?);
         } else if !argument.exists() && is_pattern(&text) {
-            files.extend(matches(&text)?);
+            files.extend(matches(&text, kind)?);
         } else {
             files.push(argument.clone());
         }
@@ -85,25 +110,25 @@ fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?', '['])
 }
 
-/// The `.toml` files of a folder, not of its subfolders.
-fn scenarios_in(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+/// The files of a kind in a folder, not in its subfolders.
+fn files_in(folder: &Path, Kind { extension, name }: Kind) -> Result<Vec<PathBuf>, CliError> {
     let failed = |error| CliError::Usage(format!("failed to read {}: {error}", folder.display()));
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        if path.is_file() && path.extension().is_some_and(|extension| extension == "toml") {
+        if path.is_file() && path.extension().is_some_and(|found| found == extension) {
             files.push(path);
         }
     }
     files.sort();
     if files.is_empty() {
-        return Err(CliError::Usage(format!("{}: found no .toml file, expected scenarios", folder.display())));
+        return Err(CliError::Usage(format!("{}: found no .{extension} file, expected {name}", folder.display())));
     }
     Ok(files)
 }
 
 /// The files that match a pattern.
-fn matches(pattern: &str) -> Result<Vec<PathBuf>, CliError> {
+fn matches(pattern: &str, Kind { name, .. }: Kind) -> Result<Vec<PathBuf>, CliError> {
     let paths = glob::glob(pattern).map_err(|error| CliError::Usage(format!("{pattern}: {error}")))?;
     let mut files = Vec::new();
     for path in paths {
@@ -115,7 +140,7 @@ fn matches(pattern: &str) -> Result<Vec<PathBuf>, CliError> {
         }
     }
     if files.is_empty() {
-        return Err(CliError::Usage(format!("{pattern}: found no file that matches, expected scenarios")));
+        return Err(CliError::Usage(format!("{pattern}: found no file that matches, expected {name}")));
     }
     Ok(files)
 }

@@ -1,42 +1,51 @@
-//! `benchdog simulate`: simulates and judges a plan from any planner.
+//! `benchdog simulate`: simulates and judges plans from any planner.
 
-use std::time::Instant;
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+    time::Instant,
+};
 
 use super::{
-    args::SimulateArgs,
+    args::{ReportArgs, SimulateArgs},
     exit::{CliError, Exit},
     finish::{self, FinishedRun, RunSummary},
-    interrupt, output,
+    interrupt,
+    out_folder::Values,
+    output,
     progress::Progress,
-    task,
+    select, task, threads,
 };
 use crate::{
-    pipeline,
-    report::{self, Outcome},
-    scenario::{self, AnyPlan, LoadedPlan},
+    pipeline::{self, parallel},
+    report::{self, Outcome, SkipReason},
+    scenario::{self, AnyPlan, FileText, LoadedPlan},
 };
 
-/// Simulates and judges a plan under the given scenario, the one in the plan, or the defaults for its operation.
+/// Simulates and judges plans under the given scenario, the one in each plan, or the defaults for its operation.
 pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
+    let paths = select::plans(&args.plans)?;
+    let [path] = &paths[..] else { return several(args, &paths) };
     let progress = Progress::begin("reading the plan", "")?;
-    match scenario::load_any_plan(&args.plan, args.scenario.as_deref())? {
+    match scenario::load_any_plan(path, args.scenario.as_deref())? {
         AnyPlan::OneHold(plan) => one_hold(args, *plan, &progress),
         AnyPlan::Staged(plan) => task::simulate(args, &plan, &progress),
     }
 }
 
-fn one_hold(args: &SimulateArgs, plan: LoadedPlan, progress: &Progress) -> Result<Exit, CliError> {
-    let LoadedPlan { path, plan, filled_in, robot, scenario, inputs } = plan;
-    finish::protect(&args.report, &plan.name, Some(&path), &inputs)?;
-    finish::keep_other_plan(&args.report, &plan)?;
-    report::file::check_folder(&args.report.out)?;
+fn one_hold(args: &SimulateArgs, loaded: LoadedPlan, progress: &Progress) -> Result<Exit, CliError> {
+    let folder = folder_of(&loaded, args);
+    check_outputs(&args.report, &loaded, &folder, &loaded.inputs)?;
+    report::file::check_folder(&args.report.out.of_all())?;
     let start = Instant::now();
     let mut writing = None;
+    let LoadedPlan { path, plan, filled_in, robot, scenario, .. } = loaded;
     let mut finished = FinishedRun::catch(&plan.name.clone(), || {
         progress.simulates();
         let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, progress)?;
         writing = Some(interrupt::writing());
-        finish::write_run(run, &scenario, &robot, Some(&path), &args.report)
+        finish::write_run(run, &scenario, &robot, Some(&path), (&folder, args.report.record))
     })?;
     finished.wall_s = Some(start.elapsed().as_secs_f64());
     progress.finish();
@@ -47,4 +56,102 @@ fn one_hold(args: &SimulateArgs, plan: LoadedPlan, progress: &Progress) -> Resul
     finish::report(&summary, &args.report)?;
     drop(writing);
     Ok(summary.exit)
+}
+
+/// The folder of a plan's results.
+fn folder_of(loaded: &LoadedPlan, args: &SimulateArgs) -> PathBuf {
+    args.report.out.of_one(&Values::of(&loaded.scenario, Some(&loaded.plan)))
+}
+
+/// Refuses to overwrite an input file or another plan.
+fn check_outputs(report: &ReportArgs, loaded: &LoadedPlan, folder: &Path, inputs: &[PathBuf]) -> Result<(), CliError> {
+    finish::protect(report, folder, Some(&loaded.path), inputs)?;
+    finish::keep_other_plan(folder, &loaded.plan)
+}
+
+/// Simulates plans in parallel. All plans and the output folder are checked before the first one is simulated.
+fn several(args: &SimulateArgs, paths: &[PathBuf]) -> Result<Exit, CliError> {
+    let progress = Progress::counting("reading the plans", "the finished plans are reported")?;
+    let plans = read(args, paths)?;
+    let inputs: Vec<_> = plans.iter().flat_map(|loaded| loaded.inputs.clone()).collect();
+    let folders: Vec<_> = plans.iter().map(|loaded| folder_of(loaded, args)).collect();
+    let names = plans.iter().map(|loaded| loaded.plan.name.as_str());
+    finish::folders_differ(names.zip(folders.iter().map(PathBuf::as_path)))?;
+    let mut planned = plans.iter().zip(&folders);
+    planned.try_for_each(|(loaded, folder)| check_outputs(&args.report, loaded, folder, &inputs))?;
+    report::file::check_folder(&args.report.out.of_all())?;
+    progress.expect(plans.len());
+    progress.keep();
+    // The first error that affects all plans, such as a full disk.
+    let fatal: Mutex<Option<CliError>> = Mutex::new(None);
+    let run = |loaded: &LoadedPlan| {
+        let name = &loaded.plan.name;
+        if interrupt::requested() {
+            return FinishedRun::skipped(name, SkipReason::Interrupted);
+        }
+        if fatal.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
+            return FinishedRun::skipped(name, SkipReason::AfterFailure);
+        }
+        one_of_several(args, loaded, &progress).unwrap_or_else(|error| {
+            fatal.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            FinishedRun::skipped(name, SkipReason::AfterFailure)
+        })
+    };
+    let finished = threads::with_threads(args.jobs, || parallel::map_in_parallel(&plans, run))?;
+    progress.finish();
+    if let Some(error) = fatal.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        return Err(error);
+    }
+    let summary = RunSummary::from(finished);
+    finish::report(&summary, &args.report)?;
+    Ok(summary.exit)
+}
+
+fn one_of_several(args: &SimulateArgs, loaded: &LoadedPlan, progress: &Progress) -> Result<FinishedRun, CliError> {
+    let LoadedPlan { path, plan, filled_in, robot, scenario, .. } = loaded;
+    progress.begins(&plan.name);
+    let start = Instant::now();
+    let mut finished = FinishedRun::catch(&plan.name, || {
+        progress.simulates();
+        let run = pipeline::run_plan(scenario, robot, plan.clone(), filled_in, progress)?;
+        let folder = folder_of(loaded, args);
+        finish::write_run(run, scenario, robot, Some(path), (&folder, args.report.record))
+    })?;
+    let wall_s = start.elapsed().as_secs_f64();
+    finished.wall_s = Some(wall_s);
+    match finished.outcome {
+        Outcome::Skipped { .. } => progress.advances(None),
+        _ => progress.ends(&finished.outcome, wall_s),
+    }
+    Ok(finished)
+}
+
+/// Reads plans, at least one of one hold. Those of tasks are left out.
+fn read(args: &SimulateArgs, paths: &[PathBuf]) -> Result<Vec<LoadedPlan>, CliError> {
+    let of_scenario = args.scenario.as_deref().map(scenario::scenario_text).transpose()?.unwrap_or_default();
+    let given = args.scenario.as_ref().map(|path| FileText { path, text: &of_scenario });
+    let mut names = BTreeMap::<String, &Path>::new();
+    let mut plans = Vec::new();
+    for path in paths {
+        let text = scenario::plan_text(path)?;
+        let loaded = match scenario::load_any_plan_text(FileText { path, text: &text }, given)? {
+            AnyPlan::OneHold(loaded) => *loaded,
+            AnyPlan::Staged(_) => {
+                let path = path.display();
+                output::message(&format!("{path}: a plan of a task, left out: give it to `benchdog simulate` alone"));
+                continue;
+            }
+        };
+        let name = &loaded.plan.name;
+        if let Some(other) = names.insert(name.clone(), path) {
+            return Err(select::one_name_twice(path, name, other));
+        }
+        plans.push(loaded);
+    }
+    match plans.is_empty() {
+        true => {
+            Err(CliError::Usage("found only plans of tasks, expected plans of one hold, or one plan of a task".into()))
+        }
+        false => Ok(plans),
+    }
 }

@@ -4,18 +4,18 @@ use std::{num::NonZero, path::PathBuf};
 
 use clap::Args;
 
-use super::{cache::CacheArgs, format::Format, help};
+use super::{cache::CacheArgs, format::Format, help, out_folder::OutFolder, streams::input_file};
 use crate::sweep::{info::Shard, screen::Screen};
 
 /// `benchdog sweep`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::SWEEP)]
 pub struct SweepArgs {
-    /// Scenario file (.toml) or plan file (.json)
-    #[arg(value_name = "SCENARIO|PLAN")]
+    /// Scenario file (.toml) or plan file (.json); - is standard input, either of them
+    #[arg(value_name = "SCENARIO|PLAN", value_parser = input_file())]
     pub input: PathBuf,
     /// Of a plan: scenario that applies instead of the one in the plan
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = input_file())]
     pub scenario: Option<PathBuf>,
     /// Number of runs; overrides the scenario's
     #[arg(long, value_name = "N")]
@@ -44,9 +44,9 @@ pub struct SweepArgs {
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
-    /// Folder of the sweep
-    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
-    pub out: PathBuf,
+    /// Folder of the sweep; {name}, {kind} and {seed} in it are filled in
+    #[arg(long, value_name = "DIR", default_value = "out/sweep", value_parser = OutFolder::parser())]
+    pub out: OutFolder,
     /// Maps between runs.
     #[command(flatten)]
     pub cache: CacheArgs,

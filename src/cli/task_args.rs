@@ -4,18 +4,21 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{cache::CacheArgs, format::Format, help, search_args::SearchArgs};
+use super::{
+    cache::CacheArgs, format::Format, help, out_folder::OutFolder, search_args::SearchArgs, streams::input_file,
+};
 
 /// `benchdog task`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::TASK)]
 pub struct TaskArgs {
-    /// Task file: a scenario with [task] in place of [operation]
-    #[arg(value_name = "TASK")]
+    /// Task file: a scenario with [task] in place of [operation]; - is standard input
+    #[arg(value_name = "TASK", value_parser = input_file())]
     pub task: PathBuf,
-    /// Folder for the plan, the verdict, the tables and the report
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
+    /// Folder in which the task has one for the plan, the verdict, the tables and the report; or that folder itself with
+    /// {name}, {kind} or {seed}, such as 'out/{name}-{seed}'
+    #[arg(long, value_name = "DIR", default_value = "out", value_parser = OutFolder::parser())]
+    pub out: OutFolder,
     /// Plan stage by stage while the robot carries out the ones before, and write each stage to `stages.jsonl` as soon as it is
     /// planned; the loads and regrasps of the next PIECES pieces of the path are known ahead [3 without a number]
     #[arg(long, value_name = "PIECES", num_args = 0..=1, require_equals = true, default_missing_value = "3", value_parser = clap::value_parser!(u16).range(1..))]

@@ -78,6 +78,7 @@ fn run_complete_plan(scenario: &Scenario, robot: &Robot, plan: Plan, stop: &dyn 
     let checked = CheckedPlan::new(robot, &plan, &scenario.human, &scenario.tool)?;
     let (posture, muscles) = (checked.posture(), checked.muscles());
     let (verdict, simulated) = checked_and_judged(&checked, scenario, stop)?;
+    tracing::info!(plan = plan.name, verdict = verdict.verdict.name(), "judged");
     Ok(Run { verdict: Verdict { muscles, ..verdict }, posture, plan: Some(plan), simulated })
 }
 

@@ -148,6 +148,8 @@ pub fn write_robot(text: &mut dyn fmt::Write, robot: &Robot) -> fmt::Result {
 /// What a store has for a source, if it can be read to its last byte; numbers are exactly those that were written.
 pub fn read<T: DeserializeOwned>(store: Option<&dyn MapStore>, source: &MapSource<'_>) -> Option<T> {
     let bytes = store?.read(source)?;
+    let MapLabel { map, robot, board, .. } = source.label();
+    tracing::info!(map, robot, board, bytes = bytes.len(), "found a kept map");
     postcard::take_from_bytes(&bytes).ok().filter(|(_, rest)| rest.is_empty()).map(|(map, _)| map)
 }
 
@@ -155,6 +157,8 @@ pub fn read<T: DeserializeOwned>(store: Option<&dyn MapStore>, source: &MapSourc
 pub fn write<T: Serialize>(store: Option<&dyn MapStore>, source: &MapSource<'_>, map: &T) {
     // Serialisation fails only for types whose length is not known.
     if let Some((store, bytes)) = store.zip(postcard::to_stdvec(map).ok()) {
+        let MapLabel { map, robot, board, .. } = source.label();
+        tracing::info!(map, robot, board, bytes = bytes.len(), "made a map");
         store.write(source, &bytes);
     }
 }

@@ -313,6 +313,7 @@ fn best_plan<'a>(
 fn best_found(evaluator: &mut Evaluator<'_>, maps: &Maps, warm: &WarmStarts, watch: &dyn Watch) -> Option<Plan> {
     let budget = SearchBudget::of(evaluator.problem.scenario);
     let found = search(evaluator, &maps.library, warm, &budget, watch);
+    tracing::info!(evaluations = evaluator.stats.candidates(), feasible = found.len(), "searched a plan");
     best_verified(evaluator, &found)
 }
 

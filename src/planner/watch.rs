@@ -113,6 +113,7 @@ impl std::fmt::Display for Phase {
 
 /// Tells a watch that a part has begun whose size is not known.
 pub fn begin(watch: &dyn Watch, phase: Phase) {
+    tracing::info!("{phase}");
     watch.tell(&Event::Part(Part { phase, done: 0, total: 0 }));
 }
 
@@ -135,6 +136,7 @@ impl<'w> Counter<'w> {
     /// Begins a part of this size.
     pub fn new(watch: &'w dyn Watch, phase: Phase, total: usize) -> Self {
         let part = Part { phase, done: 0, total: total as u64 };
+        tracing::info!(total, "{phase}");
         watch.tell(&Event::Part(part));
         Self { watch, part: Some(part), done: AtomicU64::new(0) }
     }

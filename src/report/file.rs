@@ -22,7 +22,9 @@ pub struct WriteError {
 /// # Errors
 /// If the file cannot be written; an existing file is then unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })
+    write(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })?;
+    tracing::info!(file = %path.display(), bytes = bytes.len(), "wrote");
+    Ok(())
 }
 
 /// Creates a folder and checks that files can be written to it. Called before a long computation whose results go there.

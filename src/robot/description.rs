@@ -11,7 +11,7 @@ use serde::{
 use toml::Spanned;
 
 use super::faults::{Fault, Source};
-use crate::model::FORMAT;
+use crate::{input::meant_by, model::FORMAT};
 
 /// An array of exactly `N` values. The reader of TOML drops what exceeds the length of a Rust array.
 pub(super) struct Exactly<T, const N: usize>(pub [T; N]);
@@ -223,8 +223,10 @@ impl Description {
     /// # Errors
     /// The first fault of the format.
     pub fn read(source: &Source<'_>) -> Result<Self, Fault> {
-        let description: Self = toml::from_str(source.text)
-            .map_err(|error| source.fault(error.span().unwrap_or_default(), error.message().replace('\n', "; ")))?;
+        let description: Self = toml::from_str(source.text).map_err(|error| {
+            let message = error.message().replace('\n', "; ");
+            source.fault(error.span().unwrap_or_default(), format!("{message}{}", meant_by(&message)))
+        })?;
         let format = *description.format.get_ref();
         if format != FORMAT {
             return Err(source.fault(description.format.span(), format!("format: found {format}, expected {FORMAT}")));

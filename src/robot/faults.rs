@@ -2,7 +2,7 @@
 
 use std::{fmt, ops::Range};
 
-use crate::input::one_line;
+use crate::input::{did_you_mean, one_line};
 
 /// An error of loading a robot.
 #[derive(Debug, thiserror::Error)]
@@ -16,7 +16,10 @@ pub enum RobotError {
         source: std::io::Error,
     },
     /// Neither a built-in robot nor a file.
-    #[error("found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file")]
+    #[error(
+        "found robot \"{found}\", expected a built-in robot ({builtin}) or the path of a description file{}",
+        hint(found, builtin)
+    )]
     Unknown {
         /// The name or path.
         found: String,
@@ -26,6 +29,18 @@ pub enum RobotError {
     /// A description or URDF that cannot be used.
     #[error("{0}")]
     Invalid(Faults),
+}
+
+/// What a user of an unknown robot may have meant.
+fn hint(found: &str, builtin: &str) -> String {
+    match found.rsplit('.').next() {
+        Some("urdf") => format!("; `benchdog robot new {found} -o robot.toml` writes the description of a URDF"),
+        Some("xacro") => {
+            "; `xacro FILE -o robot.urdf` makes a URDF, and `benchdog robot new robot.urdf -o robot.toml` its description".to_owned()
+        }
+        Some("yaml" | "yml") => "; descriptions are in TOML".to_owned(),
+        _ => did_you_mean(found, builtin.split(", ")),
+    }
 }
 
 /// What is wrong with a robot's files, in the order of the lines; at least one fault.

@@ -128,5 +128,7 @@ fn build<'a>(
     let source_of_urdf = UrdfSource { file: &file, text: &text, packages: &packages, decomposed: &decomposed };
     let tree = urdf::read(&source_of_urdf, &mut faults);
     let robot = tree.and_then(|tree| assemble(name, source, &description, options, tree, &mut faults));
-    robot.ok_or_else(|| faults.into_error())
+    let robot = robot.ok_or_else(|| faults.into_error())?;
+    tracing::debug!(robot = name, links = robot.links.len(), arms = robot.arms.len(), "loaded a robot");
+    Ok(robot)
 }

@@ -1,19 +1,12 @@
 //! The scenario file: TOML, in which most keys are optional.
 
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    arrays::{TooLong, too_long},
-    check::Checker,
-    error::{InputError, InputErrorKind},
-    load_section::LoadSection,
-    locate,
-    object_section::ObjectSection,
-    sweep_section::SweepSection,
-    task_section::TaskSection,
+    load_section::LoadSection, object_section::ObjectSection, sweep_section::SweepSection, task_section::TaskSection,
 };
 use crate::model::{
     operation::OperationKind,
@@ -88,7 +81,7 @@ pub struct GripSection {
 }
 
 /// `[robot]`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSection {
     /// The name of a built-in robot, or the path of a description file relative to the scenario file's folder.
@@ -325,26 +318,5 @@ impl Default for LimitsSection {
             rula_arm: USUAL.rula_arm,
             reba: USUAL.reba,
         }
-    }
-}
-
-/// Parses the text of a scenario file.
-///
-/// # Errors
-/// If it is not TOML, a key is unknown or missing, or a value has the wrong type.
-pub fn parse(path: &Path, text: &str) -> Result<ScenarioFile, InputError> {
-    let file = toml::from_str(text).map_err(|error| {
-        let span = error.span();
-        InputError {
-            file: path.to_owned(),
-            line: span.as_ref().map(|span| locate::line_at(text, span.start)),
-            key: span.as_ref().and_then(|span| locate::toml_key_at(text, span)),
-            kind: InputErrorKind::Syntax(error.message().replace('\n', "; ")),
-        }
-    })?;
-    let check = Checker::toml(path, text);
-    match toml::from_str(text).ok().and_then(|values| too_long::<ScenarioFile>(&values)) {
-        Some(TooLong { key, found, expected }) => Err(check.value(&key, found, expected)),
-        None => Ok(file),
     }
 }

@@ -7,12 +7,15 @@ use toml::de::{DeTable, DeValue};
 
 /// One part of a key path such as `arms[0].q_rad[3]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum KeyPart<'a> {
+pub enum KeyPart<'a> {
+    /// The key of a table.
     Key(&'a str),
+    /// The number of a value of an array, from 0.
     Index(usize),
 }
 
-fn key_parts(path: &str) -> impl Iterator<Item = KeyPart<'_>> {
+/// The parts of a key path.
+pub fn key_parts(path: &str) -> impl Iterator<Item = KeyPart<'_>> {
     path.split(['.', '[']).filter(|part| !part.is_empty()).map(|part| match part.strip_suffix(']').map(str::parse) {
         Some(Ok(index)) => KeyPart::Index(index),
         _ => KeyPart::Key(part),

@@ -6,6 +6,7 @@
 mod arrays;
 mod check;
 mod crossings;
+mod draft;
 pub mod error;
 pub mod file;
 mod fill_in;
@@ -28,7 +29,9 @@ mod uncertainty_section;
 
 use std::path::{Path, PathBuf};
 
+use draft::{Draft, TomlDocument};
 pub use error::{InputError, InputErrorKind};
+use file::ScenarioFile;
 use plan_file::ReadPlan;
 pub use plan_file::read_plan;
 pub use replan_request::{ReplanRequest, read_replan_request};
@@ -93,16 +96,29 @@ pub struct LoadedPlan {
 /// # Errors
 /// If the file, or a robot or plan that it names, cannot be read or contains an invalid value.
 pub fn load(path: &Path) -> Result<LoadedScenario, InputError> {
-    load_text(path, &error::read_text(path, MOST_TOML)?)
+    load_text(path, &scenario_text(path)?)
 }
 
-/// As [`load`], but `None` for a task file.
+/// The text of a scenario or task file.
 ///
 /// # Errors
-/// As for [`load`].
-pub fn load_unless_task(path: &Path) -> Result<Option<LoadedScenario>, InputError> {
-    let text = error::read_text(path, MOST_TOML)?;
-    if is_task(&text) { Ok(None) } else { load_text(path, &text).map(Some) }
+/// If it cannot be read, or is no text.
+pub fn scenario_text(path: &Path) -> Result<String, InputError> {
+    error::read_text(path, MOST_TOML)
+}
+
+/// The text of a plan file.
+///
+/// # Errors
+/// If it cannot be read, or is no text.
+pub fn plan_text(path: &Path) -> Result<String, InputError> {
+    error::read_text(path, MOST_DOCUMENT)
+}
+
+/// True if a text is that of a JSON object, such as a plan, and not of a scenario.
+#[must_use]
+pub fn is_json(text: &str) -> bool {
+    text.trim_start().starts_with('{')
 }
 
 /// True if the text of a file is TOML with the section `[task]`.
@@ -116,6 +132,7 @@ pub fn is_task(text: &str) -> bool {
 /// # Errors
 /// As for [`load`], and if the file has no `[task]`.
 pub fn load_task(path: &Path) -> Result<(LoadedScenario, Task), InputError> {
+<<<<<<< HEAD
     load_task_text(path, &error::read_text(path, MOST_TOML)?)
 }
 
@@ -125,6 +142,10 @@ pub fn load_task(path: &Path) -> Result<(LoadedScenario, Task), InputError> {
 /// As for [`load_task`].
 pub fn load_task_text(path: &Path, text: &str) -> Result<(LoadedScenario, Task), InputError> {
     let loaded = load_any(path, text)?;
+=======
+    let text = scenario_text(path)?;
+    let loaded = load_any(path, &text)?;
+>>>>>>> main
     match loaded.task.clone() {
         Some(task) => Ok((loaded, task)),
         None => {
@@ -151,8 +172,7 @@ fn load_any(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
     if let Ok(probe) = toml::from_str::<check::FormatProbe>(text) {
         check::Checker::toml(path, text).format(probe.format)?;
     }
-    let file = file::parse(path, text)?;
-    let Resolved { scenario, task, robot } = resolve::resolve(path, text, &file)?;
+    let (file, Resolved { scenario, task, robot }) = read_and_resolve(path, text)?;
     let folder = folder_of(path);
     let mut inputs = vec![path.to_owned()];
     inputs.extend(robot.files.iter().cloned());
@@ -175,6 +195,35 @@ fn load_any(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
     Ok(LoadedScenario { path: path.to_owned(), scenario, robot, task, plan, filled_in, inputs })
 }
 
+/// The values of a scenario file, and what they resolve to.
+///
+/// # Errors
+/// All faults that do not follow from others.
+fn read_and_resolve(path: &Path, text: &str) -> Result<(ScenarioFile, Resolved), InputError> {
+    let document = TomlDocument::parse(path, text).map_err(|error| match foreign::not_toml(path, text) {
+        Some(hint) => InputError::file(path, InputErrorKind::Syntax(hint)),
+        None => error,
+    })?;
+    let mut draft = Draft::new(path, document);
+    let mut known = None;
+    while let Some(file) = draft.read::<ScenarioFile>() {
+        match resolve::resolve(path, text, &file, &mut known) {
+            Ok(resolved) if draft.is_whole() => {
+                let Resolved { scenario, robot, .. } = &resolved;
+                tracing::debug!(scenario = scenario.name, robot = robot.description, "checked a scenario");
+                return Ok((file, resolved));
+            }
+            Ok(_) => break,
+            Err(error) => {
+                if !draft.refuse(error) {
+                    break;
+                }
+            }
+        }
+    }
+    Err(draft.into_error())
+}
+
 /// The folder that the paths in a file are relative to.
 fn folder_of(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
@@ -187,7 +236,10 @@ fn folder_of(file: &Path) -> &Path {
 /// # Errors
 /// As [`read_plan`] and [`load`], and if the scenario is for another robot, board, operation or grip force.
 pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
-    of_plan_text(path, &error::read_text(path, MOST_DOCUMENT)?, scenario)
+    let text = plan_text(path)?;
+    // A scenario from a pipe can be read once.
+    let of_scenario = scenario.map(scenario_text).transpose()?.unwrap_or_default();
+    load_plan_text(FileText { path, text: &text }, scenario.map(|path| FileText { path, text: &of_scenario }))
 }
 
 /// The text of a file, and the path that messages name and to whose folder the files in it are relative.
@@ -249,22 +301,26 @@ pub enum AnyPlan {
 /// # Errors
 /// As [`load_plan`]; if a staged plan is not one or does not fit the robot; and for a `scenario` beside a staged plan.
 pub fn load_any_plan(path: &Path, scenario: Option<&Path>) -> Result<AnyPlan, InputError> {
-    let text = error::read_text(path, MOST_DOCUMENT)?;
-    if plan_file::format_of(&text) != Some(STAGED_FORMAT) {
-        return of_plan_text(path, &text, scenario).map(|plan| AnyPlan::OneHold(Box::new(plan)));
+    let text = plan_text(path)?;
+    let of_scenario = scenario.map(scenario_text).transpose()?.unwrap_or_default();
+    let scenario = scenario.map(|path| FileText { path, text: &of_scenario });
+    load_any_plan_text(FileText { path, text: &text }, scenario)
+}
+
+/// As [`load_any_plan`], from the texts of the files.
+///
+/// # Errors
+/// As [`load_any_plan`].
+pub fn load_any_plan_text(plan: FileText<'_>, scenario: Option<FileText<'_>>) -> Result<AnyPlan, InputError> {
+    let FileText { path, text } = plan;
+    if plan_file::format_of(text) != Some(STAGED_FORMAT) {
+        return load_plan_text(plan, scenario).map(|plan| AnyPlan::OneHold(Box::new(plan)));
     }
     if scenario.is_some() {
         let expected = "1, a plan of one hold, beside a scenario file: a staged plan is judged by the scenario in it";
-        return Err(check::Checker::json(path, &text).value("format", STAGED_FORMAT.to_string(), expected));
+        return Err(check::Checker::json(path, text).value("format", STAGED_FORMAT.to_string(), expected));
     }
-    staged_file::from_text(path, &text).map(|plan| AnyPlan::Staged(Box::new(plan)))
-}
-
-/// The plan of a text, with the scenario of a file.
-fn of_plan_text(path: &Path, text: &str, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
-    // A scenario from a pipe can be read once.
-    let scenario_text = scenario.map(|path| error::read_text(path, MOST_TOML)).transpose()?.unwrap_or_default();
-    load_plan_text(FileText { path, text }, scenario.map(|path| FileText { path, text: &scenario_text }))
+    staged_file::from_text(path, text).map(|plan| AnyPlan::Staged(Box::new(plan)))
 }
 
 /// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.

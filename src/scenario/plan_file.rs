@@ -8,6 +8,7 @@ use super::{
     InputError, InputErrorKind,
     arrays::too_long,
     check::{Checker, FormatProbe},
+    draft::{Draft, JsonDocument},
     error::read_text,
     fill_in::{FilledPlan, fill_in, refused},
     foreign::other_format,
@@ -100,8 +101,20 @@ pub fn check_scenario(check: &Checker<'_>, scenario: Option<&Scenario>, robot: &
     resolve::check_values(&check, scenario, robot)
 }
 
-/// The values of a JSON file; an error has the line and the key.
+/// The values of a JSON file; an error has the line and the key, and all unknown keys and wrong types.
 pub fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, InputError> {
+    let first = match parse_to_first_fault(path, text) {
+        Ok(values) => return Ok(values),
+        Err(first) => first,
+    };
+    let Some(document) = JsonDocument::parse(path, text) else { return Err(first) };
+    let mut draft = Draft::new(path, document);
+    let _: Option<T> = draft.read();
+    let all = draft.into_error();
+    Err(if all.faults().len() > 1 { all } else { first })
+}
+
+fn parse_to_first_fault<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, InputError> {
     let mut json = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut json).map_err(|error| {
         let key = error.path().to_string();

@@ -7,7 +7,9 @@ use nalgebra::Vector3;
 use super::{
     InputError,
     check::Checker,
-    file::{GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
+    file::{
+        GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, RobotSection, ScenarioFile, ToolSection,
+    },
     load_section::{self, LoadSection, check_load},
     object_section,
     robot_file::{load_robot, robot_parameters},
@@ -50,20 +52,27 @@ pub struct Resolved {
     pub robot: Robot,
 }
 
-/// The resolved scenario of a file, and its robot.
+/// A robot that was loaded for a `[robot]`. Some robots have meshes of many megabytes, and a file with faults is resolved several
+/// times.
+pub struct KnownRobot {
+    section: RobotSection,
+    robot: Robot,
+}
+
+/// The resolved scenario of a file, and its robot, which is kept in `known`.
 ///
 /// # Errors
 /// If the robot cannot be loaded or a value is invalid.
-pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<Resolved, InputError> {
+pub fn resolve(
+    path: &Path,
+    text: &str,
+    file: &ScenarioFile,
+    known: &mut Option<KnownRobot>,
+) -> Result<Resolved, InputError> {
     let check = Checker::toml(path, text);
     check.name(&file.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let options = RobotOptions {
-        packages: file.robot.packages.iter().map(PathBuf::from).collect(),
-        posture: file.robot.posture.clone(),
-    };
-    let robot = load_robot(&file.robot.description, folder, &options, file.object.thickness_m())
-        .map_err(|e| check.robot("robot.description", e))?;
+    let robot = robot(&check, file, folder, known)?;
     grip_keys(&check, &file.grip, &robot)?;
     if let Some(arm) = robot.arms.iter().find(|arm| arm.gripper.cup.is_some()) {
         let expected = "the path of a plan: planners know grasps of edges alone";
@@ -95,6 +104,27 @@ pub fn resolve(path: &Path, text: &str, file: &ScenarioFile) -> Result<Resolved,
     }
     check_values(&check, &scenario, &robot)?;
     Ok(Resolved { scenario, task, robot })
+}
+
+/// The robot of a file, at the gap of its board.
+fn robot(
+    check: &Checker<'_>,
+    file: &ScenarioFile,
+    folder: &Path,
+    known: &mut Option<KnownRobot>,
+) -> Result<Robot, InputError> {
+    let thickness_m = file.object.thickness_m();
+    if let Some(KnownRobot { robot, .. }) = known.as_ref().filter(|known| known.section == file.robot) {
+        return Ok(robot.at_gap(thickness_m));
+    }
+    let options = RobotOptions {
+        packages: file.robot.packages.iter().map(PathBuf::from).collect(),
+        posture: file.robot.posture.clone(),
+    };
+    let robot = load_robot(&file.robot.description, folder, &options, thickness_m)
+        .map_err(|e| check.robot("robot.description", e))?;
+    *known = Some(KnownRobot { section: file.robot.clone(), robot: robot.clone() });
+    Ok(robot)
 }
 
 /// The operation of a file or, of a task file, that of the first piece, with the task.

@@ -154,6 +154,7 @@ pub fn simulate_until(checked: &CheckedPlan<'_>, conditions: &Conditions, stop: 
     let mut distances = DistanceMonitor::of(checked, conditions);
     let mut trace = Trace { p_ot_m: tool.at(0).1.p_ot_m, ..empty_trace(checked, conditions, tool.steps() + 1) };
     let mut untouched_s = 0.0;
+    tracing::info!(plan = checked.plan().name, steps = tool.steps(), timestep_s, "simulating");
     for step in 0..=tool.steps() {
         if stop.is_stopped() {
             return Err(SimError::Stopped);
@@ -163,6 +164,9 @@ pub fn simulate_until(checked: &CheckedPlan<'_>, conditions: &Conditions, stop: 
             scene.step_under(state);
         }
         let time_s = step as f64 * timestep_s;
+        if step == 0 || tool.at(step - 1).0 != phase {
+            tracing::debug!(time_s, phase = phase.name(), "a phase begins");
+        }
         if let Some(reason) = scene.breakdown() {
             trace.samples.truncate(step);
             trace.broke_down = Some(format!("at {time_s:.3} s {reason}"));

@@ -76,7 +76,7 @@ fn an_unknown_key() {
     assert_scenario_refused(
         "friction",
         "frictoin",
-        "bad.toml:14: grip.frictoin: unknown field `frictoin`, expected `force_n` or `friction`",
+        "bad.toml:14: grip.frictoin: unknown field `frictoin`, expected `force_n` or `friction`; did you mean \"friction\"?",
     );
 }
 
@@ -139,7 +139,7 @@ fn an_unknown_robot() {
     assert_scenario_refused(
         "[grip]",
         "[robot]\ndescription = \"backster\"\n\n[grip]",
-        "bad.toml:13: robot.description: found robot \"backster\", expected a built-in robot (baxter, dual-panda, dual-ur5) or the path of a description file",
+        "bad.toml:13: robot.description: found robot \"backster\", expected a built-in robot (baxter, dual-panda, dual-ur5) or the path of a description file; did you mean \"baxter\"?",
     );
 }
 
@@ -157,7 +157,7 @@ fn a_format_from_the_future() {
     assert_scenario_refused(
         "format = 1",
         "format = 2",
-        "bad.toml:1: format: found 2, expected 1, the only format that benchdog 0.1.0 reads",
+        "bad.toml:1: format: found 2, expected 1, the only format that benchdog 0.2.0 reads",
     );
 }
 
@@ -190,7 +190,7 @@ fn an_unknown_key_in_a_plan() {
         "\"grip_force_n\"",
         "\"grip\"",
         "bad.json:84: arms[0].grip: unknown field `grip`, expected one of `name`, `joints`, `q_rad`, `seed_rad`, \
-         `x_og`, `grip_force_n`",
+         `x_og`, `grip_force_n`; did you mean \"grip_force_n\"?",
     );
 }
 
@@ -255,7 +255,7 @@ fn a_plan_for_an_unknown_robot() {
     assert_plan_refused(
         "\"robot\": \"baxter\"",
         "\"robot\": \"backster\"",
-        "bad.json:4: robot: found robot \"backster\", expected a built-in robot (baxter, dual-panda, dual-ur5) or the path of a description file",
+        "bad.json:4: robot: found robot \"backster\", expected a built-in robot (baxter, dual-panda, dual-ur5) or the path of a description file; did you mean \"baxter\"?",
     );
 }
 
@@ -264,7 +264,7 @@ fn a_plan_of_a_format_from_the_future() {
     assert_plan_refused(
         "\"format\": 1,",
         "\"format\": 3, \"colour\": \"blue\",",
-        "bad.json:2: format: found 3, expected 1, the only format that benchdog 0.1.0 reads",
+        "bad.json:2: format: found 3, expected 1, the only format that benchdog 0.2.0 reads",
     );
 }
 

@@ -77,6 +77,7 @@ fn the_help_of_every_command() {
     let folder = folder(&[]);
     assert_seen("help", folder.path(), &["--help"]);
     for command in [
+        "init",
         "run",
         "plan",
         "replan",
@@ -98,6 +99,7 @@ fn the_help_of_every_command() {
         "explain",
         "schema",
         "completions",
+        "man",
     ] {
         assert_seen(&format!("help-{command}"), folder.path(), &["help", command]);
     }

@@ -259,7 +259,7 @@ fn malformed_angles() {
         (
             format!(r#"{{"name": "left", "q_rad": {{{named}, "left_x": 0}}}}"#),
             format!(
-                "bad.json:7: arms[0].q_rad.left_x: found \"left_x\", expected the joints of the left arm: {joints}"
+                "bad.json:7: arms[0].q_rad.left_x: found \"left_x\", expected the joints of the left arm: {joints}; did you mean \"left_s0\"?"
             ),
         ),
         (

@@ -127,7 +127,7 @@ impl SweepFolder {
         report::file::remove(&self.file(JOURNAL))?;
         progress.finish();
         match format {
-            Format::Human => output::print(&report::sweep::text(&summary))?,
+            Format::Human => output::report(&report::sweep::text(&summary))?,
             Format::Json => output::print(&json)?,
         }
         Ok(if summary.is_met() { Exit::Met } else { Exit::NotMet })

@@ -9,9 +9,12 @@ use std::path::PathBuf;
 use self::{folder::SweepFolder, journal::Journal};
 use super::{
     exit::{CliError, Exit},
-    inputs, interrupt, output,
+    inputs, interrupt,
+    out_folder::Values,
+    output,
     planners::Planners,
     progress::Progress,
+    streams,
     sweep_args::SweepArgs,
     threads,
 };
@@ -25,7 +28,7 @@ use crate::{
     planner::Outcome,
     report,
     robot::Robot,
-    scenario::{self, LoadedPlan},
+    scenario::{self, FileText, LoadedPlan, is_json},
     sweep::{
         ArmJoints, Draws,
         estimate::Estimate,
@@ -47,9 +50,10 @@ pub fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
     let progress = Progress::begin("reading the scenario", "the finished runs are kept: the same command goes on")?;
     let Subject { mut scenario, robot, plan, inputs } = subject(args, &progress)?;
     let sweep = sweep_of(args, &mut scenario, &robot, &progress)?;
-    let folder = SweepFolder::new(&args.out);
+    let out = args.out.filled(&Values::of(&scenario, None).with(&scenario.name, sweep.seed));
+    let folder = SweepFolder::new(&out);
     inputs::protect(&inputs, folder.files())?;
-    report::file::check_folder(&args.out)?;
+    report::file::check_folder(&out)?;
     let plan = match plan {
         Some(plan) => plan,
         None => match Planners::new(args.cache).timed_plan(&scenario, &robot, &*progress)? {
@@ -116,17 +120,22 @@ fn swept(
 
 /// Reads the scenario or the plan.
 fn subject(args: &SweepArgs, progress: &Progress) -> Result<Subject, CliError> {
-    if args.input.extension().is_some_and(|extension| extension == "toml") {
+    let path = &args.input;
+    let text = scenario::plan_text(path)?;
+    let is_toml = path.extension().is_some_and(|extension| extension == "toml");
+    if is_toml || streams::is_stdin(path) && !is_json(&text) {
         if args.scenario.is_some() {
             return Err(CliError::Usage("--scenario: found one beside a scenario, expected a plan (.json)".into()));
         }
-        let loaded = scenario::load(&args.input)?;
+        let loaded = scenario::load_text(path, &text)?;
         loaded.filled_in.iter().for_each(|note| progress.message(&output::note(note)));
         let (scenario, robot, plan) = (loaded.scenario, loaded.robot, loaded.plan);
         return Ok(Subject { scenario, robot, plan, inputs: loaded.inputs });
     }
+    let of_scenario = args.scenario.as_deref().map(scenario::scenario_text).transpose()?.unwrap_or_default();
+    let given = args.scenario.as_ref().map(|path| FileText { path, text: &of_scenario });
     let LoadedPlan { plan, filled_in, robot, scenario, inputs, .. } =
-        scenario::load_plan(&args.input, args.scenario.as_deref())?;
+        scenario::load_plan_text(FileText { path, text: &text }, given)?;
     filled_in.iter().for_each(|note| progress.message(&output::note(note)));
     Ok(Subject { scenario, robot, plan: Some(plan), inputs })
 }

@@ -14,7 +14,9 @@ use super::{
     cache,
     exit::{CliError, Exit},
     format::Format,
-    inputs, interrupt, output,
+    inputs, interrupt,
+    out_folder::Values,
+    output,
     progress::Progress,
     task_args::TaskArgs,
 };
@@ -56,8 +58,8 @@ struct TaskFiles {
 }
 
 impl TaskFiles {
-    fn new(out: &Path, name: &str) -> Self {
-        let file = |file: &str| out.join(name).join(file);
+    fn new(folder: &Path) -> Self {
+        let file = |file: &str| folder.join(file);
         Self {
             plan: file("plan.json"),
             comparison: file("comparison.csv"),
@@ -85,9 +87,9 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     args.search.apply(&mut loaded.scenario.planner);
     // Holds are compared by the person's best response: the mean response would take minutes per grasp.
     loaded.scenario.comfort.person = ResponseKind::Best;
-    let files = TaskFiles::new(&args.out, &loaded.scenario.name);
+    let files = TaskFiles::new(&args.out.of_one(&Values::of(&loaded.scenario, None)));
     inputs::protect(&loaded.inputs, files.all())?;
-    report::file::check_folder(&args.out)?;
+    report::file::check_folder(&args.out.of_all())?;
     let planner = cache::planner(&loaded.robot, args.cache);
     let start = Instant::now();
     planner.search(&loaded.scenario).watch(&*progress).prepare_task(&task)?;
@@ -183,7 +185,7 @@ fn comparison(
 /// Prints the comparison for people.
 fn print_comparison(comparison: Option<&Comparison>, format: Format) -> Result<(), CliError> {
     match (comparison, format) {
-        (Some(comparison), Format::Human) => output::print(&report::comparison::table(comparison)),
+        (Some(comparison), Format::Human) => output::report(&report::comparison::table(comparison)),
         _ => Ok(()),
     }
 }
@@ -191,9 +193,10 @@ fn print_comparison(comparison: Option<&Comparison>, format: Format) -> Result<(
 /// Simulates and judges a staged plan of any planner.
 pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progress) -> Result<Exit, CliError> {
     let LoadedStagedPlan { plan, states, robot, scenario, inputs, .. } = loaded;
-    let files = TaskFiles::new(&args.report.out, &plan.name);
+    let seed = plan.planner.map_or(scenario.planner.seed, |planner| planner.seed);
+    let files = TaskFiles::new(&args.report.out.of_one(&Values::of(scenario, None).with(&plan.name, seed)));
     inputs::protect(inputs, files.all().into_iter().skip(4))?;
-    report::file::check_folder(&args.report.out)?;
+    report::file::check_folder(&args.report.out.of_all())?;
     report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
     let is_recorded = args.report.record != RecordChoice::Never;
     let output = (&files, args.report.format, is_recorded, None);
@@ -235,7 +238,7 @@ fn judged(
     match format {
         Format::Human => {
             let hint = report::console::hint((!verdict.met).then_some(verdict.verdict));
-            output::print(&format!("{}{hint}", report::task::table(&verdict)))?;
+            output::report(&format!("{}{hint}", report::task::table(&verdict)))?;
         }
         Format::Json => output::print(&report::json::pretty(&verdict))?,
     }

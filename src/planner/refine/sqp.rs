@@ -30,6 +30,13 @@ pub fn refine(evaluator: &mut Evaluator<'_>, starts: Vec<Feasible>, rounds: &[Re
             iterate.run(evaluator, round.steps);
         }
         iterates.sort_by(|a, b| b.here.objective.total_cmp(&a.here.objective));
+        tracing::debug!(
+            candidates = iterates.len().min(round.candidates),
+            steps = round.steps,
+            evaluations = evaluator.stats.candidates(),
+            objective = iterates.first().map(|best| best.here.objective),
+            "refined a round"
+        );
     }
     iterates.into_iter().map(|iterate| iterate.here).collect()
 }

@@ -50,6 +50,7 @@ pub fn simulate_staged(
     scene.observe(&mut trace.samples[0]);
     let timestep_s = conditions.settings.timestep_s;
     let mut untouched_s = 0.0;
+    tracing::info!(plan = plan.name, steps = timeline.steps(), timestep_s, "simulating a task");
     for (step, command) in (1..).zip(timeline.commands()) {
         if stop.is_stopped() {
             return Err(SimError::Stopped);
@@ -74,7 +75,10 @@ pub fn simulate_staged(
         x_wo_planned.push(command.x_wo);
         match spans.last_mut().filter(|span| span.stage == command.stage) {
             Some(span) => span.last = step,
-            None => spans.push(StageSpan { stage: command.stage, first: if step == 1 { 0 } else { step }, last: step }),
+            None => {
+                tracing::debug!(time_s, stage = command.stage + 1, phase = command.phase.name(), "a stage begins");
+                spans.push(StageSpan { stage: command.stage, first: if step == 1 { 0 } else { step }, last: step });
+            }
         }
         if untouched_s > LOST_AFTER_S {
             trace.samples.truncate(step + 1);
