@@ -132,8 +132,7 @@ pub fn is_task(text: &str) -> bool {
 /// # Errors
 /// As for [`load`], and if the file has no `[task]`.
 pub fn load_task(path: &Path) -> Result<(LoadedScenario, Task), InputError> {
-<<<<<<< HEAD
-    load_task_text(path, &error::read_text(path, MOST_TOML)?)
+    load_task_text(path, &scenario_text(path)?)
 }
 
 /// As [`load_task`], of the text of a file.
@@ -142,10 +141,6 @@ pub fn load_task(path: &Path) -> Result<(LoadedScenario, Task), InputError> {
 /// As for [`load_task`].
 pub fn load_task_text(path: &Path, text: &str) -> Result<(LoadedScenario, Task), InputError> {
     let loaded = load_any(path, text)?;
-=======
-    let text = scenario_text(path)?;
-    let loaded = load_any(path, &text)?;
->>>>>>> main
     match loaded.task.clone() {
         Some(task) => Ok((loaded, task)),
         None => {

@@ -57,7 +57,6 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let folder = of_natural.folder();
     let folder = folder.display();
     progress.leaves(&format!("finished results are kept in {folder}, and the same command continues from them"));
-<<<<<<< HEAD
     let results = threads::with_threads(args.jobs, || {
         Ok::<_, CliError>(Results {
             natural: evaluate(&natural, &of_natural, args)?,
@@ -68,7 +67,7 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     })??;
     progress.finish();
     write_results(&results, [&natural, &printed], robot, &out)?;
-    output::print(&summary(&results, &out))?;
+    output::report(&summary(&results, &out))?;
     let all = results.natural.first_seeds().chain(results.printed.first_seeds());
     Ok(all.map(exit_of).max().unwrap_or(Exit::Met))
 }
@@ -93,17 +92,6 @@ fn evaluate(
 fn fronts(operations: &[LoadedScenario], runner: &JobRunner<'_>) -> Result<Vec<FrontRow>, CliError> {
     let rows = parallel::map_in_parallel(operations, |operation| runner.front(&operation.scenario));
     Ok(rows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
-=======
-    let rows = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs, &progress))??;
-    let reproduction = schedule.reproduction(rows, &scope, left_out(args, operations.len()));
-    if args.natural {
-        write_natural_results(&reproduction, &first.robot, &out)?;
-    } else {
-        write_results(&reproduction, &operations, &first.robot, &out)?;
-    }
-    output::report(&summary(&reproduction, &out))?;
-    Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
->>>>>>> main
 }
 
 /// Writes a file that Ctrl-C leaves whole.
