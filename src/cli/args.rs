@@ -62,7 +62,7 @@ pub enum Command {
     Import(ImportArgs),
     /// Write the best and worst muscular comfort along a circular cut as CSV and SVG
     Curve(CurveArgs),
-    /// Plan, simulate and report the paper's evaluation: 25 operations, four planners
+    /// Plan, simulate and report the paper's evaluation for a natural person and as printed: 25 operations, four planners
     Reproduce(ReproduceArgs),
     /// Say what a verdict or a check means, how it is measured and what helps if it fails
     Explain(ExplainArgs),
