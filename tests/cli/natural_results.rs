@@ -116,7 +116,7 @@ fn the_comfort_planner_is_on_the_front() {
     }
 }
 
-/// The muscles are a model that the planner does not know: its holds need less effort than random ones in each task, and those
+/// The muscles are a model that the planner does not know: its holds need less than half the effort of random ones in each task, and those
 /// planned by the muscles still less.
 #[test]
 fn comfortable_holds_need_less_effort_than_random_ones() {
@@ -128,7 +128,7 @@ fn comfortable_holds_need_less_effort_than_random_ones() {
             values.iter().sum::<f64>() / values.len() as f64
         };
         let (by_muscles, comfort, random) = (mean("by-muscles"), mean("comfort"), mean("random"));
-        assert!(by_muscles < comfort && comfort < random, "{task}: {by_muscles}, {comfort}, {random}");
+        assert!(by_muscles < comfort && 2.0 * comfort < random, "{task}: {by_muscles}, {comfort}, {random}");
     }
     let by_muscles = committed("by_muscles.csv");
     assert_eq!(by_muscles.len(), 25);

@@ -5,10 +5,12 @@ use std::fmt::Write as _;
 use super::{figure, picture_name, picture_title, tables};
 use crate::{
     model::{operation::OperationKind, scenario::PlannerKind},
+    report::comparison::StrategyKind,
     reproduce::{
         claims,
-        evaluation::{HoldRow, KINDS, Reproduction, Results, task},
-        printed, table,
+        evaluation::{Circle, HoldRow, KINDS, Reproduction, Results, task},
+        printed::{self, Printed},
+        table::{self, Row},
     },
 };
 
@@ -17,7 +19,7 @@ pub fn opening(text: &mut String, results: &Results) {
     text.push_str(
         "The holds of Chen, Figueredo and Dogar, *Planning for Muscular and Peripersonal-Space Comfort during Human-Robot\n\
          Forceful Collaboration* (IEEE-RAS Humanoids 2018, \"the paper\"), planned twice: for a person who stands as people stand, and\n\
-         by the paper's formulas as printed. Each plan was then loaded in simulation.\n\n\
+         by the paper's formulas as printed. Each plan was then loaded in a simulation. The comfort planner's holds:\n\n\
          | | natural | as printed |\n|---|---|---|\n",
     );
     for kind in KINDS {
@@ -28,11 +30,12 @@ pub fn opening(text: &mut String, results: &Results) {
         }
     }
     text.push('\n');
-    let sentences = [orders(results), postures(results), effort(results), conclusions(results), holds(results)];
-    let sentences: Vec<_> = sentences.into_iter().flatten().collect();
-    text.push_str(&sentences.join("\n"));
+    let found = [comfort(results), posture(results), effort(results), conclusions(results), simulation(results)];
+    for sentence in found.into_iter().flatten() {
+        let _ = writeln!(text, "- {sentence}");
+    }
     text.push_str(
-        "\n\nWritten by `benchdog reproduce`; do not edit. `docs/reproduction.md` explains the figures, and lists what is not reproduced;\n\
+        "\nWritten by `benchdog reproduce`; do not edit. `docs/reproduction.md` explains the figures, and lists what is not reproduced;\n\
          [the evaluation as printed](printed/report.md) has a report of its own.\n",
     );
 }
@@ -44,45 +47,54 @@ fn picture(reproduction: &Reproduction, kind: OperationKind, folder: &str) -> Op
     Some(format!("![{}]({folder}pictures/{})", picture_title(row), picture_name(row)))
 }
 
-/// Both kinds of operation, `cutting 1.73, drilling 1.69`; `None` without any.
+/// The figures of both kinds of operation, `1.73 in cutting and 1.69 in drilling`; `None` without any.
 fn by_task(of: impl Fn(OperationKind) -> Option<String>) -> Option<String> {
     let parts: Vec<_> = KINDS.into_iter().filter_map(|kind| Some(format!("{} in {}", of(kind)?, task(kind)))).collect();
     (!parts.is_empty()).then(|| parts.join(" and "))
 }
 
+/// The same without their names, `1.73 and 1.69`.
+fn pair(of: impl Fn(OperationKind) -> Option<String>) -> Option<String> {
+    let parts: Vec<_> = KINDS.into_iter().filter_map(of).collect();
+    (!parts.is_empty()).then(|| parts.join(" and "))
+}
+
 /// How much better than random holds.
-fn orders(results: &Results) -> Option<String> {
-    let ratios = |reproduction: &Reproduction| {
+fn comfort(results: &Results) -> Option<String> {
+    let ratio = |reproduction: &Reproduction, kind, of: fn(&Row) -> Option<f64>| {
         let rows = table::rows(reproduction.holds.iter());
-        by_task(|kind| {
-            let row = rows.iter().find(|row| row.kind == kind && row.planner == PlannerKind::Comfort)?;
-            let (muscular, peripersonal) = (row.muscular_normalised?, row.peripersonal_normalised?);
-            Some(format!("{muscular:.2} and {peripersonal:.2} times"))
-        })
+        let row = rows.into_iter().find(|row| row.kind == kind && row.planner == PlannerKind::Comfort)?;
+        of(&row).map(|ratio| format!("{ratio:.2}"))
     };
-    let paper = by_task(|kind| {
-        let paper = printed::table(kind, PlannerKind::Comfort)?;
-        Some(format!("{:.2} and {:.2} times", paper.muscular, paper.peripersonal))
-    })?;
+    let paper = |kind, of: fn(&Printed) -> f64| {
+        printed::table(kind, PlannerKind::Comfort).map(|paper| format!("{:.2}", of(&paper)))
+    };
+    let (natural, printed) = (&results.natural, &results.printed);
+    let (muscular, peripersonal): (fn(&Row) -> _, fn(&Row) -> _) =
+        (|row| row.muscular_normalised, |row| row.peripersonal_normalised);
     Some(format!(
-        "**Planned for comfort, a natural person has {} the muscular and the peripersonal comfort of random holds**; as printed it is {}, in\n\
-         the paper's Table I {paper}.",
-        ratios(&results.natural)?,
-        ratios(&results.printed)?
+        "**Comfort.** The comfort planner gives a natural person {} times the muscular comfort of random holds, and {} times their\n  \
+         peripersonal comfort; as printed it is {} and {}; the paper's Table I has {} and {}.",
+        by_task(|kind| ratio(natural, kind, muscular))?,
+        pair(|kind| ratio(natural, kind, peripersonal))?,
+        pair(|kind| ratio(printed, kind, muscular))?,
+        pair(|kind| ratio(printed, kind, peripersonal))?,
+        pair(|kind| paper(kind, |paper| paper.muscular))?,
+        pair(|kind| paper(kind, |paper| paper.peripersonal))?
     ))
 }
 
 /// Who stands naturally.
-fn postures(results: &Results) -> Option<String> {
+fn posture(results: &Results) -> Option<String> {
     let limits = tables::PostureBounds::of(&results.natural)?;
     let kept = |reproduction: &Reproduction| {
-        let of_comfort: Vec<_> = comfort(reproduction).collect();
+        let of_comfort: Vec<_> = reproduction.first_seeds().filter(|row| row.planner == PlannerKind::Comfort).collect();
         let kept = of_comfort.iter().filter(|row| limits.are_kept(row)).count();
         format!("{kept} of {}", of_comfort.len())
     };
     Some(format!(
-        "**{} of its plans keep all twelve limits of a natural posture; of the plans as printed {} do**, for the printed metric is best where\n\
-         two axes of the shoulder coincide: a straight arm, raised beside the board.",
+        "**Posture.** {} of its natural plans keep all twelve limits of how people stand and see; of those as printed {} do: the printed metric is\n  \
+         largest where two axes of the shoulder coincide, at a straight arm that is raised beside the board.",
         kept(&results.natural),
         kept(&results.printed)
     ))
@@ -91,19 +103,18 @@ fn postures(results: &Results) -> Option<String> {
 /// What an independent model of the muscles says.
 fn effort(results: &Results) -> Option<String> {
     let random = |kind| tables::mean_effort(results.natural.holds.iter(), kind, Some(PlannerKind::Random));
-    let of = |holds: &[HoldRow], planner| {
-        by_task(|kind| {
-            let share = 100.0 * tables::mean_effort(holds.iter(), kind, planner)? / random(kind)?;
-            Some(format!("{share:.0} %"))
-        })
+    let share = |holds: &[HoldRow], kind, planner| {
+        let share = 100.0 * tables::mean_effort(holds.iter(), kind, planner)? / random(kind)?;
+        Some(format!("{share:.0} %"))
     };
-    let natural = of(&results.natural.holds, Some(PlannerKind::Comfort))?;
-    let printed = of(&results.printed.holds, Some(PlannerKind::Comfort))?;
-    let by_muscles = of(&results.natural.by_muscles, None)
-        .map_or_else(String::new, |shares| format!(", and planned by the muscles themselves {shares}"));
+    let comfort = Some(PlannerKind::Comfort);
+    let natural = by_task(|kind| share(&results.natural.holds, kind, comfort))?;
+    let printed = pair(|kind| share(&results.printed.holds, kind, comfort))?;
+    let by_muscles = pair(|kind| share(&results.natural.by_muscles, kind, None))
+        .map_or_else(String::new, |shares| format!("; planned by the muscles themselves it would be {shares}"));
     Some(format!(
-        "**By a model of the arm's fifty muscles, which no planner of the paper knows, it needs {natural} of the effort of random natural\n\
-         holds**; the plans as printed need {printed} of it{by_muscles}."
+        "**Effort.** By a model of the arm's fifty muscles, which none of these planners knows, the natural comfort plans need {natural}\n  \
+         of the effort of random natural holds, and those as printed {printed}{by_muscles}."
     ))
 }
 
@@ -111,39 +122,35 @@ fn effort(results: &Results) -> Option<String> {
 fn conclusions(results: &Results) -> Option<String> {
     let of = |reproduction: &Reproduction| {
         let claims = claims::claims(reproduction);
-        (!claims.is_empty())
-            .then(|| format!("{} of {}", claims.iter().filter(|claim| claim.holds).count(), claims.len()))
+        let confirmed = claims.iter().filter(|claim| claim.holds).count();
+        (!claims.is_empty()).then(|| format!("{confirmed} of {}", claims.len()))
     };
     Some(format!(
-        "**{} conclusions are confirmed for the natural person, {} as printed.**",
+        "**Conclusions.** {} conclusions are confirmed for the natural person, {} as printed.",
         of(&results.natural)?,
         of(&results.printed)?
     ))
 }
 
 /// What holds in simulation, and the whole circle.
-fn holds(results: &Results) -> Option<String> {
+fn simulation(results: &Results) -> Option<String> {
     let of = |reproduction: &Reproduction| {
         let held = reproduction.first_seeds().filter(|row| claims::holds(row)).count();
         format!("{held} of {}", reproduction.first_seeds().count())
     };
-    let mut sentence =
-        format!("**{} natural plans hold in simulation, and {} as printed", of(&results.natural), of(&results.printed));
-    let random = |circle: &crate::reproduce::evaluation::Circle| {
-        let random = circle.rows.iter().find(|row| row.strategy.starts_with("random"))?;
+    let random = |circle: &Circle| {
+        let random = circle.rows.iter().find(|row| row.strategy == StrategyKind::Random.title())?;
         Some((circle.rows.first()?.mean_effort, 100.0 * random.staged_ratio?))
     };
-    match results.circle.as_ref().and_then(random) {
-        Some((effort, share)) => sentence.push_str(&format!(
-            "**; while the robot turns the board along the whole circle the effort is {}, {share:.0} % of that of random holds.",
+    let circle = results.circle.as_ref().and_then(random).map_or_else(String::new, |(effort, share)| {
+        format!(
+            "; while the robot turns the board along the whole circle the effort\n  is {}, {share:.0} % of that of random holds",
             figure(effort, 2)
-        )),
-        None => sentence.push_str(".**"),
-    }
-    Some(sentence)
-}
-
-/// The comfort planner's results.
-fn comfort(reproduction: &Reproduction) -> impl Iterator<Item = &HoldRow> {
-    reproduction.first_seeds().filter(|row| row.planner == PlannerKind::Comfort)
+        )
+    });
+    Some(format!(
+        "**Simulation.** {} natural plans hold, and {} as printed{circle}.",
+        of(&results.natural),
+        of(&results.printed)
+    ))
 }
