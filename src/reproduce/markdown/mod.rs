@@ -4,6 +4,9 @@ mod opening;
 mod sensitivity;
 mod simulation;
 mod tables;
+mod words;
+
+pub use words::{picture_name, picture_title};
 
 use std::fmt::Write as _;
 
@@ -12,6 +15,7 @@ use super::{
     statistics,
 };
 use crate::model::scenario::PlannerKind;
+use words::figure;
 
 // Writing to a string does not fail, so the results of `writeln!` are ignored.
 
@@ -64,10 +68,6 @@ fn left_out(text: &mut String, reproduction: &Reproduction) {
     if let Some(left_out) = &reproduction.left_out {
         let _ = writeln!(text, "\n**Not the whole evaluation**: {left_out}.");
     }
-}
-
-fn figure(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
 }
 
 fn curve(text: &mut String) {
@@ -134,24 +134,6 @@ fn seeds(text: &mut String, reproduction: &Reproduction) {
             );
         }
     }
-}
-
-/// The file name of a picture.
-#[must_use]
-pub fn picture_name(hold: &HoldRow) -> String {
-    format!("{}-{}.svg", hold.operation, hold.planner)
-}
-
-/// The title of a picture.
-#[must_use]
-pub fn picture_title(hold: &HoldRow) -> String {
-    format!(
-        "{}, {} planner: muscular comfort {}, peripersonal comfort {}",
-        hold.operation,
-        hold.planner,
-        figure(hold.muscular(), 1),
-        figure(hold.peripersonal_scaled(), 1)
-    )
 }
 
 /// The pictures of all planners for one operation of each kind.

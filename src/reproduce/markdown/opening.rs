@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::{figure, picture_name, picture_title, tables};
+use super::{
+    tables,
+    words::{figure, picture_name, picture_title},
+};
 use crate::{
     model::{operation::OperationKind, scenario::PlannerKind},
     report::comparison::StrategyKind,

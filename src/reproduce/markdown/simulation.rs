@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure;
+use super::words::figure;
 use crate::{
     model::{
         operation::OperationKind,
