@@ -24,7 +24,7 @@ fn option(name: &str) -> Option<String> {
 fn main() {
     let repeat: usize = option("--repeat").map_or(5, |text| text.parse().expect("--repeat: a number"));
     let filter = option("--filter").unwrap_or_default();
-    let operations: Vec<_> = paper::natural_operations();
+    let operations: Vec<_> = paper::operations();
     let operations = operations.iter().filter(|operation| operation.name.contains(&filter));
     let loaded: Vec<_> = operations.map(|operation| operation.load().expect("they are valid")).collect();
     let Some(first) = loaded.first() else { return };

@@ -10,7 +10,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 
 fn planner(criterion: &mut Criterion) {
     let operation = |name: &str| {
-        let found = paper::operations().into_iter().find(|operation| operation.name == name);
+        let found = paper::printed_operations().into_iter().find(|operation| operation.name == name);
         found.expect("the paper's operations").load().expect("they are valid")
     };
     let loaded = operation("drill-5");

@@ -33,7 +33,7 @@ fn main() {
     let filter = option("--filter").unwrap_or_else(|| "drill-5".into());
     let (every, turn_deg) = (number("--fresh", 0.0) as usize, number("--turn", -60.0));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    for operation in paper::natural_operations().iter().filter(|operation| operation.name == filter) {
+    for operation in paper::operations().iter().filter(|operation| operation.name == filter) {
         let loaded = operation.load().expect("they are valid");
         pool.install(|| walk(&mut Planner::new(&loaded.robot), &loaded.scenario, every, turn_deg));
     }

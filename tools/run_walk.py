@@ -3,7 +3,8 @@
 
     tools/run_walk.py PAGE FOLDER
 
-`benchdog` and `pip` must be on the path. Ends at the first command that fails.
+What the page's commands need must be on the path. Ends at the first command with another exit code than 0, or than N of a line that
+ends with `# exit code N`.
 """
 
 import re
@@ -27,8 +28,11 @@ def main() -> None:
         sys.exit(f"{page}: found no sh block, expected commands")
     for line in lines:
         print(f"$ {line}", flush=True)
-        if subprocess.run(line, shell=True, cwd=folder).returncode != 0:
-            sys.exit(f"{page}: failed: {line}")
+        stated = re.search(r"# exit code (\d+)$", line)
+        expected = int(stated[1]) if stated else 0
+        found = subprocess.run(line, shell=True, cwd=folder).returncode
+        if found != expected:
+            sys.exit(f"{page}: found exit code {found}, expected {expected}: {line}")
 
 
 if __name__ == "__main__":

@@ -62,7 +62,7 @@ pub enum Command {
     Import(ImportArgs),
     /// Write the best and worst muscular comfort along a circular cut as CSV and SVG
     Curve(CurveArgs),
-    /// Plan, simulate and report the paper's evaluation: 25 operations, four planners
+    /// Plan, simulate and report the paper's evaluation for a natural person and as printed: 25 operations, four planners
     Reproduce(ReproduceArgs),
     /// Say what a verdict or a check means, how it is measured and what helps if it fails
     Explain(ExplainArgs),
@@ -370,10 +370,7 @@ pub struct CurveArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = help::REPRODUCE)]
 pub struct ReproduceArgs {
-    /// Plan the same operations for a person who stands naturally, with the intrinsic metric; report the postures
-    #[arg(long)]
-    pub natural: bool,
-    /// Use fewer seeds of the random planner; omit failing loads and the sensitivity analysis
+    /// Use fewer seeds of the random planner; omit failing loads, sensitivity analysis, fronts and the whole circle
     #[arg(long)]
     pub quick: bool,
     /// Only operations whose name contains this text or, if it has one of * ? [, matches it as a pattern; may be repeated
@@ -385,7 +382,7 @@ pub struct ReproduceArgs {
     /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Never)]
     pub record: RecordChoice,
-    /// Folder for the results; by default `results`, with --natural `results/natural`, with --quick `out/reproduce-quick`
+    /// Folder for the results; by default `results`, with --quick `out/reproduce-quick`
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Maps between runs.

@@ -23,7 +23,7 @@ pub fn curve(args: &CurveArgs) -> Result<Exit, CliError> {
     let progress = Progress::begin("reading the scenario", "")?;
     let loaded = match &args.scenario {
         Some(path) => scenario::load(path)?,
-        None => paper::operations()[0].load()?,
+        None => paper::printed_operations()[0].load()?,
     };
     let files = ["muscular_curve.csv", "muscular_curve.svg"].map(|name| args.out.join(name));
     inputs::protect(&loaded.inputs, files.clone())?;

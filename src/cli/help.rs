@@ -185,10 +185,11 @@ Examples:
   benchdog reproduce --quick                    a shorter version
   benchdog reproduce --quick --filter cut-05 --record always
 
-Writes into --out: report.md, table1.csv, plans.csv, physics.csv, best_case.csv, random.csv,
-sensitivity.csv, the muscular curve and pictures/, which are equal for equal runs; timing.csv,
-which is not; recordings/; and work/, from which a stopped run continues. The exit code is 1 if
-one of the 100 plans failed in simulation, 3 if a planner found no plan.";
+Writes into --out: report.md, tables, the muscular curve and pictures/ of the evaluation for a
+natural person; the same of the paper's formulas as printed into its folder printed/; timing.csv,
+which alone differs between equal runs; recordings/; and work/, from which a stopped run
+continues. The exit code is 1 if one of the 200 plans failed in simulation, 3 if a planner found
+no plan.";
 
 /// `benchdog explain --help`.
 pub const EXPLAIN: &str = "\

@@ -22,7 +22,7 @@ use crate::{
 pub struct Baseline {
     /// The file format, 1.
     pub format: u32,
-    /// Versions of Benchdog and of the engines.
+    /// Versions of Benchdog, of the engines and of the criteria of judgement.
     pub versions: BTreeMap<String, String>,
     /// Scenarios and plans with their verdicts.
     #[serde(default)]
@@ -89,6 +89,9 @@ const COMPARED: [([usize; 3], &str); 2] = [([3, 4, 5], "50 %"), ([5, 6, 7], "95 
 /// The fewest runs whose quantiles are compared: of fewer the spread between quantiles tells little of their error.
 const LEAST_RUNS: u64 = 20;
 
+/// The name of the criteria among the versions.
+pub const CRITERIA: &str = "criteria";
+
 impl Baseline {
     /// Results without any.
     #[must_use]
@@ -100,6 +103,10 @@ impl Baseline {
     #[must_use]
     pub fn add_verdict(&mut self, verdict: &Verdict) -> bool {
         self.versions.extend(verdict.versions.clone());
+        // Verdicts from before the criteria were numbered have 0.
+        if verdict.criteria > 0 {
+            self.versions.insert(CRITERIA.to_owned(), verdict.criteria.to_string());
+        }
         let checks = verdict
             .checks
             .iter()

@@ -5,6 +5,6 @@ mod baseline;
 mod changes;
 mod noise;
 
-pub use baseline::{Baseline, CheckEntry, ScenarioEntry, SweepEntry};
+pub use baseline::{Baseline, CRITERIA, CheckEntry, ScenarioEntry, SweepEntry};
 pub use changes::{Change, ChangeKind, Comparison, compare};
 pub use noise::{difference, quantile_error};

@@ -322,6 +322,30 @@ mod tests {
         }
     }
 
+    /// The posture that the comfort planner finds for `drill-5` with the metric as printed (docs/reproduction.md), a thrust of 15 N
+    /// along the drill, as it is planned and written with q1 = 0: the arm is the same, the printed metric is not.
+    #[test]
+    fn the_printed_optimum_of_a_hole_is_one_of_coordinates() {
+        let human = worker(Hand::Right, OperationKind::Drill);
+        let planned: ArmAngles = [1.563389, 1.565469, -1.559490, 0.001189, 0.913945, -0.465875, 0.567736];
+        let mut other = planned;
+        (other[0], other[1], other[2]) = (0.0, FRAC_PI_2, planned[2] - planned[0]);
+        let frames = [planned, other].map(|q_rad| human.arm().frames(&q_rad));
+        let turned_rad = Rotation3::from_matrix_unchecked(frames[0].r_bu.transpose() * frames[1].r_bu).angle();
+        assert!(turned_rad.to_degrees() < 0.5, "{}", turned_rad.to_degrees());
+        let x_wb = standing_pose_w(1.0, 0.2, 2.0, -0.9);
+        let [[printed, other_printed], [intrinsic, other_intrinsic]] =
+            [MuscularMetric::Paper, MuscularMetric::Intrinsic].map(|muscular| {
+                [planned, other].map(|q_rad| {
+                    let thrust_w = x_wb * human.tool_pose_b(&q_rad) * Vector3::new(0.0, 0.0, 15.0);
+                    let wrench_w = Wrench { force_n: thrust_w, moment_nm: Vector3::zeros() };
+                    human.muscular(&q_rad, &x_wb, &wrench_w, &ComfortSettings { muscular, ..settings() }).printed
+                })
+            });
+        assert!(printed > 100_000.0 && other_printed < 50.0, "{printed} and {other_printed}");
+        assert!((intrinsic / other_intrinsic - 1.0).abs() < 0.02, "{intrinsic} and {other_intrinsic}");
+    }
+
     /// Largest slope of an activation of the shoulder if it turns, 1/rad. The moment is up to 70 N m (52 N at 0.95 m, and the
     /// weights), the smallest strength 18 N m, so the activation is up to 4. Its slope is 4 by the moment, 4 / s by the moment's
     /// direction with the horizontal part s = 0.2 of u, 4 x 1.7 tan(75 degrees) by the strength over the twist (the steepest is

@@ -190,13 +190,13 @@ mod tests {
     /// 0.6 m. The shares of the reach reproduce it to 1 cm before rounding, and exactly after it.
     #[test]
     fn the_domain_of_baxter_is_the_one_chosen_by_hand() {
-        let baxter = domain(&paper::operations()[0].load().unwrap().robot);
+        let baxter = domain(&paper::printed_operations()[0].load().unwrap().robot);
         assert_eq!((baxter.x_m, baxter.y_m, baxter.z_m), ([0.35, 0.85], [-0.25, 0.25], [-0.3, 0.6]));
     }
 
     #[test]
     fn the_working_height_follows_the_floor() {
-        let robot = paper::operations()[0].load().unwrap().robot;
+        let robot = paper::printed_operations()[0].load().unwrap().robot;
         let mut moved = robot.clone();
         moved.floor_z_m -= 0.1;
         let [here, there] = [&robot, &moved].map(domain);
@@ -220,7 +220,7 @@ mod tests {
     /// points that are tested one by one, and one with a negative margin is near to something.
     #[test]
     fn drawn_grasps_have_their_pads_on_the_material() {
-        let robot = paper::operations()[0].load().unwrap().robot;
+        let robot = paper::printed_operations()[0].load().unwrap().robot;
         let gripper = &robot.arms[0].gripper;
         let pad = &gripper.fingers[0].pad;
         let mut random = Pcg64::new(18, 0);
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn edges_that_are_shorter_than_a_pad_are_left_out() {
-        let robot = paper::operations()[0].load().unwrap().robot;
+        let robot = paper::printed_operations()[0].load().unwrap().robot;
         let edges_of = |board: &BoardShape| graspable_edges(board, robot.arms.iter().map(|arm| &arm.gripper));
         let outline_m = vec![[0.2, -0.2], [0.2, 0.18], [0.18, 0.2], [-0.2, 0.2], [-0.2, -0.2]];
         let plate = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn drawn_boards_are_in_the_domain() {
-        let domain = domain(&paper::operations()[0].load().unwrap().robot);
+        let domain = domain(&paper::printed_operations()[0].load().unwrap().robot);
         let mut random = Pcg64::new(1, 0);
         for _ in 0..500 {
             assert!(domain.contains(&domain.draw_board(&mut random)));

@@ -1,7 +1,7 @@
 //! The CSV files. Missing figures are empty. Equal runs give equal text, except `timing.csv`.
 
 use super::{
-    evaluation::{FIRST_SEED, HoldRow, Reproduction, task},
+    evaluation::{Circle, FIRST_SEED, HoldRow, Reproduction, Results, task},
     table,
 };
 use crate::{
@@ -170,6 +170,70 @@ pub fn sensitivity(reproduction: &Reproduction) -> String {
         ],
         rows,
     )
+}
+
+/// `effort.csv`: the effort of the muscles in every plan; `by-muscles` is the comfort planner by this effort.
+#[must_use]
+pub fn effort(reproduction: &Reproduction) -> String {
+    let holds = reproduction.holds.iter().map(|hold| (hold, hold.planner.to_string()));
+    let by_muscles = reproduction.by_muscles.iter().map(|hold| (hold, "by-muscles".to_owned()));
+    let rows = holds.chain(by_muscles).map(|(hold, planner)| {
+        let muscles = hold.plan.as_ref().and_then(|plan| plan.muscles.as_ref());
+        vec![
+            hold.operation.clone(),
+            planner,
+            hold.seed.to_string(),
+            cell(muscles.map(|muscles| muscles.effort)),
+            cell(muscles.map(|muscles| muscles.largest_activation)),
+        ]
+    });
+    csv_text(&["operation", "planner", "seed", "effort", "largest_activation"], rows)
+}
+
+/// `front.csv`: what the comfort planner keeps of the front of both comforts.
+#[must_use]
+pub fn front(results: &Results) -> String {
+    let rows = results.fronts.iter().map(|front| {
+        let kept = front.kept(&results.natural);
+        vec![
+            front.operation.clone(),
+            front.points.to_string(),
+            cell(Some(front.optima[0])),
+            cell(Some(front.optima[1])),
+            cell(Some(front.best_objective)),
+            cell(kept.map(|kept| kept.muscular)),
+            cell(kept.map(|kept| kept.peripersonal)),
+            cell(kept.map(|kept| kept.objective)),
+        ]
+    });
+    csv_text(
+        &[
+            "operation",
+            "points",
+            "best_muscular",
+            "best_peripersonal_m",
+            "best_objective",
+            "muscular_kept",
+            "peripersonal_kept",
+            "objective_kept",
+        ],
+        rows,
+    )
+}
+
+/// `circle.csv`: the staged plan for the whole circle and what it is compared with.
+#[must_use]
+pub fn circle(circle: &Circle) -> String {
+    let rows = circle.rows.iter().map(|row| {
+        vec![
+            row.strategy.clone(),
+            row.served.to_string(),
+            cell(row.mean_effort),
+            cell(row.staged_ratio),
+            cell(row.mean_objective),
+        ]
+    });
+    csv_text(&["strategy", "pieces", "mean_effort", "staged_ratio", "mean_objective"], rows)
 }
 
 /// `timing.csv`: durations of planning and simulation. They differ between runs.

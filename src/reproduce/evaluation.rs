@@ -71,6 +71,12 @@ impl HoldRow {
         comfort.average.map_or(comfort.peripersonal_scaled, |average| Some(BODY_POINTS as f64 * average.peripersonal_m))
     }
 
+    /// The effort of the muscles, the sum of their squared activations.
+    #[must_use]
+    pub fn effort(&self) -> Option<f64> {
+        Some(self.plan.as_ref()?.muscles.as_ref()?.effort)
+    }
+
     /// The worst value of a check in simulation.
     #[must_use]
     pub fn value(&self, check: CheckKind) -> Option<f64> {
@@ -87,7 +93,92 @@ pub struct Variant {
     pub holds: Vec<HoldRow>,
 }
 
-/// The results of a run.
+/// What the front of both comforts says of one operation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrontRow {
+    /// The operation's name.
+    pub operation: String,
+    /// Cut or drill.
+    pub kind: OperationKind,
+    /// Number of points that no other point dominates.
+    pub points: usize,
+    /// The best muscular comfort and the best peripersonal comfort, m, of any point.
+    pub optima: [f64; 2],
+    /// The largest objective of any point, with the scenario's weights.
+    pub best_objective: f64,
+}
+
+/// What the comfort planner keeps of a front, as shares.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kept {
+    /// Of the best muscular comfort.
+    pub muscular: f64,
+    /// Of the best peripersonal comfort.
+    pub peripersonal: f64,
+    /// Of the best objective with the scenario's weights.
+    pub objective: f64,
+}
+
+impl FrontRow {
+    /// What the comfort planner's plan for this operation keeps; `None` without a plan.
+    #[must_use]
+    pub fn kept(&self, natural: &Reproduction) -> Option<Kept> {
+        let comfort = natural.hold(&self.operation, PlannerKind::Comfort)?.comfort()?;
+        Some(Kept {
+            muscular: comfort.muscular_regularised / self.optima[0],
+            peripersonal: comfort.peripersonal_m / self.optima[1],
+            objective: comfort.objective / self.best_objective,
+        })
+    }
+}
+
+/// A strategy for the whole circle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CircleRow {
+    /// Its name for readers.
+    pub strategy: String,
+    /// How many pieces of the circle it serves.
+    pub served: usize,
+    /// Mean effort of the muscles over these.
+    pub mean_effort: Option<f64>,
+    /// The staged plan's mean effort over the same pieces, divided by it.
+    pub staged_ratio: Option<f64>,
+    /// Mean objective over the pieces that it serves.
+    pub mean_objective: Option<f64>,
+}
+
+/// The whole circle, cut while the robot moves and regrasps the board.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Circle {
+    /// The verdict of the simulation of all stages.
+    pub verdict: VerdictKind,
+    /// Number of pieces.
+    pub pieces: usize,
+    /// Numbers of motions and of regrasps.
+    pub moves_and_regrasps: [usize; 2],
+    /// Simulated duration, s.
+    pub duration_s: f64,
+    /// The staged plan and what it is compared with.
+    pub rows: Vec<CircleRow>,
+}
+
+/// All that a run of the command finds.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// A person who stands naturally, with the intrinsic metric.
+    pub natural: Reproduction,
+    /// The paper's formulas as printed.
+    pub printed: Reproduction,
+    /// The fronts of the natural evaluation; empty if they were left out.
+    pub fronts: Vec<FrontRow>,
+    /// The whole circle; `None` if it was left out.
+    pub circle: Option<Circle>,
+}
+
+/// The results of one evaluation.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
     /// The results by operation, planner and seed, in the order of tables.
@@ -96,6 +187,8 @@ pub struct Reproduction {
     pub random_seeds: u64,
     /// The comfort planner's results with the paper's stability constraint alone, which is a best case.
     pub best_case: Vec<HoldRow>,
+    /// The comfort planner's results by the effort of the muscles; empty for the evaluation as printed.
+    pub by_muscles: Vec<HoldRow>,
     /// The sensitivity analysis, starting with the default assumptions; empty if it was left out.
     pub sensitivity: Vec<Variant>,
     /// Number of seeds of the random planner in the sensitivity analysis.

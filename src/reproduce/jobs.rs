@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::evaluation::FIRST_SEED;
-use crate::model::scenario::{PlannerKind, Scenario, StabilityKind};
+use crate::model::scenario::{MuscularMetric, PlannerKind, Scenario, StabilityKind};
 
 /// The last step of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -52,6 +52,16 @@ pub fn best_case(scenario: &Scenario) -> Job {
     scenario.planner.seed = FIRST_SEED;
     scenario.planner.stability = StabilityKind::Paper;
     Job { scenario, variant: Some("the paper's stability"), stage: Stage::Simulate }
+}
+
+/// The comfort planner with the effort of the muscles as its muscular comfort.
+#[must_use]
+pub fn by_muscles(scenario: &Scenario) -> Job {
+    let mut scenario = scenario.clone();
+    scenario.planner.kind = PlannerKind::Comfort;
+    scenario.planner.seed = FIRST_SEED;
+    scenario.comfort.muscular = MuscularMetric::Muscles;
+    Job { scenario, variant: Some("by muscles"), stage: Stage::Simulate }
 }
 
 impl Job {

@@ -1,9 +1,9 @@
 //! The 25 operations of the paper's evaluation: 16 cuts of a circle (`docs/method.md#23-cutting`) and a grid of nine holes
 //! (`docs/method.md#22-drilling`). The paper states no sizes; board, pitch and radius are assumptions.
 //!
-//! The operations are texts of scenario files, so they pass the same checks. [`operations`] have the paper's person: its muscular
-//! metric, a shoulder limited by its angles, no limits of the posture, and the first knife. [`natural_operations`] have the
-//! format's defaults.
+//! The operations are texts of scenario files, so they pass the same checks. [`operations`] have the format's defaults;
+//! [`printed_operations`] have the paper's person: its muscular metric, a shoulder limited by its angles, no limits of the
+//! posture, and the first knife.
 
 use std::{f64::consts::TAU, path::Path};
 
@@ -45,7 +45,7 @@ impl PaperOperation {
     /// The resolved scenario.
     ///
     /// # Errors
-    /// As [`load_text`]. The operations of [`operations`] are valid.
+    /// As [`load_text`]. The operations of this module are valid.
     pub fn load(&self) -> Result<LoadedScenario, InputError> {
         load_text(Path::new(&self.name), &self.text)
     }
@@ -58,11 +58,49 @@ const PAPER_PERSON: &str =
 /// Keys of the knife that the reproduction uses.
 const PAPER_KNIFE: &str = "\n[tool]\nname = \"knife-thumb-side\"\n";
 
-/// All operations in the order of tables: the cuts counter-clockwise about +z_O, starting at +x_O; the holes row by row from
-/// (-x_O, -y_O).
+/// The person and the metric of an evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evaluation {
+    /// A person who stands as people stand, with the intrinsic metric and the knife that is drawn: the defaults of a scenario.
+    Natural,
+    /// The paper's formulas as they are printed, without limits of the posture.
+    Printed,
+}
+
+impl Evaluation {
+    /// Both, in the order in which they are run.
+    pub const ALL: [Self; 2] = [Self::Natural, Self::Printed];
+
+    /// The operations.
+    #[must_use]
+    pub fn operations(self) -> Vec<PaperOperation> {
+        match self {
+            Self::Natural => operations(),
+            Self::Printed => printed_operations(),
+        }
+    }
+
+    /// The name in messages and reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Natural => "natural",
+            Self::Printed => "as printed",
+        }
+    }
+}
+
+/// All operations in the order of tables, for a person who stands as people stand: the cuts counter-clockwise about +z_O, starting
+/// at +x_O; the holes row by row from (-x_O, -y_O).
 #[must_use]
 pub fn operations() -> Vec<PaperOperation> {
-    let mut operations = natural_operations();
+    (1..=CUTS).map(cut).chain((1..=DRILLS).map(drill)).collect()
+}
+
+/// The same operations with the paper's person and metric, as printed.
+#[must_use]
+pub fn printed_operations() -> Vec<PaperOperation> {
+    let mut operations = operations();
     for operation in &mut operations {
         operation.text.push_str(PAPER_PERSON);
         if operation.kind == OperationKind::Cut {
@@ -70,13 +108,6 @@ pub fn operations() -> Vec<PaperOperation> {
         }
     }
     operations
-}
-
-/// The same operations for a person who stands as people stand, with the intrinsic metric and the knife that is drawn: the
-/// defaults of a scenario.
-#[must_use]
-pub fn natural_operations() -> Vec<PaperOperation> {
-    (1..=CUTS).map(cut).chain((1..=DRILLS).map(drill)).collect()
 }
 
 /// Cut `k` at the angle `2 pi (k - 1) / 16`, along the tangent, counter-clockwise.

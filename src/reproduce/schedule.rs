@@ -3,6 +3,7 @@
 use super::{
     evaluation::{HoldRow, Reproduction, Variant},
     jobs::{self, Job, Stage},
+    paper::Evaluation,
     sensitivity,
 };
 use crate::scenario::LoadedScenario;
@@ -18,31 +19,35 @@ pub struct Scope {
     pub first: Stage,
     /// True if the comfort planner is also run with the paper's stability alone.
     pub best_case: bool,
+    /// True if the comfort planner is also run by the effort of the muscles.
+    pub by_muscles: bool,
 }
 
 impl Scope {
     /// The whole evaluation.
     #[must_use]
-    pub fn full() -> Self {
-        // The variants of the sensitivity analysis share their seeds, so a few seeds are enough to compare them.
-        Self { random_seeds: 20, sensitivity_seeds: Some(4), first: Stage::FailingLoad, best_case: true }
+    pub fn full(evaluation: Evaluation) -> Self {
+        // The sensitivity analysis is about what the paper does not state, so it has the paper's person. Its variants share their seeds,
+        // so a few seeds are enough to compare them.
+        let sensitivity_seeds = (evaluation == Evaluation::Printed).then_some(4);
+        Self { random_seeds: 20, sensitivity_seeds, first: Stage::FailingLoad, ..Self::quick(evaluation) }
     }
 
     /// Fewer random plans, no failing loads, no sensitivity analysis.
     #[must_use]
-    pub fn quick() -> Self {
-        Self { random_seeds: 3, sensitivity_seeds: None, first: Stage::Simulate, best_case: true }
-    }
-
-    /// The evaluation for a person who stands naturally: no failing loads, no analysis of what the paper assumes.
-    #[must_use]
-    pub fn natural(random_seeds: u64) -> Self {
-        Self { random_seeds, sensitivity_seeds: None, first: Stage::Simulate, best_case: false }
+    pub fn quick(evaluation: Evaluation) -> Self {
+        Self {
+            random_seeds: 3,
+            sensitivity_seeds: None,
+            first: Stage::Simulate,
+            best_case: true,
+            by_muscles: evaluation == Evaluation::Natural,
+        }
     }
 }
 
-/// The jobs of a run: the evaluation, operation by operation; the comfort planner with the paper's stability alone; the
-/// sensitivity analysis, variant by variant.
+/// The jobs of a run: the evaluation, operation by operation; the comfort planner with the paper's stability alone; the same by
+/// the effort of the muscles; the sensitivity analysis, variant by variant.
 pub struct Schedule {
     /// All jobs.
     pub jobs: Vec<Job>,
@@ -50,6 +55,8 @@ pub struct Schedule {
     evaluation: usize,
     /// Number of jobs with the paper's stability alone.
     best_case: usize,
+    /// Number of jobs by the effort of the muscles.
+    by_muscles: usize,
     /// Name and number of jobs of each variant.
     variants: Vec<(&'static str, usize)>,
 }
@@ -66,6 +73,10 @@ impl Schedule {
             jobs.extend(scenarios().map(jobs::best_case));
         }
         let best_case = jobs.len() - evaluation;
+        if scope.by_muscles {
+            jobs.extend(scenarios().map(jobs::by_muscles));
+        }
+        let by_muscles = jobs.len() - evaluation - best_case;
         let mut variants = Vec::new();
         for variant in scope.sensitivity_seeds.map_or(&[][..], |_| &sensitivity::VARIANTS) {
             let before = jobs.len();
@@ -74,7 +85,7 @@ impl Schedule {
             }
             variants.push((variant.name, jobs.len() - before));
         }
-        Self { jobs, evaluation, best_case, variants }
+        Self { jobs, evaluation, best_case, by_muscles, variants }
     }
 
     /// The evaluation from the results of all jobs, in the order of the jobs.
@@ -82,7 +93,7 @@ impl Schedule {
     pub fn reproduction(&self, results: Vec<HoldRow>, scope: &Scope, left_out: Option<String>) -> Reproduction {
         let mut rest = results.into_iter();
         let mut next = |count: usize| rest.by_ref().take(count).collect::<Vec<_>>();
-        let (holds, best_case) = (next(self.evaluation), next(self.best_case));
+        let (holds, best_case, by_muscles) = (next(self.evaluation), next(self.best_case), next(self.by_muscles));
         let mut sensitivity = Vec::new();
         if let Some(seeds) = scope.sensitivity_seeds {
             // The results without a change are those of the evaluation.
@@ -99,6 +110,7 @@ impl Schedule {
             holds,
             random_seeds: scope.random_seeds,
             best_case,
+            by_muscles,
             sensitivity,
             sensitivity_seeds: scope.sensitivity_seeds.unwrap_or(0),
             left_out,

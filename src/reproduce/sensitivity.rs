@@ -66,8 +66,9 @@ pub fn includes(operation: &str) -> bool {
     OPERATIONS.contains(&operation)
 }
 
-/// Sets the optima of both comforts to the means that the muscular and the peripersonal planner reach (`results/table1.csv`),
-/// for cuts and for holes. They are the same for all planners, so that their objectives can be compared.
+/// Sets the optima of both comforts to the means that the muscular and the peripersonal planner reach
+/// (`results/printed/table1.csv`), for cuts and for holes. They are the same for all planners, so that their objectives can be
+/// compared.
 fn normalise(scenario: &mut Scenario) {
     let [muscular_regularised, peripersonal_m] =
         if scenario.operation.kind == OperationKind::Cut { [61.6, 1.28] } else { [100.0, 1.30] };
@@ -107,7 +108,7 @@ mod tests {
 
     #[test]
     fn every_variant_changes_every_operation_of_the_analysis() {
-        let operations: Vec<_> = paper::operations().into_iter().filter(|o| includes(&o.name)).collect();
+        let operations: Vec<_> = paper::printed_operations().into_iter().filter(|o| includes(&o.name)).collect();
         assert_eq!(operations.len(), OPERATIONS.len());
         for operation in operations {
             let scenario = operation.load().unwrap().scenario;
@@ -131,14 +132,14 @@ mod tests {
     #[test]
     fn the_mean_response_is_used_by_every_planner() {
         let variant = VARIANTS.iter().find(|variant| variant.name.starts_with("the mean")).unwrap();
-        let jobs = variant.jobs(&paper::operations()[16].load().unwrap().scenario, 2);
+        let jobs = variant.jobs(&paper::printed_operations()[16].load().unwrap().scenario, 2);
         assert_eq!(jobs.len(), 5, "three planners and two draws");
         assert!(jobs.iter().all(|job| job.scenario.comfort.person == ResponseKind::Mean));
     }
 
     #[test]
     fn a_longer_tool_is_longer_along_its_axis() {
-        let mut scenario = paper::operations()[16].load().unwrap().scenario;
+        let mut scenario = paper::printed_operations()[16].load().unwrap().scenario;
         let before = scenario.tool.tip_h_m;
         lengthen_tool(&mut scenario);
         let moved = Vector3::from(scenario.tool.tip_h_m) - Vector3::from(before);

@@ -132,13 +132,20 @@ pub fn is_task(text: &str) -> bool {
 /// # Errors
 /// As for [`load`], and if the file has no `[task]`.
 pub fn load_task(path: &Path) -> Result<(LoadedScenario, Task), InputError> {
-    let text = scenario_text(path)?;
-    let loaded = load_any(path, &text)?;
+    load_task_text(path, &scenario_text(path)?)
+}
+
+/// As [`load_task`], of the text of a file.
+///
+/// # Errors
+/// As for [`load_task`].
+pub fn load_task_text(path: &Path, text: &str) -> Result<(LoadedScenario, Task), InputError> {
+    let loaded = load_any(path, text)?;
     match loaded.task.clone() {
         Some(task) => Ok((loaded, task)),
         None => {
             let expected = "[task] with a path that is cut or drilled; a scenario of one hold is run by `benchdog run`";
-            Err(check::Checker::toml(path, &text).value("operation", "[operation]", expected))
+            Err(check::Checker::toml(path, text).value("operation", "[operation]", expected))
         }
     }
 }

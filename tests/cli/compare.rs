@@ -55,16 +55,24 @@ fn runs_are_compared_with_each_other_and_with_a_baseline() {
         let (value, limit) = (deflection["value"].as_f64().unwrap() + 1.0, deflection["limit"].as_f64().unwrap());
         (deflection["value"], deflection["margin"]) = (value.into(), (limit - value).into());
         verdict["versions"]["benchdog"] = "9.9.9".into();
+        verdict["criteria"] = 7.into();
     });
     edit(&after.join("suction-cups/verdict.json"), |verdict| {
         (verdict["verdict"], verdict["met"]) = ("detaches".into(), false.into());
         verdict["versions"]["benchdog"] = "9.9.9".into();
+        verdict["criteria"] = 7.into();
     });
     let (code, text, _) = compare(&[&both[..], &["--html", argument(&page)]].concat());
     assert_eq!(code, 1, "{text}");
-    for expected in
-        ["REGRESSION", "deflection", "margin -6.7 % of the limit", "detaches", "was expected, is not", "now 9.9.9"]
-    {
+    for expected in [
+        "REGRESSION",
+        "deflection",
+        "margin -6.7 % of the limit",
+        "detaches",
+        "was expected, is not",
+        "now 9.9.9",
+        "criteria: 1, now 7: verdicts by other criteria are not comparable",
+    ] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
     assert!(text.ends_with("2 compared: 2 regressions, 0 improvements, 0 moved, 0 new\n"), "{text}");

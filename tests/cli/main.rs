@@ -13,6 +13,7 @@ mod commands;
 mod compare;
 mod determinism;
 mod explain;
+mod figures;
 mod habits;
 mod import;
 mod init;

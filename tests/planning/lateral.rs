@@ -57,7 +57,7 @@ fn a_plan_with_a_push_holds_whatever_its_direction() {
 /// The plan of the third cut of the evaluation resists 1.1 times its load, and a push of 13 % turns a hand on the board.
 #[test]
 fn a_plan_without_a_push_need_not_hold_with_one() {
-    let operations = benchdog::reproduce::paper::natural_operations();
+    let operations = benchdog::reproduce::paper::operations();
     let cut = operations.iter().find(|operation| operation.name == "cut-03").unwrap();
     let scenario = cut.load().unwrap().scenario;
     let Outcome::Found(plan) = PLANNER.plan(&scenario).unwrap() else { panic!("a cut of the evaluation has a plan") };

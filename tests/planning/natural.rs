@@ -19,7 +19,7 @@ use crate::{
 
 /// An operation of the paper's evaluation for a natural person.
 fn natural(name: &str) -> Scenario {
-    let operation = paper::natural_operations().into_iter().find(|operation| operation.name == name).unwrap();
+    let operation = paper::operations().into_iter().find(|operation| operation.name == name).unwrap();
     operation.load().unwrap().scenario
 }
 
@@ -158,7 +158,7 @@ fn the_papers_person_gives_the_comfort_of_the_first_release() {
     for name in ["cut-05-comfort", "drill-5-muscular", "cut-05-peripersonal", "drill-5-random"] {
         let path = crate::common::root().join(format!("tests/data/first_release/{name}.json"));
         let old: Plan = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-        let operation = paper::operations().into_iter().find(|operation| operation.name == old.name).unwrap();
+        let operation = paper::printed_operations().into_iter().find(|operation| operation.name == old.name).unwrap();
         assert!(matches!(operation.kind, OperationKind::Cut | OperationKind::Drill));
         let mut scenario = operation.load().unwrap().scenario;
         scenario.planner.kind = old.planner.unwrap().kind;

@@ -3,6 +3,7 @@
 //! [`crate::reproduce`] lists the jobs and makes tables, pictures and conclusions from their results; [`runner`] runs a job
 //! and caches its result. Equal runs write equal files, except `timing.csv`; durations are also printed.
 
+mod circle;
 mod runner;
 
 use std::{
@@ -28,9 +29,11 @@ use crate::{
     },
     reproduce::{
         claims, csv_files,
-        evaluation::{HoldRow, KINDS, Reproduction},
+        evaluation::{FrontRow, HoldRow, KINDS, Reproduction, Results},
         jobs::Job,
-        markdown, paper, picture,
+        markdown,
+        paper::{self, Evaluation},
+        picture,
         schedule::{Schedule, Scope},
         timing,
     },
@@ -39,28 +42,56 @@ use crate::{
 };
 use runner::JobRunner;
 
-/// Runs the evaluation and writes its results.
+/// Runs both evaluations and writes their results.
 pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let progress = Progress::counting("reading the operations", "")?;
-    let operations = operations(args)?;
-    let Some(first) = operations.first() else { return Ok(Exit::Met) };
     let out = args.folder();
+    let operations = Evaluation::ALL.map(|evaluation| operations(args, evaluation));
+    let [natural, printed] = operations;
+    let (natural, printed) = (natural?, printed?);
+    let Some(LoadedScenario { robot, .. }) = natural.first() else { return Ok(Exit::Met) };
     file::check_folder(&out)?;
-    let scope = args.scope();
-    let schedule = Schedule::new(&operations, &scope);
-    let runner = JobRunner::new(&first.robot, &out, args, &progress)?;
-    let folder = runner.folder();
+    let runner = |evaluation, folder: &Path| JobRunner::new(evaluation, robot, folder, args, &progress);
+    let of_natural = runner(Evaluation::Natural, &out)?;
+    let of_printed = runner(Evaluation::Printed, &out.join(PRINTED))?;
+    let folder = of_natural.folder();
     let folder = folder.display();
     progress.leaves(&format!("finished results are kept in {folder}, and the same command continues from them"));
-    let rows = threads::with_threads(args.jobs, || run_jobs(&runner, &schedule.jobs, &progress))??;
-    let reproduction = schedule.reproduction(rows, &scope, left_out(args, operations.len()));
-    if args.natural {
-        write_natural_results(&reproduction, &first.robot, &out)?;
-    } else {
-        write_results(&reproduction, &operations, &first.robot, &out)?;
-    }
-    output::report(&summary(&reproduction, &out))?;
-    Ok(reproduction.first_seeds().map(exit_of).max().unwrap_or(Exit::Met))
+    let results = threads::with_threads(args.jobs, || {
+        Ok::<_, CliError>(Results {
+            natural: evaluate(&natural, &of_natural, args)?,
+            printed: evaluate(&printed, &of_printed, args)?,
+            fronts: if args.quick { Vec::new() } else { fronts(&natural, &of_natural)? },
+            circle: if args.quick { None } else { Some(of_natural.circle()?) },
+        })
+    })??;
+    progress.finish();
+    write_results(&results, [&natural, &printed], robot, &out)?;
+    output::report(&summary(&results, &out))?;
+    let all = results.natural.first_seeds().chain(results.printed.first_seeds());
+    Ok(all.map(exit_of).max().unwrap_or(Exit::Met))
+}
+
+/// The folder of the evaluation as printed, in that of the results.
+const PRINTED: &str = "printed";
+
+/// Runs the jobs of one evaluation.
+fn evaluate(
+    operations: &[LoadedScenario],
+    runner: &JobRunner<'_>,
+    args: &ReproduceArgs,
+) -> Result<Reproduction, CliError> {
+    let evaluation = runner.evaluation();
+    let scope = if args.quick { Scope::quick(evaluation) } else { Scope::full(evaluation) };
+    let schedule = Schedule::new(operations, &scope);
+    let rows = run_jobs(runner, &schedule.jobs)?;
+    Ok(schedule.reproduction(rows, &scope, left_out(args, &scope, operations.len())))
+}
+
+/// The fronts of both comforts, one per operation.
+fn fronts(operations: &[LoadedScenario], runner: &JobRunner<'_>) -> Result<Vec<FrontRow>, CliError> {
+    let rows = parallel::map_in_parallel(operations, |operation| runner.front(&operation.scenario));
+    Ok(rows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
 /// Writes a file that Ctrl-C leaves whole.
@@ -74,11 +105,11 @@ fn exit_of(row: &HoldRow) -> Exit {
     row.verdict.as_ref().map_or(Exit::Infeasible, Exit::of)
 }
 
-/// The operations that pass a filter, or all without one.
-fn operations(args: &ReproduceArgs) -> Result<Vec<LoadedScenario>, CliError> {
+/// The operations of an evaluation that pass a filter, or all without one.
+fn operations(args: &ReproduceArgs, evaluation: Evaluation) -> Result<Vec<LoadedScenario>, CliError> {
     let asked = args.filter.join(", ");
     let filters = args.filter.iter().map(|text| Filter::new(text)).collect::<Result<Vec<_>, _>>()?;
-    let all = if args.natural { paper::natural_operations() } else { paper::operations() };
+    let all = evaluation.operations();
     let wanted = |name: &str| filters.is_empty() || filters.iter().any(|filter| filter.passes(name));
     let operations: Vec<_> =
         all.iter().filter(|operation| wanted(&operation.name)).map(|o| o.load()).collect::<Result<_, _>>()?;
@@ -92,7 +123,8 @@ fn operations(args: &ReproduceArgs) -> Result<Vec<LoadedScenario>, CliError> {
 }
 
 /// Runs all jobs and returns their results in order.
-fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result<Vec<HoldRow>, CliError> {
+fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job]) -> Result<Vec<HoldRow>, CliError> {
+    let progress = runner.progress();
     progress.expect(jobs.len());
     // An error such as a full disk would repeat, so no job starts after the first one.
     let first_error: Mutex<Option<CliError>> = Mutex::new(None);
@@ -101,10 +133,11 @@ fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result
         if first_error.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
             return None;
         }
-        progress.begins(&job.name());
+        let name = runner.name(job);
+        progress.begins(&name);
         match runner.run(job) {
             Ok(result) => {
-                progress.advances(result.line(job).as_deref());
+                progress.advances(result.line(&name).as_deref());
                 Some(result.row)
             }
             Err(error) => {
@@ -113,7 +146,6 @@ fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result
             }
         }
     });
-    progress.finish();
     match first_error.into_inner().unwrap_or_else(PoisonError::into_inner) {
         Some(error) => Err(error),
         // Without an error every job has a result.
@@ -122,12 +154,12 @@ fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job], progress: &Progress) -> Result
 }
 
 /// What this run leaves out of the whole evaluation; `None` if nothing.
-fn left_out(args: &ReproduceArgs, operations: usize) -> Option<String> {
+fn left_out(args: &ReproduceArgs, scope: &Scope, operations: usize) -> Option<String> {
     let mut parts = Vec::new();
     if args.quick {
-        let seeds = args.scope().random_seeds;
+        let seeds = scope.random_seeds;
         parts.push(format!(
-            "{seeds} seeds of the random planner, no search for failing loads and no sensitivity analysis (`--quick`)"
+            "{seeds} seeds of the random planner; no failing loads, sensitivity analysis, fronts and whole circle (`--quick`)"
         ));
     }
     if operations < paper::CUTS + paper::DRILLS {
@@ -138,46 +170,61 @@ fn left_out(args: &ReproduceArgs, operations: usize) -> Option<String> {
 
 /// Writes all files, the report last: if it exists, the others are complete.
 fn write_results(
+    results: &Results,
+    [natural, printed]: [&[LoadedScenario]; 2],
+    robot: &Robot,
+    out: &Path,
+) -> Result<(), CliError> {
+    file::remove(&out.join("report.md"))?;
+    write_evaluation(&results.natural, natural, robot, out)?;
+    let of_printed = out.join(PRINTED);
+    file::remove(&of_printed.join("report.md"))?;
+    write_evaluation(&results.printed, printed, robot, &of_printed)?;
+    write_file(&of_printed.join("report.md"), markdown::printed_report(results).as_bytes())?;
+    write_unless_empty(&out.join("front.csv"), results.fronts.is_empty(), || csv_files::front(results))?;
+    let circle = results.circle.as_ref();
+    write_unless_empty(&out.join("circle.csv"), circle.is_none(), || {
+        circle.map_or_else(String::new, csv_files::circle)
+    })?;
+    write_file(&out.join("report.md"), markdown::report(results).as_bytes())?;
+    Ok(())
+}
+
+/// Writes a file, or removes that of an earlier run if there is nothing to write.
+fn write_unless_empty(path: &Path, is_empty: bool, text: impl FnOnce() -> String) -> Result<(), CliError> {
+    if is_empty {
+        file::remove(path)?
+    } else {
+        write_file(path, text().as_bytes())?
+    }
+    Ok(())
+}
+
+/// Writes the files of one evaluation but its report.
+fn write_evaluation(
     reproduction: &Reproduction,
     operations: &[LoadedScenario],
     robot: &Robot,
     out: &Path,
 ) -> Result<(), CliError> {
     let write = |name: &str, text: &str| write_file(&out.join(name), text.as_bytes());
-    file::remove(&out.join("report.md"))?;
     write("table1.csv", &csv_files::table1(reproduction))?;
     write("plans.csv", &csv_files::plans(reproduction))?;
+    write("postures.csv", &csv_files::postures(reproduction))?;
+    write("effort.csv", &csv_files::effort(reproduction))?;
     write("physics.csv", &csv_files::physics(reproduction.first_seeds()))?;
     write("best_case.csv", &csv_files::physics(reproduction.best_case.iter()))?;
     write("random.csv", &csv_files::random(reproduction))?;
     write("timing.csv", &csv_files::timing(reproduction))?;
-    match reproduction.sensitivity.is_empty() {
-        true => file::remove(&out.join("sensitivity.csv"))?,
-        false => write("sensitivity.csv", &csv_files::sensitivity(reproduction))?,
-    }
+    let sensitivity = &reproduction.sensitivity;
+    write_unless_empty(&out.join("by_muscles.csv"), reproduction.by_muscles.is_empty(), || {
+        csv_files::physics(reproduction.by_muscles.iter())
+    })?;
+    write_unless_empty(&out.join("sensitivity.csv"), sensitivity.is_empty(), || csv_files::sensitivity(reproduction))?;
     for kind in KINDS {
         write_pictures(reproduction, kind, robot, &out.join("pictures"))?;
     }
-    write_curve(operations, out)?;
-    write("report.md", &markdown::report(reproduction))?;
-    Ok(())
-}
-
-/// Writes all files of the evaluation for a person who stands naturally, the report last.
-fn write_natural_results(reproduction: &Reproduction, robot: &Robot, out: &Path) -> Result<(), CliError> {
-    let write = |name: &str, text: &str| write_file(&out.join(name), text.as_bytes());
-    file::remove(&out.join("report.md"))?;
-    write("table1.csv", &csv_files::table1(reproduction))?;
-    write("plans.csv", &csv_files::plans(reproduction))?;
-    write("postures.csv", &csv_files::postures(reproduction))?;
-    write("physics.csv", &csv_files::physics(reproduction.first_seeds()))?;
-    write("random.csv", &csv_files::random(reproduction))?;
-    write("timing.csv", &csv_files::timing(reproduction))?;
-    for kind in KINDS {
-        write_pictures(reproduction, kind, robot, &out.join("pictures"))?;
-    }
-    write("report.md", &markdown::natural_report(reproduction))?;
-    Ok(())
+    write_curve(operations, out)
 }
 
 /// Writes one picture per planner, for one operation of this kind.
@@ -207,40 +254,35 @@ fn write_curve(operations: &[LoadedScenario], out: &Path) -> Result<(), CliError
 }
 
 /// The text that is printed at the end.
-fn summary(reproduction: &Reproduction, out: &Path) -> String {
-    let claims = claims::claims(reproduction);
+fn summary(results: &Results, out: &Path) -> String {
+    let mut text = String::new();
+    for (evaluation, reproduction) in Evaluation::ALL.into_iter().zip([&results.natural, &results.printed]) {
+        text.push_str(&of_evaluation(evaluation, reproduction));
+    }
+    text.push_str(&format!("written: {}\n", out.join("report.md").display()));
+    text
+}
+
+/// The conclusions of one evaluation, what holds in simulation, and durations.
+fn of_evaluation(evaluation: Evaluation, reproduction: &Reproduction) -> String {
     let (simulated, held) = reproduction
         .first_seeds()
         .fold((0, 0), |(simulated, held), row| (simulated + 1, held + usize::from(claims::holds(row))));
-    let mut text = String::new();
-    for claim in &claims {
-        text.push_str(&format!(
-            "{:<4} {}: {}\n",
-            if claim.holds { "yes" } else { "NO" },
-            claim.sentence,
-            claim.figures
-        ));
+    let mut text = format!("{}\n", evaluation.name());
+    for claim in claims::claims(reproduction) {
+        let mark = if claim.holds { "yes" } else { "NO" };
+        text.push_str(&format!("{mark:<4} {}: {}\n", claim.sentence, claim.figures));
     }
     text.push_str(&format!("{held} of {simulated} plans hold in simulation\n\n"));
     text.push_str(&timing::summary(reproduction));
-    text.push_str(&format!("\nwritten: {}\n", out.join("report.md").display()));
+    text.push('\n');
     text
 }
 
 impl ReproduceArgs {
-    fn scope(&self) -> Scope {
-        let usual = if self.quick { Scope::quick() } else { Scope::full() };
-        if self.natural { Scope::natural(usual.random_seeds) } else { usual }
-    }
-
     /// The folder of the results. By default a quick run does not overwrite those of a whole run.
     fn folder(&self) -> PathBuf {
-        let default = match (self.quick, self.natural) {
-            (false, false) => "results",
-            (false, true) => "results/natural",
-            (true, false) => "out/reproduce-quick",
-            (true, true) => "out/reproduce-quick-natural",
-        };
+        let default = if self.quick { "out/reproduce-quick" } else { "results" };
         self.out.clone().unwrap_or_else(|| default.into())
     }
 }

@@ -10,9 +10,10 @@ use std::{
     time::Instant,
 };
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use sha2::{Digest, Sha256};
 
+use super::circle;
 use crate::{
     check::CheckedPlan,
     cli::{
@@ -22,13 +23,14 @@ use crate::{
         planners::Planners,
         progress::Progress,
     },
-    model::plan::Plan,
+    model::{plan::Plan, scenario::Scenario},
     pipeline::{self, Run, recording},
-    planner::Outcome,
+    planner::{FrontPoint, Outcome},
     report::file,
     reproduce::{
-        evaluation::HoldRow,
+        evaluation::{Circle, FrontRow, HoldRow},
         jobs::{Job, Stage},
+        paper::Evaluation,
     },
     robot::Robot,
 };
@@ -42,16 +44,17 @@ pub struct JobResult {
 }
 
 impl JobResult {
-    /// The progress message; `None` for a cached result and one that was only planned.
-    pub fn line(&self, job: &Job) -> Option<String> {
+    /// The progress message of a job with this name; `None` for a cached result and one that was only planned.
+    pub fn line(&self, name: &str) -> Option<String> {
         let verdict = self.row.verdict.as_ref().filter(|_| self.is_new)?;
         let load = self.row.load_factor_simulated.map(|factor| format!(", up to {factor:.2} of the load"));
-        Some(format!("{}: {}{}", job.name(), verdict.verdict, load.unwrap_or_default()))
+        Some(format!("{name}: {}{}", verdict.verdict, load.unwrap_or_default()))
     }
 }
 
-/// Runs jobs and caches their results in a folder.
+/// Runs the jobs of an evaluation and caches their results in a folder.
 pub struct JobRunner<'a> {
+    evaluation: Evaluation,
     robot: &'a Robot,
     progress: &'a Progress,
     planners: Planners,
@@ -64,9 +67,9 @@ pub struct JobRunner<'a> {
 /// The file of a cached result.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct CachedResult {
+struct CachedResult<T> {
     fingerprint: String,
-    hold: HoldRow,
+    result: T,
 }
 
 impl<'a> JobRunner<'a> {
@@ -74,11 +77,18 @@ impl<'a> JobRunner<'a> {
     ///
     /// # Errors
     /// If the executable file cannot be read.
-    pub fn new(robot: &'a Robot, out: &Path, args: &ReproduceArgs, progress: &'a Progress) -> Result<Self, CliError> {
+    pub fn new(
+        evaluation: Evaluation,
+        robot: &'a Robot,
+        out: &Path,
+        args: &ReproduceArgs,
+        progress: &'a Progress,
+    ) -> Result<Self, CliError> {
         let executable = std::env::current_exe()
             .and_then(fs::read)
             .map_err(|error| CliError::Machine(format!("failed to read this program's own file: {error}")))?;
         Ok(Self {
+            evaluation,
             robot,
             progress,
             planners: Planners::new(args.cache),
@@ -86,6 +96,24 @@ impl<'a> JobRunner<'a> {
             executable: base16ct::lower::encode_string(&Sha256::digest(executable)),
             record: args.record,
         })
+    }
+
+    /// The evaluation whose jobs it runs.
+    pub fn evaluation(&self) -> Evaluation {
+        self.evaluation
+    }
+
+    /// Where the run's progress is shown.
+    pub fn progress(&self) -> &'a Progress {
+        self.progress
+    }
+
+    /// The name of a job in messages.
+    pub fn name(&self, job: &Job) -> String {
+        match self.evaluation {
+            Evaluation::Natural => job.name(),
+            Evaluation::Printed => format!("{}, {}", job.name(), self.evaluation.name()),
+        }
     }
 
     /// The folder of the cache.
@@ -117,17 +145,60 @@ impl<'a> JobRunner<'a> {
         if let Some(row) = self.cached(job, &fingerprint) {
             return Ok(JobResult { row, is_new: false });
         }
-        let result = CachedResult { fingerprint, hold: self.compute(job)? };
-        // Serialisation fails only for maps whose keys are not strings; there are none.
-        let bytes = serde_json::to_vec(&result).expect("a result has only string keys");
-        let _writing = interrupt::writing();
-        file::write_whole(&self.cache_path(job), &bytes)?;
-        Ok(JobResult { row: result.hold, is_new: true })
+        let row = write(&self.cache_path(job), fingerprint, self.compute(job)?)?;
+        Ok(JobResult { row, is_new: true })
     }
 
-    /// SHA-256 of all that a result depends on: the executable, the scenario and the stage.
+    /// The front of both comforts for an operation, from the cache or else computed; `None` if there is no plan.
+    ///
+    /// # Errors
+    /// If the search is stopped or a file cannot be written.
+    pub fn front(&self, scenario: &Scenario) -> Result<Option<FrontRow>, CliError> {
+        let path = self.folder().join("front").join(format!("{}.json", scenario.name));
+        let fingerprint = self.fingerprint_of(&("front", scenario));
+        if let Some(row) = read(&path, &fingerprint) {
+            return Ok(Some(row));
+        }
+        self.progress.begins(&format!("{} front", scenario.name));
+        let planner = self.planners.of(self.robot);
+        let Outcome::Found(front) = planner.search(scenario).watch(self.progress).front()? else { return Ok(None) };
+        let [weight_muscular, weight_peripersonal] = scenario.comfort.weights();
+        let objective = |point: &FrontPoint| {
+            let [muscular, peripersonal_m] = point.comforts();
+            weight_muscular * muscular + weight_peripersonal * peripersonal_m
+        };
+        let best = front.points.iter().chain([&front.own]).map(objective).fold(f64::NEG_INFINITY, f64::max);
+        let row = FrontRow {
+            operation: scenario.name.clone(),
+            kind: scenario.operation.kind,
+            points: front.points.len(),
+            optima: front.optima,
+            best_objective: best,
+        };
+        write(&path, fingerprint, row).map(Some)
+    }
+
+    /// The whole circle, from the cache or else planned, compared, simulated and judged.
+    ///
+    /// # Errors
+    /// If it cannot be planned or simulated, or a file cannot be written.
+    pub fn circle(&self) -> Result<Circle, CliError> {
+        let path = self.folder().join("circle.json");
+        let fingerprint = self.fingerprint_of(&("circle", circle::SCENARIO));
+        match read(&path, &fingerprint) {
+            Some(circle) => Ok(circle),
+            None => write(&path, fingerprint, circle::circle(&self.planners, self.progress)?),
+        }
+    }
+
+    /// SHA-256 of all that a job's result depends on: the executable, the scenario and the stage.
     fn fingerprint(&self, job: &Job) -> String {
-        let inputs = serde_json::to_vec(&(&self.executable, &job.scenario, job.stage));
+        self.fingerprint_of(&(&job.scenario, job.stage))
+    }
+
+    /// SHA-256 of the executable and of inputs.
+    fn fingerprint_of(&self, inputs: &impl Serialize) -> String {
+        let inputs = serde_json::to_vec(&(&self.executable, inputs));
         base16ct::lower::encode_string(&Sha256::digest(inputs.expect("a scenario has only string keys")))
     }
 
@@ -211,7 +282,17 @@ impl<'a> JobRunner<'a> {
 }
 
 /// The cached result in a file, if it has this fingerprint.
-fn read(path: &Path, fingerprint: &str) -> Option<HoldRow> {
-    let cached: CachedResult = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
-    (cached.fingerprint == fingerprint).then_some(cached.hold)
+fn read<T: DeserializeOwned>(path: &Path, fingerprint: &str) -> Option<T> {
+    let cached: CachedResult<T> = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    (cached.fingerprint == fingerprint).then_some(cached.result)
+}
+
+/// Writes a result into its file, and returns it.
+fn write<T: Serialize>(path: &Path, fingerprint: String, result: T) -> Result<T, CliError> {
+    let cached = CachedResult { fingerprint, result };
+    // Serialisation fails only for maps whose keys are not strings; there are none.
+    let bytes = serde_json::to_vec(&cached).expect("a result has only string keys");
+    let _writing = interrupt::writing();
+    file::write_whole(path, &bytes)?;
+    Ok(cached.result)
 }

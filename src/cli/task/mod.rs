@@ -39,7 +39,9 @@ use crate::{
     robot::Robot,
     scenario::{self, LoadedStagedPlan},
 };
-use staged::{StagedRun, run_staged};
+pub use compare::compared;
+use staged::StagedRun;
+pub use staged::run_staged;
 use stream::{StageStream, Waiting};
 
 /// The files of a task.
@@ -110,7 +112,7 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     let best: Vec<_> = separate.iter().map(|plan| Some(plan.as_ref()?.comfort?.objective)).collect();
     report::file::write_whole(&files.plan, report::json::pretty(staged).as_bytes())?;
     report::file::write_whole(&files.path, report::task::path_csv(staged, &best).as_bytes())?;
-    let comparison = compared(args.compare, &planner, &loaded.scenario, &found, (&files, &progress))?;
+    let comparison = comparison(args.compare, &planner, &loaded.scenario, &found, (&files, &progress))?;
     let staged = found.staged;
     if args.plan_only {
         progress.finish();
@@ -161,7 +163,7 @@ fn found(search: Search<'_>, task: &Task, ahead: Option<u16>, path: &Path) -> Re
 }
 
 /// Compares the plan with other strategies if that is wanted, and writes the tables; otherwise removes those of another plan.
-fn compared(
+fn comparison(
     is_wanted: bool,
     planner: &Planner,
     scenario: &Scenario,
@@ -174,7 +176,7 @@ fn compared(
         return Ok(None);
     }
     progress.leaves("the plan is written");
-    let comparison = compare::compared(planner, scenario, found, progress)?;
+    let comparison = compared(planner, scenario, found, progress)?;
     report::file::write_whole(&files.compared_pieces, report::comparison::pieces_csv(&comparison).as_bytes())?;
     report::file::write_whole(&files.comparison, report::comparison::csv(&comparison).as_bytes())?;
     Ok(Some(comparison))

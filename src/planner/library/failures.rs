@@ -106,7 +106,7 @@ mod tests {
     /// Collisions that every draw has are told as such; their share is that of all draws.
     #[test]
     fn links_that_always_collide_are_named() {
-        let robot = paper::operations()[0].load().unwrap().robot;
+        let robot = paper::printed_operations()[0].load().unwrap().robot;
         let pair = DrawFailure::Collision { bodies: [Body::Link(1), Body::Link(2)] };
         let mut failures = DrawFailures::default();
         (0..93).for_each(|_| failures.count(pair));

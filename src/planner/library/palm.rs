@@ -81,7 +81,7 @@ mod tests {
     /// takes as much from the range. A grasp at an angle brings a corner of the palm nearer still.
     #[test]
     fn the_palm_limits_the_depth() {
-        let loaded = paper::operations()[0].load().unwrap();
+        let loaded = paper::printed_operations()[0].load().unwrap();
         let board = loaded.scenario.object.shape();
         let of = |clearance_m: f64| GraspingRobot::new(&loaded.robot, &board, clearance_m);
         // Baxter's palm is 47 mm from the board at a depth of 60 mm (docs/method.md#35-clearances).
@@ -111,7 +111,7 @@ mod tests {
     /// corners of a plate keep the clearance too.
     #[test]
     fn the_palm_limits_the_depth_in_plates() {
-        let loaded = paper::operations()[0].load().unwrap();
+        let loaded = paper::printed_operations()[0].load().unwrap();
         let robot_for = |board: &BoardShape| GraspingRobot::new(&loaded.robot, board, 0.060);
         let cuboid = loaded.scenario.object.shape();
         let plate =

@@ -86,7 +86,7 @@ mod tests {
     };
 
     fn library() -> GraspLibrary {
-        let loaded = paper::operations()[0].load().unwrap();
+        let loaded = paper::printed_operations()[0].load().unwrap();
         GraspLibrary::new(&loaded.robot, &loaded.scenario.object.shape(), loaded.scenario.limits.clearance_m())
     }
 
@@ -124,7 +124,7 @@ mod tests {
     /// A plate whose sides are 30 mm long has no edge for pads of 40.4 mm, and the evidence says so.
     #[test]
     fn a_plate_without_an_edge_for_the_pads_has_no_grasp() {
-        let loaded = paper::operations()[0].load().unwrap();
+        let loaded = paper::printed_operations()[0].load().unwrap();
         let outline_m = vec![[0.015, -0.015], [0.015, 0.015], [-0.015, 0.015], [-0.015, -0.015]];
         let board = BoardShape::plate(PlateRecord { outline_m, holes_m: Vec::new() }.into(), 0.02);
         let library = GraspLibrary::new(&loaded.robot, &board, 0.005);

@@ -276,9 +276,9 @@ mod tests {
     fn gradients_equal_differences() {
         let given =
             StandingPlace::Given { p_wb_m: [1.0, -0.2], heading_deg: 185.0, tolerance_m: 0.3, tolerance_deg: 30.0 };
-        let natural = paper::natural_operations;
+        let natural = paper::operations;
         for (operations, place) in
-            [(paper::operations(), StandingPlace::Free), (natural(), StandingPlace::Free), (natural(), given)]
+            [(paper::printed_operations(), StandingPlace::Free), (natural(), StandingPlace::Free), (natural(), given)]
         {
             for name in ["cut-03", "drill-2"] {
                 let operation = operations.iter().find(|operation| operation.name == name).unwrap();

@@ -3,7 +3,7 @@
 use maud::html as markup;
 
 use super::{columns::aligned, html::document};
-use crate::compare::{Change, ChangeKind, Comparison};
+use crate::compare::{CRITERIA, Change, ChangeKind, Comparison};
 
 /// The head of the table of changes.
 const HEAD: [&str; 6] = ["", "name", "what", "before", "after", "by"];
@@ -33,6 +33,11 @@ pub fn sentence(comparison: &Comparison) -> String {
     )
 }
 
+/// What another version of this name means for the comparison.
+fn meaning(name: &str) -> &'static str {
+    if name == CRITERIA { ": verdicts by other criteria are not comparable" } else { "" }
+}
+
 /// A table of the changes, the versions that differ, and the number of changes.
 #[must_use]
 pub fn text(comparison: &Comparison) -> String {
@@ -45,7 +50,7 @@ pub fn text(comparison: &Comparison) -> String {
     // A head alone says nothing.
     let mut text = if rows.len() > 1 { aligned(&rows, HEAD.len()) } else { String::new() };
     for (name, before, after) in &comparison.versions {
-        text.push_str(&format!("version of {name}: {before}, now {after}\n"));
+        text.push_str(&format!("version of {name}: {before}, now {after}{}\n", meaning(name)));
     }
     text.push_str(&sentence(comparison));
     text.push('\n');
@@ -58,7 +63,9 @@ pub fn html(comparison: &Comparison, tolerance: f64) -> String {
     let title = format!("Benchdog: {}", sentence(comparison));
     let body = markup! {
         p.made { "Made by benchdog " (env!("CARGO_PKG_VERSION")) ". Tolerance " (tolerance) "." }
-        @for (name, before, after) in &comparison.versions { p { "Version of " (name) ": " (before) ", now " (after) "." } }
+        @for (name, before, after) in &comparison.versions {
+            p { "Version of " (name) ": " (before) ", now " (after) (meaning(name)) "." }
+        }
         @if comparison.changes.is_empty() { p { "Nothing changed by more than the tolerance." } }
         @else {
             div.wide {
