@@ -17,7 +17,10 @@ use crate::{
     input::{self, MOST_DOCUMENT},
     model::{file_name::REPORTS, plan::Plan, scenario::Scenario},
     pipeline::{Run, recording},
-    report::{self, Outcome, SkipReason},
+    report::{
+        self, Outcome, SkipReason,
+        hold::{HoldPictures, Holding, SimulatedHold},
+    },
     robot::Robot,
 };
 
@@ -189,10 +192,12 @@ pub fn write_run(
     write_or_remove(&files.recording, recording)?;
     write_or_remove(&files.verdict, Some(report::json::verdict(&run.verdict).into_bytes()))?;
     let recording = recorded.then_some(files.recording);
+    let pictures = pictures(&run, scenario, robot)?;
     Ok(FinishedRun {
         exit: Exit::of(&run.verdict),
         wall_s: None,
         outcome: Outcome::Judged {
+            pictures,
             measures: run.simulated.map(|(_, judgement)| Box::new(judgement.measures)),
             clearance: run.plan.as_ref().and_then(|plan| plan.clearance.as_ref()).map(ToString::to_string),
             scores: run.plan.as_ref().and_then(|plan| plan.comfort?.scores()),
@@ -202,6 +207,18 @@ pub fn write_run(
             recording,
         },
     })
+}
+
+/// The pictures of a run for reports; `None` without a plan.
+fn pictures(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Box<HoldPictures>>, CliError> {
+    let Some(plan) = &run.plan else { return Ok(None) };
+    let simulated = run.simulated.as_ref().map(|(trace, judgement)| SimulatedHold {
+        trace,
+        measures: &judgement.measures,
+        events: &judgement.events,
+    });
+    let holding = Holding { plan, robot, person: scenario.human, tool: scenario.tool };
+    Ok(Some(Box::new(HoldPictures::new(&holding, simulated, &run.verdict)?)))
 }
 
 /// Writes a file of a run, or removes that of an earlier run if this one has none.

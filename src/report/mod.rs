@@ -3,6 +3,7 @@
 //! All functions are pure, from outcomes to text, except those of [`mod@file`], which write to the disk. Nothing here
 //! changes a verdict, prints, or reads a clock. Durations are shown on the console only, so equal runs write equal files.
 
+pub mod bodies;
 pub(crate) mod columns;
 pub mod compare;
 pub mod comparison;
@@ -11,6 +12,7 @@ pub(crate) mod csv_text;
 pub mod curve;
 pub mod file;
 pub mod front;
+pub mod hold;
 pub mod html;
 pub(crate) mod hull;
 pub mod json;
@@ -56,6 +58,8 @@ pub enum Outcome {
         clearance: Option<String>,
         /// The judge's time series; `None` if nothing was simulated.
         measures: Option<Box<Measures>>,
+        /// The scene as planned, or at the moment of failure; `None` without a plan.
+        pictures: Option<Box<hold::HoldPictures>>,
         /// The recording's file, if one was written.
         recording: Option<PathBuf>,
     },
