@@ -16,7 +16,7 @@ use super::{
 use crate::{
     input::{self, MOST_DOCUMENT},
     model::{file_name::REPORTS, plan::Plan, scenario::Scenario},
-    pipeline::{Run, recording},
+    pipeline::{Run, mcap, recording},
     report::{
         self, Outcome, SkipReason,
         hold::{HoldPictures, Holding, SimulatedHold},
@@ -68,6 +68,7 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
 struct RunFiles {
     plan: PathBuf,
     recording: PathBuf,
+    mcap: PathBuf,
     verdict: PathBuf,
 }
 
@@ -77,6 +78,7 @@ impl RunFiles {
         Self {
             plan: folder.join("plan.json"),
             recording: folder.join("recording.rrd"),
+            mcap: folder.join("trace.mcap"),
             verdict: folder.join("verdict.json"),
         }
     }
@@ -88,9 +90,9 @@ impl RunFiles {
 /// # Errors
 /// If a file of the run is one of the inputs.
 pub fn protect(args: &ReportArgs, folder: &Path, plan_file: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
-    let RunFiles { plan, recording, verdict } = RunFiles::new(folder);
+    let RunFiles { plan, recording, mcap, verdict } = RunFiles::new(folder);
     let is_own = plan_file.is_some_and(|file| is_same_file(file, &plan));
-    let outputs = [recording, verdict].into_iter().chain((!is_own).then_some(plan)).chain(args.junit.clone());
+    let outputs = [recording, mcap, verdict].into_iter().chain((!is_own).then_some(plan)).chain(args.junit.clone());
     inputs::protect(inputs, outputs)
 }
 
@@ -165,7 +167,7 @@ pub fn prepare<'a>(args: &ReportArgs, folders: impl Iterator<Item = &'a Path>) -
     Ok(())
 }
 
-/// Writes plan, recording and, last, verdict of a run into its folder. A plan that was read from its place
+/// Writes plan, recording, MCAP file and, last, verdict of a run into its folder. A plan that was read from its place
 /// there, `plan_file`, is left as it is.
 ///
 /// # Errors
@@ -175,21 +177,23 @@ pub fn write_run(
     scenario: &Scenario,
     robot: &Robot,
     plan_file: Option<&Path>,
-    (folder, record): (&Path, RecordChoice),
+    (folder, args): (&Path, &ReportArgs),
 ) -> Result<FinishedRun, CliError> {
     let files = RunFiles::new(folder);
-    let wanted = match record {
+    let wanted = match args.record {
         RecordChoice::Never => false,
         RecordChoice::Failed => !run.verdict.met,
         RecordChoice::Always => true,
     };
     let recording = if wanted { recording::encode(&run, scenario, robot)? } else { None };
+    let mcap = if args.mcap { mcap::encode(&run, robot)? } else { None };
     let plan = run.plan.as_ref().map(|plan| report::json::plan(plan).into_bytes());
     let recorded = recording.is_some();
     if !plan_file.is_some_and(|file| is_same_file(file, &files.plan)) {
         write_or_remove(&files.plan, plan)?;
     }
     write_or_remove(&files.recording, recording)?;
+    write_or_remove(&files.mcap, mcap)?;
     write_or_remove(&files.verdict, Some(report::json::verdict(&run.verdict).into_bytes()))?;
     let recording = recorded.then_some(files.recording);
     let pictures = pictures(&run, scenario, robot)?;
