@@ -43,7 +43,7 @@ def run(code: str, folder: Path) -> "list[str]":
 
 def test_the_example_of_the_guide_reads_the_trace_of_a_recording(folder: Path) -> None:
     pytest.importorskip("rerun")
-    code = example("rerun.server")
+    code = example("rr.server")
     assert len(code.splitlines()) <= 10
     last_s, force_n = map(float, run(code, folder)[-2:])
     # The hold ends when the board has slipped out of the hands; the knife pushes with 30 N at most.
