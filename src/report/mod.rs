@@ -32,13 +32,15 @@ pub mod sweep;
 pub mod task;
 #[cfg(test)]
 mod tests;
+mod units;
 
 use std::path::PathBuf;
 
+use self::units::unit_suffix;
 use crate::model::{
     measures::Measures,
     plan::PostureFigures,
-    verdict::{CheckKind, Verdict, VerdictKind},
+    verdict::{Verdict, VerdictKind},
 };
 
 /// The outcome of one scenario or plan.
@@ -213,12 +215,4 @@ fn deciding(verdict: &Verdict) -> String {
         format!("{} {:.2}{unit}, {bound} {}{unit}", check.name, check.value, check.limit)
     });
     format!("{figures}, first crossed at {:.3} s under {:.2} of the load", failure.time_s, failure.load_factor)
-}
-
-/// The unit after a space; empty for a ratio.
-fn unit_suffix(kind: CheckKind) -> String {
-    match kind.unit() {
-        "1" => String::new(),
-        unit => format!(" {unit}"),
-    }
 }

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 use super::*;
 use crate::model::{
     muscle_work::{BusyMuscle, MuscleWork},
-    verdict::{Check, Failure},
+    verdict::{Check, CheckKind, Failure},
 };
 
 fn check(name: CheckKind, value: f64, limit: f64) -> Check {

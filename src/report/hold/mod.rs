@@ -14,7 +14,10 @@ pub use self::{
     palette::Palette,
     scene::{HoldScene, Holding, Moment},
 };
-use super::projection::{Sheet, View};
+use super::{
+    projection::{Sheet, View},
+    units::unit_suffix,
+};
 use crate::{
     human::HumanError,
     model::{
@@ -127,7 +130,7 @@ impl<'a> Crossing<'a> {
     /// `deflects at 1.13 s: deflection 15.0 mm, limit 15 mm`.
     fn caption(&self, verdict: &Verdict) -> String {
         let Check { name, limit, .. } = self.check;
-        let (unit, bound) = (super::unit_suffix(*name), if name.is_least() { "at least" } else { "limit" });
+        let (unit, bound) = (unit_suffix(*name), if name.is_least() { "at least" } else { "limit" });
         let series = self.hold.measures.series(*name);
         let values = series.iter().filter_map(|values| values.get(self.index)).copied();
         let value = if name.is_least() { values.reduce(f64::min) } else { values.reduce(f64::max) };
