@@ -7,6 +7,7 @@
 pub mod cdr;
 mod messages;
 mod schemas;
+mod summary_order;
 #[cfg(test)]
 mod tests;
 pub mod trace;

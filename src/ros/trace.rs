@@ -19,6 +19,7 @@ use super::{
     EncodeError,
     messages::{self, time_ns},
     schemas::{FLOAT64, JOINT_STATE, LOG, POSE_STAMPED, Schema, TF_MESSAGE, WRENCH_STAMPED},
+    summary_order,
 };
 use crate::{
     model::{
@@ -77,7 +78,8 @@ pub fn encode(input: &McapInput<'_>) -> Result<Vec<u8>, EncodeError> {
         .profile("ros2")
         .library("benchdog")
         .compression(Some(Compression::Zstd))
-        .compression_threads(0);
+        .compression_threads(0)
+        .calculate_summary_section_crc(false);
     let mut writer = options.create(Cursor::new(Vec::new()))?;
     writer.write_metadata(&about(input.verdict))?;
     let mut channels = BTreeMap::new();
@@ -95,7 +97,10 @@ pub fn encode(input: &McapInput<'_>) -> Result<Vec<u8>, EncodeError> {
         writer.write_to_known_channel(&header, &message.data)?;
     }
     writer.finish()?;
-    Ok(writer.into_inner().into_inner())
+    let mut bytes = writer.into_inner().into_inner();
+    // Without its form, which the library always gives it, the file is valid as it is.
+    let _ = summary_order::sort(&mut bytes);
+    Ok(bytes)
 }
 
 /// Name, verdict and fingerprint, as metadata of the file.
