@@ -28,6 +28,9 @@ pub const MOST_DOCUMENT: u64 = 64 * MIB;
 /// The most bytes of a CSV file that a scenario names.
 pub const MOST_CSV: u64 = 64 * MIB;
 
+/// The most bytes of an MCAP file that a scenario names.
+pub const MOST_MCAP: u64 = 256 * MIB;
+
 /// The most bytes of a URDF or an SRDF.
 pub const MOST_URDF: u64 = 64 * MIB;
 

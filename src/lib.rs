@@ -129,6 +129,8 @@ pub mod record;
 pub mod report;
 pub mod reproduce;
 pub mod robot;
+#[cfg(feature = "mcap")]
+pub mod ros;
 pub mod scenario;
 pub mod setup;
 pub mod sim;

@@ -151,6 +151,9 @@ pub struct ReportArgs {
     /// Which simulations to record
     #[arg(long, value_enum, default_value_t = RecordChoice::Always)]
     pub record: RecordChoice,
+    /// Also write each simulation as trace.mcap: ROS 2 messages for Foxglove and ROS tools
+    #[arg(long)]
+    pub mcap: bool,
     /// Folder for plans, verdicts, recordings and reports; or that of each scenario with {name}, {kind} or {seed}, such as
     /// 'out/{name}-{seed}'
     #[arg(long, value_name = "DIR", default_value = "out", value_parser = OutFolder::parser())]

@@ -171,8 +171,10 @@ fn viewer() -> (&'static str, String) {
     use super::view;
     use crate::pipeline::versions::RERUN;
     match view::viewer_version() {
-        Ok(Some(version)) if view::is_matching(&version) => ("ok", version),
-        Ok(Some(version)) => ("note", format!("found {version}, expected {RERUN}; {}", view::how_to_install())),
+        Ok(Some(version)) if view::is_new_enough(&version) => ("ok", version),
+        Ok(Some(version)) => {
+            ("note", format!("found {version}, expected {RERUN} or newer; {}", view::how_to_install()))
+        }
         Ok(None) => ("note", format!("not found; {}", view::how_to_install())),
         Err(error) => ("note", error.to_string()),
     }

@@ -121,6 +121,9 @@ pub enum CliError {
     #[cfg(feature = "recording")]
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
+    /// An MCAP file cannot be made.
+    #[error(transparent)]
+    Mcap(#[from] crate::ros::EncodeError),
     /// Something on this machine does not work.
     #[error("{0}")]
     Machine(String),
@@ -139,6 +142,7 @@ impl From<RunError> for CliError {
             RunError::Simulation(error) => Self::Simulation(error),
             #[cfg(feature = "recording")]
             RunError::Record(error) => Self::Record(error),
+            RunError::Mcap(error) => Self::Mcap(error),
         }
     }
 }
@@ -154,7 +158,7 @@ impl CliError {
     pub fn exit(&self) -> Exit {
         match self {
             _ if self.is_stop() => Exit::Interrupted,
-            Self::JUnit(_) | Self::Csv(_) | Self::Staged(_) => Exit::Bug,
+            Self::JUnit(_) | Self::Csv(_) | Self::Staged(_) | Self::Mcap(_) => Exit::Bug,
             #[cfg(feature = "recording")]
             Self::Record(error) if error.is_about_a_file() => Exit::Input,
             #[cfg(feature = "recording")]

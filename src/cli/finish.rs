@@ -16,8 +16,11 @@ use super::{
 use crate::{
     input::{self, MOST_DOCUMENT},
     model::{file_name::REPORTS, plan::Plan, scenario::Scenario},
-    pipeline::{Run, recording},
-    report::{self, Outcome, SkipReason},
+    pipeline::{Run, mcap, recording},
+    report::{
+        self, Outcome, SkipReason,
+        hold::{HoldPictures, Holding, SimulatedHold},
+    },
     robot::Robot,
 };
 
@@ -65,6 +68,7 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
 struct RunFiles {
     plan: PathBuf,
     recording: PathBuf,
+    mcap: PathBuf,
     verdict: PathBuf,
 }
 
@@ -74,6 +78,7 @@ impl RunFiles {
         Self {
             plan: folder.join("plan.json"),
             recording: folder.join("recording.rrd"),
+            mcap: folder.join("trace.mcap"),
             verdict: folder.join("verdict.json"),
         }
     }
@@ -85,9 +90,9 @@ impl RunFiles {
 /// # Errors
 /// If a file of the run is one of the inputs.
 pub fn protect(args: &ReportArgs, folder: &Path, plan_file: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
-    let RunFiles { plan, recording, verdict } = RunFiles::new(folder);
+    let RunFiles { plan, recording, mcap, verdict } = RunFiles::new(folder);
     let is_own = plan_file.is_some_and(|file| is_same_file(file, &plan));
-    let outputs = [recording, verdict].into_iter().chain((!is_own).then_some(plan)).chain(args.junit.clone());
+    let outputs = [recording, mcap, verdict].into_iter().chain((!is_own).then_some(plan)).chain(args.junit.clone());
     inputs::protect(inputs, outputs)
 }
 
@@ -162,7 +167,7 @@ pub fn prepare<'a>(args: &ReportArgs, folders: impl Iterator<Item = &'a Path>) -
     Ok(())
 }
 
-/// Writes plan, recording and, last, verdict of a run into its folder. A plan that was read from its place
+/// Writes plan, recording, MCAP file and, last, verdict of a run into its folder. A plan that was read from its place
 /// there, `plan_file`, is left as it is.
 ///
 /// # Errors
@@ -172,27 +177,31 @@ pub fn write_run(
     scenario: &Scenario,
     robot: &Robot,
     plan_file: Option<&Path>,
-    (folder, record): (&Path, RecordChoice),
+    (folder, args): (&Path, &ReportArgs),
 ) -> Result<FinishedRun, CliError> {
     let files = RunFiles::new(folder);
-    let wanted = match record {
+    let wanted = match args.record {
         RecordChoice::Never => false,
         RecordChoice::Failed => !run.verdict.met,
         RecordChoice::Always => true,
     };
     let recording = if wanted { recording::encode(&run, scenario, robot)? } else { None };
+    let mcap = if args.mcap { mcap::encode(&run, robot)? } else { None };
     let plan = run.plan.as_ref().map(|plan| report::json::plan(plan).into_bytes());
     let recorded = recording.is_some();
     if !plan_file.is_some_and(|file| is_same_file(file, &files.plan)) {
         write_or_remove(&files.plan, plan)?;
     }
     write_or_remove(&files.recording, recording)?;
+    write_or_remove(&files.mcap, mcap)?;
     write_or_remove(&files.verdict, Some(report::json::verdict(&run.verdict).into_bytes()))?;
     let recording = recorded.then_some(files.recording);
+    let pictures = pictures(&run, scenario, robot)?;
     Ok(FinishedRun {
         exit: Exit::of(&run.verdict),
         wall_s: None,
         outcome: Outcome::Judged {
+            pictures,
             measures: run.simulated.map(|(_, judgement)| Box::new(judgement.measures)),
             clearance: run.plan.as_ref().and_then(|plan| plan.clearance.as_ref()).map(ToString::to_string),
             scores: run.plan.as_ref().and_then(|plan| plan.comfort?.scores()),
@@ -202,6 +211,18 @@ pub fn write_run(
             recording,
         },
     })
+}
+
+/// The pictures of a run for reports; `None` without a plan.
+fn pictures(run: &Run, scenario: &Scenario, robot: &Robot) -> Result<Option<Box<HoldPictures>>, CliError> {
+    let Some(plan) = &run.plan else { return Ok(None) };
+    let simulated = run.simulated.as_ref().map(|(trace, judgement)| SimulatedHold {
+        trace,
+        measures: &judgement.measures,
+        events: &judgement.events,
+    });
+    let holding = Holding { plan, robot, person: scenario.human, tool: scenario.tool };
+    Ok(Some(Box::new(HoldPictures::new(&holding, simulated, &run.verdict)?)))
 }
 
 /// Writes a file of a run, or removes that of an earlier run if this one has none.

@@ -223,8 +223,8 @@ pub const VIEW: &str = "\
 Example:
   benchdog view out/quickstart/recording.rrd
 
-The viewer is not part of benchdog. `pip install rerun-sdk==0.36.3` or
-`cargo install rerun-cli@0.36.3 --locked` installs it.";
+The viewer, 0.36.3 or newer, is not part of benchdog. `pip install 'rerun-sdk>=0.36.3'` or
+`cargo install rerun-cli --locked` installs it.";
 
 /// `benchdog cache --help`.
 pub const CACHE: &str = "\

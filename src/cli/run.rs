@@ -112,7 +112,7 @@ impl Runner<'_> {
 
     fn run(&self, loaded: &LoadedScenario) -> Result<FinishedRun, CliError> {
         let run = self.planned_and_judged(loaded)?;
-        let output = (&*folder_of(loaded, self.args), self.args.report.record);
+        let output = (&*folder_of(loaded, self.args), &self.args.report);
         finish::write_run(run, &loaded.scenario, &loaded.robot, loaded.plan_path().as_deref(), output)
     }
 

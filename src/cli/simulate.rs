@@ -45,7 +45,7 @@ fn one_hold(args: &SimulateArgs, loaded: LoadedPlan, progress: &Progress) -> Res
         progress.simulates();
         let run = pipeline::run_plan(&scenario, &robot, plan, &filled_in, progress)?;
         writing = Some(interrupt::writing());
-        finish::write_run(run, &scenario, &robot, Some(&path), (&folder, args.report.record))
+        finish::write_run(run, &scenario, &robot, Some(&path), (&folder, &args.report))
     })?;
     finished.wall_s = Some(start.elapsed().as_secs_f64());
     progress.finish();
@@ -115,7 +115,7 @@ fn one_of_several(args: &SimulateArgs, loaded: &LoadedPlan, progress: &Progress)
         progress.simulates();
         let run = pipeline::run_plan(scenario, robot, plan.clone(), filled_in, progress)?;
         let folder = folder_of(loaded, args);
-        finish::write_run(run, scenario, robot, Some(path), (&folder, args.report.record))
+        finish::write_run(run, scenario, robot, Some(path), (&folder, &args.report))
     })?;
     let wall_s = start.elapsed().as_secs_f64();
     finished.wall_s = Some(wall_s);

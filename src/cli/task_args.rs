@@ -26,6 +26,9 @@ pub struct TaskArgs {
     /// Write no recording
     #[arg(long)]
     pub no_recording: bool,
+    /// Also write the simulation as trace.mcap: ROS 2 messages for Foxglove and ROS tools
+    #[arg(long)]
+    pub mcap: bool,
     /// Plan only
     #[arg(long)]
     pub plan_only: bool,

@@ -17,14 +17,16 @@ pub fn view(args: &ViewArgs) -> Result<Exit, CliError> {
     record::read_summary(&args.recording)?;
     let Some(version) = viewer_version()? else {
         return Err(CliError::Machine(format!(
-            "found no {VIEWER} on the path, expected the viewer of version {RERUN}: {}, then: {VIEWER} {}",
+            "found no {VIEWER} on the path, expected the viewer of version {RERUN} or newer: {}, then: {VIEWER} {}",
             how_to_install(),
             args.recording.display()
         )));
     };
-    if !is_matching(&version) {
+    if !is_new_enough(&version) {
         let how = how_to_install();
-        output::message(&format!("warning: found {version}, expected {RERUN}: if it does not open the file, {how}"));
+        output::message(&format!(
+            "warning: found {version}, expected {RERUN} or newer: if it does not open the file, {how}"
+        ));
     }
     open(&args.recording)
 }
@@ -45,14 +47,19 @@ pub fn viewer_version() -> Result<Option<String>, CliError> {
     }
 }
 
-/// True if the viewer has the version of the recordings.
-pub fn is_matching(version: &str) -> bool {
-    version.split_whitespace().any(|word| word == RERUN)
+/// True if the viewer has the version of the recordings or a later one: viewers open recordings of earlier versions.
+pub fn is_new_enough(version: &str) -> bool {
+    let numbers = |word: &str| -> Option<Vec<u64>> {
+        // A pre-release, such as 0.37.0-rc.1, counts as its version.
+        word.split(['-', '+']).next()?.split('.').map(|part| part.parse().ok()).collect()
+    };
+    let found = version.split_whitespace().find_map(|word| numbers(word).filter(|numbers| numbers.len() == 3));
+    found >= numbers(RERUN) && found.is_some()
 }
 
-/// How to install the matching viewer.
+/// How to install the viewer.
 pub fn how_to_install() -> String {
-    format!("install it with `pip install rerun-sdk=={RERUN}` or `cargo install rerun-cli@{RERUN} --locked`")
+    format!("install it with `pip install 'rerun-sdk>={RERUN}'` or `cargo install rerun-cli --locked`")
 }
 
 fn open(recording: &Path) -> Result<Exit, CliError> {
@@ -62,5 +69,20 @@ fn open(recording: &Path) -> Result<Exit, CliError> {
         Ok(Exit::Met)
     } else {
         Err(CliError::Machine(format!("failed to show {}: {VIEWER} exited with {status}", recording.display())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_new_enough;
+
+    #[test]
+    fn viewers_of_the_version_of_recordings_and_newer_ones_are_accepted() {
+        for version in ["rerun-cli 0.36.3", "rerun-cli 0.36.10", "rerun-cli 0.37.0-rc.1", "rerun-cli 1.0.0"] {
+            assert!(is_new_enough(version), "{version}");
+        }
+        for version in ["rerun-cli 0.36.2", "rerun-cli 0.9.12", "rerun of unknown version", "rerun-cli 36"] {
+            assert!(!is_new_enough(version), "{version}");
+        }
     }
 }

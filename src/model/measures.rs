@@ -24,6 +24,32 @@ pub struct Measures {
     pub joints: Vec<JointMeasures>,
 }
 
+impl Measures {
+    /// The series that a check judges; empty for a check that judges none of them.
+    #[must_use]
+    pub fn series(&self, kind: CheckKind) -> Vec<&[f64]> {
+        match kind {
+            CheckKind::Slip => self.hands.iter().map(|hand| hand.slip_mm.as_slice()).collect(),
+            CheckKind::SlipRotation => self.hands.iter().map(|hand| hand.slip_deg.as_slice()).collect(),
+            CheckKind::Sag => vec![&self.sag_mm],
+            CheckKind::Deflection => vec![&self.deflection_mm],
+            CheckKind::TorqueRatio => self.joints.iter().map(|joint| joint.torque_ratio.as_slice()).collect(),
+            CheckKind::Clearance => vec![&self.clearance_mm],
+            CheckKind::GripWrench => self.hands.iter().map(|hand| hand.grip_ratio.as_slice()).collect(),
+            CheckKind::Creep
+            | CheckKind::PadOpen
+            | CheckKind::ContactLost
+            | CheckKind::Drop
+            | CheckKind::PersonOverlap
+            | CheckKind::Penetration
+            | CheckKind::EnergyCreated
+            | CheckKind::ForceResidual
+            | CheckKind::CouplingDrift
+            | CheckKind::Chatter => Vec::new(),
+        }
+    }
+}
+
 /// Motion of one hand relative to the board since the hand-over.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HandMeasures {

@@ -16,6 +16,10 @@ pub enum RunError {
     #[cfg(feature = "recording")]
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
+    /// The MCAP file cannot be made.
+    #[cfg(feature = "mcap")]
+    #[error(transparent)]
+    Mcap(#[from] crate::ros::EncodeError),
 }
 
 impl RunError {

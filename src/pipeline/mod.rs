@@ -4,6 +4,8 @@
 //! knows no clock, terminal or file: a caller is told of progress by what it passes, and stops the work by a [`Stop`].
 
 mod error;
+#[cfg(feature = "mcap")]
+pub mod mcap;
 pub mod parallel;
 #[cfg(feature = "recording")]
 pub mod recording;
@@ -12,6 +14,8 @@ pub mod recording;
 pub mod recording;
 pub mod sweep;
 pub mod task_recording;
+#[cfg(any(feature = "mcap", feature = "recording"))]
+mod task_series;
 pub mod versions;
 
 use std::collections::BTreeMap;

@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// What a recording of a task is made from.
-#[cfg_attr(not(feature = "recording"), allow(dead_code))]
+#[cfg_attr(not(any(feature = "recording", feature = "mcap")), allow(dead_code))]
 pub struct TaskRecording<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,

@@ -22,6 +22,7 @@ use rerun::{
 };
 
 use super::{
+    camera::Camera,
     entity::{TIMELINE, entity},
     error::RecordError,
     input::RecordingInput,
@@ -31,9 +32,6 @@ use super::{
     scene::POINTS,
 };
 use crate::model::verdict::CheckKind;
-
-/// The scene is at least this wide, m: the camera then sees the person from head to feet.
-const LEAST_SPAN_M: f64 = 1.35;
 
 /// Share of the summary's column in the width.
 const RIGHT_SHARE: f32 = 0.24;
@@ -64,7 +62,7 @@ pub(super) fn messages(messages: Messages, input: &RecordingInput) -> Result<Vec
     let middle = layout.container(ContainerKind::Vertical, &middle, 0.28)?;
     let right = layout.right(input)?;
     let root = layout.container(ContainerKind::Horizontal, &[left, middle, right], 1.0)?;
-    layout.panels(root.id)?;
+    layout.panels(root.id, moment_s(input))?;
     let activation = BlueprintActivationCommand::make_active(layout.messages.store_id().clone());
     let mut messages = layout.messages.into_messages();
     messages.push(LogMsg::BlueprintActivationCommand(activation));
@@ -115,10 +113,10 @@ impl Layout {
     /// The 3-D scene, seen from the side.
     fn scene(&mut self, input: &RecordingInput) -> Result<Panel, RecordError> {
         let view = self.view("3D", "scene", &["+ /scene/**"], 0.76)?;
-        let (eye, target) = eye_and_target(input);
+        let Camera { eye_w, target_w } = Camera::of(input);
         let controls = EyeControls3D::new()
-            .with_position(point(&eye))
-            .with_look_target(point(&target))
+            .with_position(point(&eye_w))
+            .with_look_target(point(&target_w))
             .with_eye_up([0.0, 0.0, 1.0]);
         self.log(&child(&view.path, "EyeControls3D"), &controls)?;
         let floor = rerun::components::Plane3D::new([0.0, 0.0, 1.0], input.robot.floor_z_m as f32);
@@ -196,7 +194,7 @@ impl Layout {
         self.log(&child(&view.path, "ScalarAxis"), &ScalarAxis::new().with_range(range))
     }
 
-    fn panels(&mut self, root_id: Uuid) -> Result<(), RecordError> {
+    fn panels(&mut self, root_id: Uuid, moment_s: Option<f64>) -> Result<(), RecordError> {
         let root = RootContainer(rerun::datatypes::Uuid::from(root_id));
         let viewport =
             ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
@@ -207,8 +205,17 @@ impl Layout {
         let time = TimePanelBlueprint::new()
             .with_state(PanelState::Collapsed)
             .with_timeline(TIMELINE)
-            .with_play_state(PlayState::Playing)
-            .with_loop_mode(LoopMode::All);
+            .with_play_state(PlayState::Playing);
+        // A blueprint has no time cursor. A selection without length that is repeated has the same effect: the viewer plays up to the
+        // moment and stays there.
+        let time = match moment_s {
+            Some(moment_s) => {
+                let moment_ns = rerun::datatypes::TimeInt((moment_s * 1e9).round() as i64);
+                let moment = rerun::datatypes::AbsoluteTimeRange { min: moment_ns, max: moment_ns };
+                time.with_time_selection(moment).with_loop_mode(LoopMode::Selection)
+            }
+            None => time.with_loop_mode(LoopMode::All),
+        };
         self.log(&entity(&["time_panel"]), &time)
     }
 }
@@ -225,22 +232,12 @@ fn query(plot: &str, series: &str) -> String {
     }
 }
 
-/// Position and target of the camera, in W, m. It sees robot, board and person from the side that the worked face of the
-/// board looks to.
-fn eye_and_target(input: &RecordingInput) -> (Vector3<f64>, Vector3<f64>) {
-    let board = input.plan.object.x_wo;
-    let robot = Vector3::zeros();
-    // Without a person, a point in front of the board.
-    let person = input.plan.human.map_or(board.translation.vector + Vector3::x() * 0.6, |human| {
-        human.x_wb.translation.vector + Vector3::z() * (0.6 * human.height_m)
-    });
-    let apart = person - robot;
-    let side = Vector3::z().cross(&apart).normalize();
-    let face_w = board.rotation * Vector3::z();
-    let side = if side.dot(&face_w) < 0.0 { -side } else { side };
-    let target = (2.0 * board.translation.vector + person + robot) / 4.0;
-    let span_m = apart.norm().max(LEAST_SPAN_M);
-    (target + side * (1.45 * span_m) + apart * 0.25 + Vector3::z() * (0.45 * span_m), target)
+/// The moment that a recording is opened to, s: that of the first crossing, or else the end of what is judged. `None` for a task,
+/// which goes on after each hold, and without samples.
+fn moment_s(input: &RecordingInput) -> Option<f64> {
+    let end_s = input.measures.time_s.get(input.measures.judged.checked_sub(1)?).copied();
+    let failure_s = input.verdict.first_failure.as_ref().map(|failure| failure.time_s);
+    failure_s.or(end_s.filter(|_| input.people.is_empty()))
 }
 
 fn point(vector: &Vector3<f64>) -> [f32; 3] {

@@ -20,6 +20,7 @@
 //! `plots`, a labelled point in the scene, and the colour of the pads or the board.
 
 mod blueprint;
+mod camera;
 mod crossings;
 mod decode;
 mod encode;

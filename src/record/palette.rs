@@ -10,7 +10,12 @@ pub(super) fn background() -> Color {
     Color::from_rgb(28, 30, 34)
 }
 
-/// Limits, and bodies that crossed one.
+/// The lines of limits, and nothing else.
+pub(super) fn limit_line() -> Color {
+    Color::from_rgb(255, 80, 120)
+}
+
+/// Bodies that crossed a limit, and the mark of the first crossing.
 pub(super) fn limit() -> Color {
     Color::from_rgb(213, 94, 0)
 }

@@ -6,7 +6,7 @@ use rerun::{
 
 use super::{entity::entity, error::RecordError, input::RecordingInput, messages::Messages, palette};
 use crate::model::{
-    measures::{EventKind, JointMeasures, Measures, axis_top},
+    measures::{EventKind, JointMeasures, axis_top},
     trace::{Phase, Sample},
     verdict::CheckKind,
 };
@@ -118,35 +118,14 @@ fn log_limit(messages: &mut Messages, input: &RecordingInput, plot: &str, kind: 
         return Ok(());
     };
     let ends = [check.limit; 2];
-    log_series(messages, [plot, LIMIT], &[*first_s, *last_s], &ends, (palette::limit(), 1.5, LIMIT))
-}
-
-/// The series that a check judges.
-fn judged_series(measures: &Measures, kind: CheckKind) -> Vec<&[f64]> {
-    match kind {
-        CheckKind::Slip => measures.hands.iter().map(|hand| hand.slip_mm.as_slice()).collect(),
-        CheckKind::SlipRotation => measures.hands.iter().map(|hand| hand.slip_deg.as_slice()).collect(),
-        CheckKind::Sag => vec![&measures.sag_mm],
-        CheckKind::Deflection => vec![&measures.deflection_mm],
-        CheckKind::TorqueRatio => measures.joints.iter().map(|joint| joint.torque_ratio.as_slice()).collect(),
-        CheckKind::Clearance => vec![&measures.clearance_mm],
-        CheckKind::GripWrench => measures.hands.iter().map(|hand| hand.grip_ratio.as_slice()).collect(),
-        CheckKind::Creep
-        | CheckKind::PadOpen
-        | CheckKind::ContactLost
-        | CheckKind::Drop
-        | CheckKind::PersonOverlap
-        | CheckKind::Penetration
-        | CheckKind::EnergyCreated
-        | CheckKind::ForceResidual
-        | CheckKind::CouplingDrift
-        | CheckKind::Chatter => Vec::new(),
-    }
+    let unit = if kind.unit() == "1" { String::new() } else { format!(" {}", kind.unit()) };
+    let name = format!("{LIMIT} {}{unit}", check.limit);
+    log_series(messages, [plot, LIMIT], &[*first_s, *last_s], &ends, (palette::limit_line(), 2.0, &name))
 }
 
 /// The top of a plot's axis, chosen so that the limit is visible even if the values of a lost board are far above it.
 pub(super) fn top(input: &RecordingInput, kind: CheckKind) -> f64 {
-    let peak = judged_series(input.measures, kind).into_iter().flatten().copied().fold(0.0, f64::max);
+    let peak = input.measures.series(kind).into_iter().flatten().copied().fold(0.0, f64::max);
     axis_top(peak, input.verdict.check(kind).map(|check| check.limit))
 }
 
@@ -161,7 +140,7 @@ fn log_failure(
         return Ok(());
     };
     let Some(index) = input.measures.time_s.iter().position(|&time_s| time_s == failure.time_s) else { return Ok(()) };
-    let worst = judged_series(input.measures, kind).into_iter().filter_map(|series| series.get(index)).copied();
+    let worst = input.measures.series(kind).into_iter().filter_map(|series| series.get(index)).copied();
     let worst = worst.fold(0.0, f64::max);
     let path = entity(&["plots", plot, FAILURE]);
     let point = SeriesPoints::new()

@@ -99,7 +99,7 @@ fn colours(text: &mut String, plan: &Plan, with_muscles: bool) {
         text,
         format_args!("- light green: line of sight from the eyes to the tool tip; the sector in front of the person"),
     );
-    push(text, format_args!("- red: limits, and bodies that crossed one"));
+    push(text, format_args!("- pink: limits; orange-red: what crossed one"));
     push(text, format_args!("- white: points of person and robot of the peripersonal metric; hidden at first"));
     push(
         text,

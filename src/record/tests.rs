@@ -2,6 +2,7 @@
 
 mod damage;
 mod muscles;
+mod opening;
 mod peaks;
 
 use std::{collections::BTreeMap, fs, path::Path};

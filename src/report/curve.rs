@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{
     csv_text::csv_text,
-    picture::{document, label, line},
+    picture::{document, label, line, vertical_label},
 };
 use crate::{
     comfort::curve::{Curve, CurvePoint, POINTS, Span},
@@ -95,6 +95,7 @@ pub fn svg(curve: &Curve) -> String {
     }
     legend(&mut body);
     label(&mut body, (left + right) / 2.0, bottom + 40.0, "middle", "cutting point, counter-clockwise from the right");
+    vertical_label(&mut body, left - 44.0, f64::midpoint(top, bottom), "muscular comfort, 1");
     let formula = formula_in_words(curve.metric);
     let title = format!("Muscular comfort {formula}, from the worst to the best solution");
     label(&mut body, left, 22.0, "start", &title);

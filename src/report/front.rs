@@ -3,7 +3,7 @@
 use super::{
     columns::aligned,
     csv_text::csv_text,
-    picture::{circle, document, label, line, number, ticks},
+    picture::{circle, document, label, line, number, ticks, vertical_label},
 };
 use crate::{human::muscular::formula_in_words, model::scenario::MuscularMetric};
 
@@ -99,22 +99,44 @@ pub fn svg(rows: &[Row], optima: [f64; 2], metric: MuscularMetric) -> String {
         let (colour, radius_px) = if row.own { (OWN, 6.0) } else { (FRONT, 4.0) };
         circle(&mut body, x_px(row.muscular), y_px(row.peripersonal_m), radius_px, colour, row.own);
     }
+    let points: Vec<[f64; 2]> = front.iter().map(|row| [x_px(row.muscular), y_px(row.peripersonal_m)]).collect();
+    numbers(&mut body, &points);
     legend(&mut body, rows, optima, metric);
     document(&body, [640.0, 430.0])
+}
+
+/// The number N of each plan's file, `front-N.json`, beside its point. Numbers of points that would lie on one another are moved
+/// up, one by one.
+fn numbers(body: &mut String, points: &[[f64; 2]]) {
+    const WIDTH_PX: f64 = 16.0;
+    const HEIGHT_PX: f64 = 12.0;
+    let mut taken: Vec<[f64; 2]> = Vec::new();
+    for (index, [x, y]) in points.iter().enumerate() {
+        let mut at = [x + 6.0, y - 5.0];
+        let is_near = |at: &[f64; 2], other: &[f64; 2]| {
+            (at[0] - other[0]).abs() < WIDTH_PX && (at[1] - other[1]).abs() < HEIGHT_PX
+        };
+        while taken.iter().any(|other| is_near(&at, other)) {
+            at[1] -= HEIGHT_PX;
+        }
+        taken.push(at);
+        label(body, at[0], at[1], "start", &(index + 1).to_string());
+    }
 }
 
 fn legend(body: &mut String, rows: &[Row], optima: [f64; 2], metric: MuscularMetric) {
     let [left, right, top, bottom] = AREA_PX;
     let title = format!("Peripersonal comfort, m, over muscular comfort {}", formula_in_words(metric));
     label(body, left, 20.0, "start", &title);
-    label(body, (left + right) / 2.0, bottom + 40.0, "middle", "muscular comfort");
+    label(body, f64::midpoint(left, right), bottom + 40.0, "middle", "muscular comfort, 1");
+    vertical_label(body, left - 50.0, f64::midpoint(top, bottom), "peripersonal comfort, m");
     circle(body, left + 8.0, top - 17.0, 4.0, FRONT, false);
-    label(body, left + 18.0, top - 13.0, "start", "front");
+    label(body, left + 18.0, top - 13.0, "start", "front-N.json");
     let Some(own) = rows.iter().find(|row| row.own) else { return };
     let [muscular, peripersonal] = own.kept(optima).map(|kept| 100.0 * kept);
-    circle(body, left + 78.0, top - 17.0, 6.0, OWN, true);
+    circle(body, left + 128.0, top - 17.0, 6.0, OWN, true);
     let text = format!("the scenario's weights: {muscular:.0} % muscular, {peripersonal:.0} % peripersonal kept");
-    label(body, left + 92.0, top - 13.0, "start", &text);
+    label(body, left + 142.0, top - 13.0, "start", &text);
 }
 
 #[cfg(test)]
@@ -139,6 +161,15 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_points_at_one_place_do_not_lie_on_one_another() {
+        let mut body = String::new();
+        numbers(&mut body, &[[10.0, 100.0], [11.0, 101.0], [10.0, 99.0]]);
+        for place in ["x=\"16.0\" y=\"95.0\"", "x=\"17.0\" y=\"84.0\"", "x=\"16.0\" y=\"70.0\""] {
+            assert!(body.contains(place), "{place}: {body}");
+        }
+    }
+
+    #[test]
     fn the_picture_has_every_plan_inside_its_axes() {
         let text = svg(&rows(), [80.0, 1.25], MuscularMetric::Intrinsic);
         assert!(text.contains("over muscular comfort 1 / (sum of squared activations + 0.0175)<"), "{text}");
@@ -146,6 +177,12 @@ mod tests {
         assert_eq!(text.matches("<circle").count(), 6);
         // Two steps between three plans.
         assert_eq!(text.matches("stroke-width=\"1.5\"").count(), 4);
+        // Each plan of the front has the number of its file; the scenario's own has its name in the legend.
+        for (number, row) in (1..).zip(rows().iter().filter(|row| !row.own)) {
+            assert!(text.contains(&format!("text-anchor=\"start\">{number}</text>")), "{row:?}: {text}");
+        }
+        assert!(!text.contains("text-anchor=\"start\">4</text>"), "{text}");
+        assert!(text.contains(">peripersonal comfort, m</text>"), "{text}");
         // The plan with the best muscular comfort is 6 parts of 112 from the right end of the axis.
         let x = 620.0 - (620.0 - 64.0) * 0.06 / 1.12;
         assert!(text.contains(&format!("cx=\"{x:.1}\"")), "{text}");

@@ -3,9 +3,9 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{
-    Outcome, Status, console, muscles,
+    Outcome, Status, console, hold, muscles,
     plot::{Line, Plot},
-    posture,
+    posture, stages,
     summary::recording_link,
 };
 use crate::model::{
@@ -61,7 +61,7 @@ pub fn page(outcomes: &[Outcome]) -> String {
         (table(outcomes))
         @for outcome in outcomes { (section(outcome)) }
     };
-    document(&title, "", &body)
+    document(&title, &[stages::STYLE, hold::STYLE].concat(), &body)
 }
 
 fn table(outcomes: &[Outcome]) -> Markup {
@@ -118,7 +118,8 @@ fn section(outcome: &Outcome) -> Markup {
             summary {
                 h2 { (name) } " " span class=(status.name()) { (status.mark()) } " " (outcome.sentence())
             }
-            @if let Outcome::Judged { verdict, posture, measures, scores, clearance, .. } = outcome {
+            @if let Outcome::Judged { verdict, posture, measures, scores, clearance, pictures, .. } = outcome {
+                @if let Some(pictures) = pictures { (pictures.markup()) }
                 (checks(verdict))
                 @if let Some(confirmation) = &verdict.confirmation { p { "Confirmation: " (confirmation) } }
                 @if let Some(figures) = posture { (person(figures)) }
@@ -201,25 +202,29 @@ fn plots(verdict: &Verdict, measures: &Measures) -> Markup {
     let joints = by_torque(verdict, measures).into_iter().zip(JOINTS);
     let joints = joints.map(|(joint, class)| Line { name: &joint.name, class, values: &joint.torque_ratio });
     let plots = [
-        ("slip of the hands on the board, mm", Some(CheckKind::Slip), hands(|hand| &hand.slip_mm)),
-        ("rotation of the hands on the board, deg", Some(CheckKind::SlipRotation), hands(|hand| &hand.slip_deg)),
-        ("wrench of the grippers / measured limits", Some(CheckKind::GripWrench), measured),
-        ("sag of the tool point, mm", Some(CheckKind::Sag), vec![sag]),
-        ("deflection of the tool point, mm", Some(CheckKind::Deflection), vec![deflection]),
-        ("joint torque / limit, most loaded joints", Some(CheckKind::TorqueRatio), joints.collect()),
-        ("clearance of the robot, mm", Some(CheckKind::Clearance), vec![clearance]),
-        ("load factor", None, vec![load]),
+        ("slip of the hands on the board", "slip", Some(CheckKind::Slip), hands(|hand| &hand.slip_mm)),
+        ("rotation of the hands on the board", "rotation", Some(CheckKind::SlipRotation), hands(|hand| &hand.slip_deg)),
+        ("wrench of the grippers", "wrench / limits", Some(CheckKind::GripWrench), measured),
+        ("sag of the tool point", "sag", Some(CheckKind::Sag), vec![sag]),
+        ("deflection of the tool point", "deflection", Some(CheckKind::Deflection), vec![deflection]),
+        ("torque of the most loaded joints", "torque / limit", Some(CheckKind::TorqueRatio), joints.collect()),
+        ("clearance of the robot", "clearance", Some(CheckKind::Clearance), vec![clearance]),
+        ("applied load", "load factor", None, vec![load]),
     ];
     let is_measured = |lines: &[Line<'_>]| lines.iter().any(|line| !line.values.is_empty());
-    let plot = |(title, kind, lines): (_, Option<CheckKind>, _)| {
+    let plot = |(title, quantity, kind, lines): (_, &str, Option<CheckKind>, _)| {
         let limit = kind.and_then(|kind| verdict.check(kind)).map(|check| check.limit);
         let failed = verdict.first_failure.as_ref().filter(|failure| Some(failure.check) == kind);
         let failed_s = failed.map(|failure| failure.time_s);
-        Plot { title, time_s: &measures.time_s, judged: measures.judged, lines, limit, failed_s }.svg()
+        let unit = kind.map_or("", CheckKind::unit);
+        let axis = if unit.is_empty() { format!("{quantity}, 1") } else { format!("{quantity}, {unit}") };
+        let unit = if unit == "1" { "" } else { unit };
+        let (time_s, judged) = (&measures.time_s[..], measures.judged);
+        Plot { title, axis: &axis, unit, time_s, judged, lines, limit, failed_s }.svg()
     };
     html! {
         div.plots {
-            @for svg in plots.into_iter().filter(|(_, _, lines)| is_measured(lines)).map(plot) { (PreEscaped(svg)) }
+            @for svg in plots.into_iter().filter(|(.., lines)| is_measured(lines)).map(plot) { (PreEscaped(svg)) }
         }
     }
 }

@@ -3,6 +3,7 @@
 //! All functions are pure, from outcomes to text, except those of [`mod@file`], which write to the disk. Nothing here
 //! changes a verdict, prints, or reads a clock. Durations are shown on the console only, so equal runs write equal files.
 
+pub mod bodies;
 pub(crate) mod columns;
 pub mod compare;
 pub mod comparison;
@@ -11,6 +12,7 @@ pub(crate) mod csv_text;
 pub mod curve;
 pub mod file;
 pub mod front;
+pub mod hold;
 pub mod html;
 pub(crate) mod hull;
 pub mod json;
@@ -30,13 +32,15 @@ pub mod sweep;
 pub mod task;
 #[cfg(test)]
 mod tests;
+mod units;
 
 use std::path::PathBuf;
 
+use self::units::unit_suffix;
 use crate::model::{
     measures::Measures,
     plan::PostureFigures,
-    verdict::{CheckKind, Verdict, VerdictKind},
+    verdict::{Verdict, VerdictKind},
 };
 
 /// The outcome of one scenario or plan.
@@ -56,6 +60,8 @@ pub enum Outcome {
         clearance: Option<String>,
         /// The judge's time series; `None` if nothing was simulated.
         measures: Option<Box<Measures>>,
+        /// The scene as planned, or at the moment of failure; `None` without a plan.
+        pictures: Option<Box<hold::HoldPictures>>,
         /// The recording's file, if one was written.
         recording: Option<PathBuf>,
     },
@@ -209,12 +215,4 @@ fn deciding(verdict: &Verdict) -> String {
         format!("{} {:.2}{unit}, {bound} {}{unit}", check.name, check.value, check.limit)
     });
     format!("{figures}, first crossed at {:.3} s under {:.2} of the load", failure.time_s, failure.load_factor)
-}
-
-/// The unit after a space; empty for a ratio.
-fn unit_suffix(kind: CheckKind) -> String {
-    match kind.unit() {
-        "1" => String::new(),
-        unit => format!(" {unit}"),
-    }
 }

@@ -29,6 +29,14 @@ pub(super) fn label(body: &mut String, x: f64, y: f64, anchor: &str, text: &str)
     let _ = writeln!(body, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
 }
 
+/// A text from below upward, centred at a point: the title of a vertical axis.
+pub(super) fn vertical_label(body: &mut String, x: f64, y: f64, text: &str) {
+    let _ = writeln!(
+        body,
+        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 {x:.1} {y:.1})\">{text}</text>"
+    );
+}
+
 /// A filled or a hollow circle.
 pub(super) fn circle(body: &mut String, x: f64, y: f64, radius_px: f64, colour: &str, hollow: bool) {
     let fill = if hollow { "none" } else { colour };

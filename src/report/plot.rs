@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use crate::model::measures::axis_top;
 
 /// Size of a plot, px.
-const SIZE_PX: [f64; 2] = [460.0, 200.0];
+const SIZE_PX: [f64; 2] = [460.0, 216.0];
 
 /// The edges of the plot's axes, px: left, right, top, bottom.
-const AREA_PX: [f64; 4] = [44.0, 450.0, 26.0, 172.0];
+const AREA_PX: [f64; 4] = [60.0, 450.0, 26.0, 172.0];
 
 /// A series is reduced to this number of columns. Each keeps its smallest and its largest value, so no peak is lost.
 const COLUMNS: usize = 203;
@@ -25,8 +25,12 @@ pub(super) struct Line<'a> {
 
 /// A plot of several lines over the same times, s.
 pub(super) struct Plot<'a> {
-    /// The plotted quantity and its unit.
+    /// What is plotted.
     pub title: &'a str,
+    /// The quantity and its unit, along the vertical axis.
+    pub axis: &'a str,
+    /// The unit of the limit; empty for a ratio.
+    pub unit: &'a str,
     /// The times, s.
     pub time_s: &'a [f64],
     /// The number of times that are judged, from the first; the rest is shaded.
@@ -74,6 +78,8 @@ impl Plot<'_> {
             let _ = write!(body, "<line class=\"failed\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{above}\" y2=\"{below}\"/>");
         }
         body.push_str("</svg>");
+        self.limit_label(&mut body, &scale);
+        axis_titles(&mut body, AREA_PX, ["time, s", self.axis]);
         self.legend(&mut body);
         let name = escape(self.title);
         format!(
@@ -86,6 +92,17 @@ impl Plot<'_> {
         self.judged < self.time_s.len()
     }
 
+    /// The value of the limit at the right end of its line: below it near the top of the plot, otherwise above it.
+    fn limit_label(&self, body: &mut String, scale: &Scale) {
+        let Some(limit) = self.limit else { return };
+        let [_, right, above, _] = AREA_PX;
+        let y = scale.y_px(limit);
+        let y = if y < above + 16.0 { y + 12.0 } else { y - 4.0 };
+        let gap = if self.unit.is_empty() { "" } else { " " };
+        let text = format!("limit {}{gap}{}", number(limit), self.unit);
+        label(body, "limit-name", right - 4.0, y, "end", &text);
+    }
+
     fn legend(&self, body: &mut String) {
         let mut x = AREA_PX[0] + 4.0;
         let limit = self.limit.map(|_| ("limit", "limit"));
@@ -93,7 +110,7 @@ impl Plot<'_> {
         let lines = self.lines.iter().map(|line| (line.name, line.class));
         let rest = self.has_rest().then_some(("not judged", "rest"));
         for (name, class) in lines.chain(limit).chain(failed).chain(rest) {
-            let y = 192.0;
+            let y = 210.0;
             let _ =
                 write!(body, "<line class=\"{class}\" x1=\"{x:.1}\" x2=\"{:.1}\" y1=\"{y}\" y2=\"{y}\"/>", x + 14.0);
             label(body, "key", x + 18.0, y + 4.0, "start", name);
@@ -130,7 +147,7 @@ impl Scale {
             label(body, "tick", left - 5.0, y + 4.0, "end", &number(value));
         }
         for time_s in ticks(self.start_s, self.end_s) {
-            label(body, "tick", self.x_px(time_s), below + 13.0, "middle", &format!("{} s", number(time_s)));
+            label(body, "tick", self.x_px(time_s), below + 13.0, "middle", &number(time_s));
         }
     }
 
@@ -180,6 +197,19 @@ pub(super) fn label(body: &mut String, class: &str, x: f64, y: f64, anchor: &str
     let _ = write!(body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>");
 }
 
+/// The titles of the horizontal and of the vertical axis, outside of the labels of their ticks. `area_px` has the edges of the axes:
+/// left, right, top, bottom.
+pub(super) fn axis_titles(body: &mut String, area_px: [f64; 4], [horizontal, vertical]: [&str; 2]) {
+    let [left, right, above, below] = area_px;
+    label(body, "axis", f64::midpoint(left, right), below + 26.0, "middle", horizontal);
+    let (x, y, text) = (left - 44.0, f64::midpoint(above, below), escape(vertical));
+    let _ = write!(
+        body,
+        "<text class=\"axis\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" \
+         transform=\"rotate(-90 {x:.1} {y:.1})\">{text}</text>"
+    );
+}
+
 /// Text with the special characters of XML escaped.
 pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
@@ -207,7 +237,9 @@ mod tests {
         values[7_531] = 2.0;
         let line = Line { name: "left hand", class: "hand-0", values: &values };
         let svg = Plot {
-            title: "slip, mm",
+            title: "slip of the hands",
+            axis: "slip, mm",
+            unit: "mm",
             time_s: &time_s,
             judged: time_s.len(),
             lines: vec![line],
@@ -218,7 +250,10 @@ mod tests {
         // The peak is 2 of an axis up to 2.2: y = 172 - 146 * 2 / 2.2.
         assert!(svg.contains(&format!(",{:.1}", 172.0 - 146.0 * 2.0 / 2.2)), "{svg}");
         assert!(svg.matches(',').count() < 2 * COLUMNS + 20);
-        // The limit's line lies inside the plot.
-        assert!(svg.contains(&format!("y1=\"{:.1}\"", 172.0 - 146.0 / 2.2)));
+        // The limit's line lies inside the plot, with its value above it.
+        let limit_px = 172.0 - 146.0 / 2.2;
+        assert!(svg.contains(&format!("y1=\"{limit_px:.1}\"")));
+        assert!(svg.contains(&format!("y=\"{:.1}\" text-anchor=\"end\">limit 1 mm<", limit_px - 4.0)), "{svg}");
+        assert!(svg.contains(">time, s<") && svg.contains(">slip, mm<"), "{svg}");
     }
 }

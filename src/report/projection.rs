@@ -134,6 +134,22 @@ impl Sheet<'_> {
         }
     }
 
+    /// Draws an arrow from one point to another, with SVG attributes of its line and of its head. Along the direction of view it
+    /// is a dot.
+    pub fn arrow(&self, body: &mut String, [from_w, to_w]: [&Point3<f64>; 2], [line, head]: &[String; 2]) {
+        let ([x1, y1], [x2, y2]) = (self.px(from_w), self.px(to_w));
+        let _ = writeln!(body, "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\" {line} stroke-width=\"2.5\"/>");
+        let length_px = libm::hypot(x2 - x1, y2 - y1);
+        if length_px > 6.0 {
+            let (ux, uy) = ((x2 - x1) / length_px, (y2 - y1) / length_px);
+            let wing =
+                |side: f64| format!("{:.1},{:.1}", x2 - 9.0 * ux + 4.0 * side * uy, y2 - 9.0 * uy - 4.0 * side * ux);
+            let _ = writeln!(body, "<polygon points=\"{x2:.1},{y2:.1} {} {}\" {head}/>", wing(1.0), wing(-1.0));
+        } else {
+            let _ = writeln!(body, "<circle cx=\"{x2:.1}\" cy=\"{y2:.1}\" r=\"4\" {head}/>");
+        }
+    }
+
     // Writing to a string does not fail, so the results are ignored.
     fn draw_item(&self, body: &mut String, item: &Item) {
         let outline = |points: &[Point3<f64>]| corners(&convex_hull(points.iter().map(|p| self.px(p)).collect()));

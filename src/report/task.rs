@@ -199,7 +199,7 @@ fn path(plan: &StagedPlan) -> Markup {
     let top = objectives.iter().filter_map(|(_, objective)| *objective).fold(1e-9, f64::max);
     let width = WIDTH_PX / objectives.len().max(1) as f64;
     html! {
-        svg.path viewBox={ "0 0 " (WIDTH_PX) " 156" } role="img" aria-label="objective along the path" {
+        svg.path viewBox={ "0 -16 " (WIDTH_PX) " 172" } role="img" aria-label="objective along the path" {
             @for (number, (stage, objective)) in objectives.iter().enumerate() {
                 @let height = 110.0 * objective.unwrap_or(0.0) / top;
                 rect x=(format!("{:.1}", number as f64 * width)) y=(format!("{:.1}", 120.0 - height))
@@ -208,7 +208,8 @@ fn path(plan: &StagedPlan) -> Markup {
                 }
                 text x=(format!("{:.1}", (number as f64 + 0.5) * width)) y="134" text-anchor="middle" { (stage + 1) }
             }
-            text x="0" y="148" { "objective of the person's posture at each piece of the path; below it the stage" }
+            text x="0" y="-4" { "objective, 1: up to " (format!("{top:.1}")) }
+            text x="0" y="148" { "pieces of the path, numbered by stage; the objective of the person's posture at each" }
         }
     }
 }
@@ -221,15 +222,15 @@ fn plots(trace: &StagedTrace) -> Markup {
     // Nothing is measured before the first step.
     let distance_mm = |sample: &&Sample| sample.person_distance_m.map(|distance_m| 1e3 * distance_m);
     let person: Option<Vec<f64>> = samples.iter().skip(1).map(distance_mm).collect();
-    let plot = |title: &str, values: &[f64]| {
+    let plot = |title: &str, axis: &str, values: &[f64]| {
         let lines = vec![Line { name: "", class: "hand-0", values }];
         let time_s = &time_s[time_s.len() - values.len()..];
-        Plot { title, time_s, judged: time_s.len(), lines, limit: None, failed_s: None }.svg()
+        Plot { title, axis, unit: "", time_s, judged: time_s.len(), lines, limit: None, failed_s: None }.svg()
     };
     html! {
         div.plots {
-            (PreEscaped(plot("load factor", &load)))
-            @if let Some(person) = person { (PreEscaped(plot("distance from the person, mm", &person))) }
+            (PreEscaped(plot("applied load", "load factor, 1", &load)))
+            @if let Some(person) = person { (PreEscaped(plot("distance from the person", "distance, mm", &person))) }
         }
     }
 }

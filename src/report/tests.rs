@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 use super::*;
 use crate::model::{
     muscle_work::{BusyMuscle, MuscleWork},
-    verdict::{Check, Failure},
+    verdict::{Check, CheckKind, Failure},
 };
 
 fn check(name: CheckKind, value: f64, limit: f64) -> Check {
@@ -81,6 +81,7 @@ fn judged(verdict: Verdict) -> Outcome {
         scores: None,
         clearance: None,
         measures: None,
+        pictures: None,
         recording: None,
     }
 }
@@ -93,6 +94,7 @@ fn outcomes() -> Vec<Outcome> {
         scores: predicted_load_factor.map(|_| "RULA 3 (arm and wrist 4), REBA 5".into()),
         clearance: None,
         measures: None,
+        pictures: None,
         recording: None,
     };
     vec![
@@ -215,6 +217,7 @@ fn a_limit_from_below_is_shown_as_one_everywhere() {
         scores: None,
         clearance: Some("5.00 mm between left_wrist and the board".into()),
         measures: None,
+        pictures: None,
         recording: None,
     };
     let page = html::page(&[outcome]);

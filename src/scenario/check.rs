@@ -78,6 +78,12 @@ impl<'a> Checker<'a> {
             .map_err(|source| self.error(key, InputErrorKind::Named { path: path.to_owned(), source }))
     }
 
+    /// The bytes of a file that a key names, at most this many.
+    pub fn named_bytes(&self, key: &str, path: &Path, most_bytes: u64) -> Result<Vec<u8>, InputError> {
+        input::bytes(path, most_bytes)
+            .map_err(|source| self.error(key, InputErrorKind::Named { path: path.to_owned(), source }))
+    }
+
     /// An error of a part that is checked by itself, at the part's key.
     pub fn moved(&self, error: InputError, part: &str) -> InputError {
         let key = error.key.map_or_else(|| part.to_owned(), |key| format!("{part}.{key}"));

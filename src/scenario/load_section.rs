@@ -1,10 +1,16 @@
-//! The section `[load]` of a scenario file, and measured forces from a CSV file.
+//! The section `[load]` of a scenario file, and measured forces from a CSV or an MCAP file.
 
 use std::path::Path;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+#[cfg(feature = "mcap")]
+use crate::{
+    input::MOST_MCAP,
+    ros::wrench::{self, WrenchError},
+};
 
 use super::{InputError, InputErrorKind, check::Checker};
 use crate::{
@@ -71,8 +77,12 @@ pub struct LoadSection {
     /// For `path`: force into the face as a fraction of the cutting force; 0 by default.
     pub normal_share: Option<f64>,
     /// For `measured`: a CSV file with the columns `time_s, fx_n, fy_n, fz_n, mx_nm, my_nm, mz_nm`: s since the ramp began, N,
-    /// and N m about the tool tip, O axes. The path is relative to the scenario file's folder.
+    /// and N m about the tool tip, O axes; or an MCAP file (`.mcap`) with messages `geometry_msgs/WrenchStamped` of ROS 2 or ROS 1
+    /// in the same units, axes and about the same point, the first one at the beginning of the ramp. The path is relative to the
+    /// scenario file's folder.
     pub file: Option<String>,
+    /// For `measured` with an MCAP file: the topic, such as `/wrench`; by default the only one with wrenches.
+    pub topic: Option<String>,
 }
 
 /// The load that a section describes. The file of measured forces is relative to `folder`.
@@ -81,6 +91,7 @@ pub struct LoadSection {
 /// If a key is missing or belongs to another kind, or the file of measured forces is invalid.
 pub fn load(check: &Checker<'_>, section: &LoadSection, folder: &Path) -> Result<Load, InputError> {
     check_keys(check, section)?;
+    let lateral_share = section.lateral_share.unwrap_or(0.0);
     let profile = match section.kind {
         LoadKind::Ramp => ForceProfile::Ramp,
         LoadKind::Drill => ForceProfile::Drill {
@@ -98,13 +109,61 @@ pub fn load(check: &Checker<'_>, section: &LoadSection, folder: &Path) -> Result
             normal_share: section.normal_share.unwrap_or(0.0),
         },
         LoadKind::Measured => {
-            let file = check.present("load.file", section.file.as_ref(), "the path of a CSV file")?;
+            let file = check.present("load.file", section.file.as_ref(), "the path of a CSV or an MCAP file")?;
             let path = folder.join(file);
+            if is_mcap(&path) {
+                return Ok(Load {
+                    frame: section.frame,
+                    profile: measured_mcap(check, section, &path)?,
+                    lateral_share,
+                });
+            }
+            check.absent("load.topic", section.topic.is_some(), "an MCAP file as load.file")?;
             let text = check.named_file("load.file", &path, MOST_CSV)?;
             ForceProfile::Measured { samples: measured(&path, &text)? }
         }
     };
-    Ok(Load { frame: section.frame, profile, lateral_share: section.lateral_share.unwrap_or(0.0) })
+    Ok(Load { frame: section.frame, profile, lateral_share })
+}
+
+/// True of the name of an MCAP file.
+fn is_mcap(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
+}
+
+/// The measured forces of an MCAP file.
+#[cfg(feature = "mcap")]
+fn measured_mcap(check: &Checker<'_>, section: &LoadSection, path: &Path) -> Result<ForceProfile, InputError> {
+    let bytes = check.named_bytes("load.file", path, MOST_MCAP)?;
+    let samples = wrench::series(&bytes, section.topic.as_deref()).map_err(|error| {
+        let (found, expected) = match &error {
+            WrenchError::Damaged(why) => (format!("a damaged MCAP file: {why}"), "a whole one".to_owned()),
+            WrenchError::Topic { found, expected } => (found.clone(), expected.clone()),
+            WrenchError::Message { topic, number, found, expected } => {
+                (format!("{found} in message {number} of the topic \"{topic}\""), (*expected).to_owned())
+            }
+        };
+        at(path, None, None, found, &expected)
+    })?;
+    for (number, row) in (1..).zip(&samples) {
+        let too_large = row.iter().zip(MOST).zip(HEADER).find(|((value, most), _)| value.abs() > *most);
+        if let Some(((value, most), column)) = too_large {
+            let expected = format!("a number from -{most} to {most}");
+            return Err(at(path, None, Some(column), format!("{value} in message {number}"), &expected));
+        }
+    }
+    if !loads(&samples) {
+        let found = format!("{} messages without a load", samples.len());
+        return Err(at(path, None, None, found, "forces that load the board"));
+    }
+    Ok(ForceProfile::Measured { samples })
+}
+
+/// An error: this build does not read MCAP.
+#[cfg(not(feature = "mcap"))]
+fn measured_mcap(check: &Checker<'_>, _: &LoadSection, path: &Path) -> Result<ForceProfile, InputError> {
+    let found = format!("{}", path.display());
+    Err(check.value("load.file", found, "a CSV file: this build was made without the feature mcap"))
 }
 
 fn check_keys(check: &Checker<'_>, section: &LoadSection) -> Result<(), InputError> {
@@ -117,6 +176,7 @@ fn check_keys(check: &Checker<'_>, section: &LoadSection) -> Result<(), InputErr
         ("load.centre_m", section.centre_m.is_some(), LoadKind::Path),
         ("load.normal_share", section.normal_share.is_some(), LoadKind::Path),
         ("load.file", section.file.is_some(), LoadKind::Measured),
+        ("load.topic", section.topic.is_some(), LoadKind::Measured),
     ];
     keys.into_iter().filter(|&(_, _, kind)| kind != section.kind).try_for_each(|(key, given, kind)| {
         check.absent(key, given, &format!("kind = \"{}\"", format!("{kind:?}").to_lowercase()))

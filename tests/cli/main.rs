@@ -21,6 +21,7 @@ mod inputs;
 mod interrupt;
 mod maps;
 mod margin_and_export;
+mod mcap;
 mod messages;
 mod odd_files;
 mod odd_recordings;

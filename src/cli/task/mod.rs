@@ -30,7 +30,7 @@ use crate::{
         task::Task,
         verdict::VerdictKind,
     },
-    pipeline::{recording, task_recording::TaskRecording},
+    pipeline::{mcap, recording, task_recording::TaskRecording},
     planner::{
         Planner, Search,
         task::{TaskInfeasible, TaskPlan},
@@ -54,6 +54,7 @@ struct TaskFiles {
     path: PathBuf,
     page: PathBuf,
     recording: PathBuf,
+    mcap: PathBuf,
     stream: PathBuf,
 }
 
@@ -69,14 +70,15 @@ impl TaskFiles {
             path: file("path.csv"),
             page: file("report.html"),
             recording: file("recording.rrd"),
+            mcap: file("trace.mcap"),
             stream: file("stages.jsonl"),
         }
     }
 
     /// Those that `task` writes; `simulate` leaves the first four as they are.
-    fn all(&self) -> [PathBuf; 9] {
-        let Self { plan, stream, comparison, compared_pieces, verdict, stages, path, page, recording } = self;
-        [plan, stream, comparison, compared_pieces, verdict, stages, path, page, recording].map(Clone::clone)
+    fn all(&self) -> [PathBuf; 10] {
+        let Self { plan, stream, comparison, compared_pieces, verdict, stages, path, page, recording, mcap } = self;
+        [plan, stream, comparison, compared_pieces, verdict, stages, path, page, recording, mcap].map(Clone::clone)
     }
 }
 
@@ -121,7 +123,7 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     }
     let robot = loaded.robot.at_gap(staged.object.size_m[2]);
     let states = StagedStates::new(&robot, &staged)?;
-    let output = (&files, args.format, !args.no_recording, comparison);
+    let output = (&files, args.format, [!args.no_recording, args.mcap], comparison);
     let verdict = judged(&loaded.scenario, &robot, &staged, &states, output, &progress)?;
     if let Some(planned_s) = planned_s {
         let Waiting { first_s, later_s } = Waiting::new(&planned_s, &verdict.stages);
@@ -190,6 +192,13 @@ fn print_comparison(comparison: Option<&Comparison>, format: Format) -> Result<(
     }
 }
 
+/// The bytes of the recording and of the MCAP file, each if it is wanted.
+fn recorded(task: &TaskRecording<'_>, [record, mcap]: [bool; 2]) -> Result<[Option<Vec<u8>>; 2], CliError> {
+    let recording = if record { recording::encode_task(task)? } else { None };
+    let mcap = if mcap { mcap::encode_task(task)? } else { None };
+    Ok([recording, mcap])
+}
+
 /// Simulates and judges a staged plan of any planner.
 pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progress) -> Result<Exit, CliError> {
     let LoadedStagedPlan { plan, states, robot, scenario, inputs, .. } = loaded;
@@ -199,34 +208,38 @@ pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progr
     report::file::check_folder(&args.report.out.of_all())?;
     report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
     let is_recorded = args.report.record != RecordChoice::Never;
-    let output = (&files, args.report.format, is_recorded, None);
+    let output = (&files, args.report.format, [is_recorded, args.report.mcap], None);
     judged(scenario, robot, plan, states, output, progress).map(|of| Exit::judged(of.met, of.verdict))
 }
 
-/// Simulates and judges a plan, writes verdict, table and report, and prints the table.
+/// Simulates and judges a plan, writes verdict, table and report, the recording and the MCAP file if `records` says so, and prints
+/// the table.
 fn judged(
     scenario: &Scenario,
     robot: &Robot,
     plan: &StagedPlan,
     states: &StagedStates,
-    (files, format, record, comparison): (&TaskFiles, Format, bool, Option<Comparison>),
+    (files, format, records, comparison): (&TaskFiles, Format, [bool; 2], Option<Comparison>),
     progress: &Progress,
 ) -> Result<StagedVerdict, CliError> {
     report::file::remove(&files.verdict)?;
     report::file::remove(&files.recording)?;
+    report::file::remove(&files.mcap)?;
     let StagedRun { verdict, simulated } = run_staged(scenario, robot, plan, states, progress)?;
     progress.finish();
-    let recording = match &simulated {
-        Some((trace, judgement)) if record => {
+    let recorded = match &simulated {
+        Some((trace, judgement)) => {
             let (pieces, judgements) = (&states.pieces[..], &judgement.stages[..]);
             let verdict = &verdict;
-            recording::encode_task(&TaskRecording { scenario, robot, plan, pieces, verdict, trace, judgements })?
+            recorded(&TaskRecording { scenario, robot, plan, pieces, verdict, trace, judgements }, records)?
         }
-        _ => None,
+        None => [None, None],
     };
     let writing = interrupt::writing();
-    if let Some(bytes) = recording {
-        report::file::write_whole(&files.recording, &bytes)?;
+    for (path, bytes) in [&files.recording, &files.mcap].into_iter().zip(recorded) {
+        if let Some(bytes) = bytes {
+            report::file::write_whole(path, &bytes)?;
+        }
     }
     report::file::write_whole(&files.stages, report::task::stages_csv(&verdict).as_bytes())?;
     let judged = JudgedPlan { plan, holdings: &states.holdings, robot, scenario, verdict: &verdict };

@@ -5,16 +5,16 @@ use std::fmt::Write as _;
 use maud::{Markup, PreEscaped, html};
 
 use super::{
-    super::plot::{escape, label, number, ticks},
+    super::plot::{axis_titles, escape, label, number, ticks},
     figures::{Comparison, PieceFigures, Strategy, StrategyKind},
     rows, sentence,
 };
 
 /// Size of a plot, px.
-const SIZE_PX: [f64; 2] = [920.0, 240.0];
+const SIZE_PX: [f64; 2] = [920.0, 252.0];
 
 /// The edges of the plot's axes, px: left, right, top, bottom.
-const AREA_PX: [f64; 4] = [44.0, 910.0, 26.0, 196.0];
+const AREA_PX: [f64; 4] = [60.0, 910.0, 26.0, 196.0];
 
 /// How far the axis goes beyond the greatest figure.
 const HEADROOM: f64 = 1.08;
@@ -44,8 +44,8 @@ pub fn section(comparison: &Comparison) -> Markup {
                 }
             }
         }
-        (PreEscaped(plot("muscular effort along the path", comparison, |figures| figures.effort)))
-        (PreEscaped(plot("objective along the path", comparison, |figures| figures.objective)))
+        (PreEscaped(plot(["muscular effort along the path", "effort, 1"], comparison, |figures| figures.effort)))
+        (PreEscaped(plot(["objective along the path", "objective, 1"], comparison, |figures| figures.objective)))
     }
 }
 
@@ -60,7 +60,7 @@ fn class(kind: StrategyKind) -> &'static str {
 }
 
 /// A figure of every strategy over the length of the path, or over the holes by number.
-fn plot(title: &str, comparison: &Comparison, figure: fn(&PieceFigures) -> f64) -> String {
+fn plot([title, axis]: [&str; 2], comparison: &Comparison, figure: fn(&PieceFigures) -> f64) -> String {
     let [left, right, above, below] = AREA_PX;
     let figures = comparison.strategies.iter().flat_map(|strategy| strategy.pieces.iter().flatten());
     let top = HEADROOM * figures.map(figure).fold(f64::MIN_POSITIVE, f64::max);
@@ -80,14 +80,15 @@ fn plot(title: &str, comparison: &Comparison, figure: fn(&PieceFigures) -> f64) 
         let _ = write!(body, "<line class=\"grid\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>");
         label(&mut body, "tick", left - 5.0, y + 4.0, "end", &number(value));
     }
-    let unit = if comparison.has_length() { " m" } else { "" };
     for along in ticks(0.0, length) {
-        label(&mut body, "tick", x_px(along), below + 13.0, "middle", &format!("{}{unit}", number(along)));
+        label(&mut body, "tick", x_px(along), below + 13.0, "middle", &number(along));
     }
+    let along = if comparison.has_length() { "along the path, m" } else { "holes" };
+    axis_titles(&mut body, AREA_PX, [along, axis]);
     let mut legend_px = left + 4.0;
     for strategy in &comparison.strategies {
         let (class, name) = (class(strategy.kind), strategy.kind.title());
-        let y = below + 30.0;
+        let y = below + 42.0;
         let _ = write!(body, "<path class=\"{class}\" d=\"{}\"/>", steps(strategy, figure, &ends, &x_px, &y_px));
         let _ = write!(body, "<path class=\"{class}\" d=\"M{legend_px:.1},{y}H{:.1}\"/>", legend_px + 14.0);
         label(&mut body, "key", legend_px + 18.0, y + 4.0, "start", name);

@@ -88,9 +88,9 @@ fn lines_end_where_a_piece_is_not_served() {
     let page = section(&example()).into_string();
     // Two plots, in each a line and a sign of the legend for three strategies.
     assert_eq!(page.matches("<path").count(), 2 * 2 * 3);
-    // The second piece begins at a quarter of 866 px from 44; 0.5 on an axis up to 0.8 * 1.08 over 170 px from 196 up.
+    // The second piece begins at a quarter of 850 px from 60; 0.5 on an axis up to 0.8 * 1.08 over 170 px from 196 up.
     let height = 196.0 - 170.0 * 0.5 / (0.8 * 1.08);
-    assert!(page.contains(&format!("d=\"M260.5,{height:.1}H910.0\"")), "{page}");
+    assert!(page.contains(&format!("d=\"M272.5,{height:.1}H910.0\"")), "{page}");
     // Both pieces of the staged plan are joined.
     assert_eq!(page.matches('V').count(), 2 * 2);
 }

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use nalgebra::Point3;
 
-use super::scene::{COLOURS, HandMark, StageScene};
+use super::scene::{HandMark, StageScene};
 use crate::{
     model::{board::BoardShape, polygon::Point},
     report::{
+        bodies::ARM_COLOURS,
         hull::Point2,
         projection::{Bounds, Item, Sheet, View},
     },
@@ -189,7 +190,7 @@ pub fn trails_of(body: &mut String, class: &str, lines: impl Iterator<Item = Vec
 
 /// The mark of a hand where it holds the board, with its way and its old grasp.
 fn hand(body: &mut String, sheet: &Sheet, scene: &StageScene, mark: &HandMark) {
-    let colour = mark.arm % COLOURS;
+    let colour = mark.arm % ARM_COLOURS;
     let way: Vec<_> = mark.way_w.iter().map(|p| sheet.px(p)).collect();
     arrow(body, &way, &format!("way c{colour}"));
     let px = |point_o: &Point3<f64>| sheet.px(&(scene.x_wo * point_o));

@@ -6,9 +6,9 @@ use nalgebra::{Point3, Vector3};
 
 use super::{
     drawing::{corner_m, trails_of},
-    scene::{COLOURS, StageScene},
+    scene::StageScene,
 };
-use crate::model::board::BoardShape;
+use crate::{model::board::BoardShape, report::bodies::ARM_COLOURS};
 
 /// Longer side of the drawing, px.
 const SIDE_PX: f64 = 116.0;
@@ -59,7 +59,7 @@ pub fn svg(scene: &StageScene, board: &BoardShape) -> String {
         );
     };
     for mark in &scene.hands {
-        let colour = mark.arm % COLOURS;
+        let colour = mark.arm % ARM_COLOURS;
         if let Some(before) = mark.before_o {
             hand(&format!("grip was c{colour}"), before);
         }

@@ -16,8 +16,9 @@ use maud::{Markup, PreEscaped, html};
 use self::{
     caption::{Caption, captions},
     drawing::{Layout, WIDTH_PX},
-    scene::{COLOURS, StageScene, still_links},
+    scene::{StageScene, still_links},
 };
+use super::bodies::ARM_COLOURS;
 use crate::human::HumanError;
 
 /// The colours of the pictures, in light and dark mode.
@@ -79,7 +80,7 @@ fn legend(input: &JudgedPlan<'_>) -> Markup {
              face of the board with the grasps; the marked corner is the same in all drawings."
         }
         p.keys {
-            @for (arm, name) in named { (key(&format!("grip c{}", arm % COLOURS), &format!("{name} hand"))) }
+            @for (arm, name) in named { (key(&format!("grip c{}", arm % ARM_COLOURS), &format!("{name} hand"))) }
             (key("trail now", "worked on in the stage"))
             (key("trail done", "worked on before"))
             (key("trail to-come", "still to come"))

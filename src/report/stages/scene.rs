@@ -11,7 +11,10 @@ use crate::{
         staged_plan::{ArmPath, Holding, PersonDuring, Stage, StagedPlan},
         tool_part::ToolMaterial,
     },
-    report::projection::Item,
+    report::{
+        bodies::{self, ARM_COLOURS, ArmPart},
+        projection::Item,
+    },
     robot::{Chain, Robot},
 };
 
@@ -71,10 +74,12 @@ impl StageScene {
             hands: after.arms.iter().filter_map(|hold| hand(robot, plan, hold, before, stage)).collect(),
             path: PathParts::of(plan, number),
         };
-        scene.items.push(board(plan, &after.x_wo, "board"));
+        scene.items.push(bodies::board(&plan.object, &after.x_wo, "class=\"board\"".to_owned()));
         match stage {
             Stage::Hold(_) => {}
-            Stage::Move(_) => scene.board_before.push(board(plan, &before.x_wo, "ghost")),
+            Stage::Move(_) => {
+                scene.board_before.push(bodies::board(&plan.object, &before.x_wo, "class=\"ghost\"".to_owned()))
+            }
             Stage::Regrasp(regrasp) => scene.ghosts.extend(ghost_of_hand(robot, plan, before, &regrasp.arm.name)),
         }
         scene.add_person(input, number)?;
@@ -151,44 +156,15 @@ fn person(plan: &StagedPlan, human: &Human, posture: &HumanPosture, x_wb: &Pose)
     items
 }
 
-/// The board at a pose.
-fn board(plan: &StagedPlan, x_wo: &Pose, class: &str) -> Item {
-    let corners_w = plan.object.shape().corners_o().into_iter().map(|p| x_wo * p).collect();
-    let in_plane = |[x, y]: &[f64; 2]| x_wo * Point3::new(*x, *y, 0.0);
-    let holes = plan.object.plate.iter().flat_map(|plate| plate.holes_m());
-    let holes_w: Vec<_> = holes.map(|hole| hole.iter().map(in_plane).collect()).collect();
-    let paint = format!("class=\"{class}\"");
-    if holes_w.is_empty() { Item::Hull(corners_w, paint) } else { Item::Pierced(corners_w, holes_w, paint) }
-}
-
-/// For each link the arm that it belongs to, and whether it belongs to its hand; `None` if it stays.
-fn arms_of_links(robot: &Robot) -> Vec<Option<(usize, bool)>> {
-    robot.nearest_above(|joint| {
-        robot.arms.iter().enumerate().find_map(|(number, arm)| {
-            let is_finger = arm.gripper.fingers.iter().any(|finger| finger.joint == joint);
-            let is_last = arm.joints.last() == Some(&joint);
-            (is_finger || arm.joints.contains(&joint)).then_some((number, is_finger || is_last))
-        })
-    })
-}
-
-/// The shapes of links that belong to an arm or to none, with their classes.
+/// The links of these classes while the board is held so.
 fn links(
     robot: &Robot,
     plan: &StagedPlan,
     holding: &Holding,
-    class: impl Fn(Option<(usize, bool)>) -> Option<String>,
+    class: impl Fn(Option<ArmPart>) -> Option<String>,
 ) -> Vec<Item> {
     let x_wl = robot.planned_link_poses(&holding.arms, plan.object.size_m[2]);
-    let mut items = Vec::new();
-    for ((link, x_wl), of_arm) in robot.links.iter().zip(&x_wl).zip(arms_of_links(robot)) {
-        let Some(class) = class(of_arm) else { continue };
-        for placed in &link.shapes {
-            let points_w = placed.shape.surface_points().into_iter().map(|p| x_wl * placed.x_ls * p).collect();
-            items.push(Item::Hull(points_w, format!("class=\"{class}\"")));
-        }
-    }
-    items
+    bodies::links(robot, &x_wl, |part, _| class(part).map(|class| format!("class=\"{class}\"")))
 }
 
 /// The links that do not belong to an arm; they are the same in all stages.
@@ -199,8 +175,8 @@ pub fn still_links(input: &JudgedPlan<'_>) -> Vec<Item> {
 /// The arms of the robot.
 fn arms(robot: &Robot, plan: &StagedPlan, holding: &Holding) -> Vec<Item> {
     links(robot, plan, holding, |of_arm| {
-        let (arm, is_hand) = of_arm?;
-        Some(format!("{}{}", if is_hand { "hand" } else { "arm" }, arm % COLOURS))
+        let ArmPart { arm, is_hand } = of_arm?;
+        Some(format!("{}{}", if is_hand { "hand" } else { "arm" }, arm % ARM_COLOURS))
     })
 }
 
@@ -208,13 +184,10 @@ fn arms(robot: &Robot, plan: &StagedPlan, holding: &Holding) -> Vec<Item> {
 fn ghost_of_hand(robot: &Robot, plan: &StagedPlan, before: &Holding, name: &str) -> Vec<Item> {
     let index = robot.arm_index(name);
     links(robot, plan, before, |of_arm| {
-        let (arm, is_hand) = of_arm?;
-        (is_hand && Some(arm) == index).then(|| format!("ghost{}", arm % COLOURS))
+        let ArmPart { arm, is_hand } = of_arm?;
+        (is_hand && Some(arm) == index).then(|| format!("ghost{}", arm % ARM_COLOURS))
     })
 }
-
-/// Numbers of colours of arms.
-pub const COLOURS: usize = 3;
 
 /// The mark of a hand after a stage; `None` if the robot has no such arm.
 fn hand(robot: &Robot, plan: &StagedPlan, hold: &ArmHold, before: &Holding, stage: &Stage) -> Option<HandMark> {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::super::plot::{label, number, ticks};
+use super::super::plot::{axis_titles, label, number, ticks};
 use crate::sweep::{
     agreement::Agreement,
     summary::{Importance, SweepSummary},
@@ -11,7 +11,7 @@ use crate::sweep::{
 /// Size of a chart, px.
 const SIZE_PX: [f64; 2] = [460.0, 230.0];
 /// The edges of the axes, px: left, right, top, bottom.
-const AREA_PX: [f64; 4] = [44.0, 450.0, 26.0, 186.0];
+const AREA_PX: [f64; 4] = [60.0, 450.0, 26.0, 186.0];
 /// Bins of a histogram.
 const BINS: usize = 36;
 /// Shares of the values that a histogram leaves out at each end: they are counted in the outer bins.
@@ -39,8 +39,8 @@ impl Chart {
         AREA_PX[3] - (AREA_PX[3] - AREA_PX[2]) * (y - self.y[0]) / (self.y[1] - self.y[0])
     }
 
-    /// Lines and labels of both axes.
-    fn grid(&mut self, x_unit: &str) {
+    /// Lines, labels and titles of both axes.
+    fn grid(&mut self, titles: [&str; 2]) {
         let [left, right, _, below] = AREA_PX;
         for value in ticks(self.y[0], self.y[1]) {
             let y = self.y_px(value);
@@ -52,7 +52,7 @@ impl Chart {
             let x = self.x_px(value);
             label(&mut self.body, "tick", x, below + 13.0, "middle", &number(value));
         }
-        label(&mut self.body, "tick", f64::midpoint(left, right), below + 27.0, "middle", x_unit);
+        axis_titles(&mut self.body, AREA_PX, titles);
     }
 
     fn rect(&mut self, class: &str, [from, to]: [f64; 2], [low, high]: [f64; 2]) {
@@ -70,6 +70,13 @@ impl Chart {
         let ([x1, y1], [x2, y2]) = ([self.x_px(from[0]), self.y_px(from[1])], [self.x_px(to[0]), self.y_px(to[1])]);
         let _ =
             write!(self.body, "<line class=\"{class}\" x1=\"{x1:.1}\" x2=\"{x2:.1}\" y1=\"{y1:.1}\" y2=\"{y2:.1}\"/>");
+    }
+
+    /// The name of a limit on the horizontal axis, beside the top of its line.
+    fn name_limit(&mut self, limit: f64, name: &str) {
+        let x = self.x_px(limit);
+        let (x, anchor) = if x > AREA_PX[1] - 80.0 { (x - 4.0, "end") } else { (x + 4.0, "start") };
+        label(&mut self.body, "limit-name", x, AREA_PX[2] + 10.0, anchor, name);
     }
 
     fn polyline(&mut self, class: &str, points: &[[f64; 2]]) {
@@ -101,7 +108,7 @@ impl Chart {
 }
 
 /// A histogram of a figure, split into runs that hold and runs that fail. `limit` is a line.
-pub fn histogram(title: &str, unit: &str, values: &[(f64, bool)], limit: Option<(f64, &str)>) -> String {
+pub fn histogram(title: &str, axis: &str, values: &[(f64, bool)], limit: Option<(f64, &str)>) -> String {
     let mut sorted: Vec<f64> = values.iter().map(|(value, _)| *value).filter(|value| value.is_finite()).collect();
     if sorted.is_empty() {
         return String::new();
@@ -122,7 +129,7 @@ pub fn histogram(title: &str, unit: &str, values: &[(f64, bool)], limit: Option<
     }
     let most = counts.iter().map(|[held, failed]| held + failed).max().unwrap_or(1).max(1) as f64;
     let mut chart = Chart::new(title, [low, high], [0.0, 1.05 * most]);
-    chart.grid(unit);
+    chart.grid([axis, "runs"]);
     for (bin, [held, failed]) in counts.into_iter().enumerate() {
         let span = [bin, bin + 1].map(|edge| low + width * edge as f64);
         let (held, all) = (held as f64, (held + failed) as f64);
@@ -132,6 +139,7 @@ pub fn histogram(title: &str, unit: &str, values: &[(f64, bool)], limit: Option<
     let mut entries = vec![("held", "runs that hold"), ("other", "other runs")];
     if let Some((limit, name)) = limit {
         chart.line("limit", [limit, 0.0], [limit, 1.05 * most]);
+        chart.name_limit(limit, name);
         entries.push(("limit", name));
     }
     chart.legend(&entries);
@@ -187,7 +195,7 @@ pub fn agreement(agreement: &Agreement) -> String {
     if let Some(area) = agreement.area {
         let title = format!("Prediction against simulation: area {area:.3}");
         let mut chart = Chart::new(&title, [0.0, 1.0], [0.0, 1.0]);
-        chart.grid("share of failing runs above a threshold of the load factor; up: of holding runs");
+        chart.grid(["share of failing runs above a threshold of the load factor, 1", "share of holding runs, 1"]);
         chart.line("rest", [0.0, 0.0], [1.0, 1.0]);
         chart.polyline("hand-0", &agreement.curve);
         text.push_str(&chart.finish(&title));
@@ -198,8 +206,9 @@ pub fn agreement(agreement: &Agreement) -> String {
         let title = "Share of runs that hold, by predicted load factor";
         let range = [first.load_factor.min(1.0) - margin, last.load_factor.max(1.0) + margin];
         let mut chart = Chart::new(title, range, [0.0, 1.0]);
-        chart.grid("predicted load factor, mean of a tenth of the simulated runs");
+        chart.grid(["predicted load factor, 1, mean of a tenth of the simulated runs", "share that hold, 1"]);
         chart.line("limit", [1.0, 0.0], [1.0, 1.0]);
+        chart.name_limit(1.0, "the load");
         for bin in bins {
             chart.line("error", [bin.load_factor, bin.low], [bin.load_factor, bin.high]);
         }

@@ -97,9 +97,9 @@ fn figures(summary: &SweepSummary, records: &[RunRecord]) -> Markup {
     html! {
         h2 { "Distributions" }
         div.plots {
-            (PreEscaped(charts::histogram("Predicted load factor, all runs", "load factor", &predicted, Some((1.0, "the load")))))
-            (PreEscaped(charts::histogram("Deflection, simulated runs", "mm", &deflections, None)))
-            (PreEscaped(charts::histogram("Slip, simulated runs", "mm", &slips, None)))
+            (PreEscaped(charts::histogram("Predicted load factor, all runs", "load factor, 1", &predicted, Some((1.0, "the load")))))
+            (PreEscaped(charts::histogram("Deflection, simulated runs", "deflection, mm", &deflections, None)))
+            (PreEscaped(charts::histogram("Slip, simulated runs", "slip, mm", &slips, None)))
         }
     }
 }

@@ -135,7 +135,7 @@ fn the_curve_of_a_perfect_prediction_is_a_corner() {
     let page = page(None);
     let chart = chart(&page, "Prediction against simulation: area 1.000");
     let points = chart.split("points=\"").nth(1).unwrap().split('"').next().unwrap();
-    let on_edge = |point: &str| point.starts_with("44.0,") || point.ends_with(",26.0");
+    let on_edge = |point: &str| point.starts_with("60.0,") || point.ends_with(",26.0");
     assert!(points.split(' ').count() > 10 && points.split(' ').all(on_edge), "{points}");
 }
 
