@@ -22,6 +22,7 @@ use crate::{
         planners::Planners,
         progress::Progress,
     },
+    input::{self, MOST_DOCUMENT},
     model::plan::Plan,
     pipeline::{self, Run, recording},
     planner::Outcome,
@@ -212,6 +213,6 @@ impl<'a> JobRunner<'a> {
 
 /// The cached result in a file, if it has this fingerprint.
 fn read(path: &Path, fingerprint: &str) -> Option<HoldRow> {
-    let cached: CachedResult = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    let cached: CachedResult = serde_json::from_slice(&input::kept(path, MOST_DOCUMENT).ok()?).ok()?;
     (cached.fingerprint == fingerprint).then_some(cached.hold)
 }
