@@ -30,6 +30,7 @@ pub mod sweep;
 pub mod task;
 #[cfg(test)]
 mod tests;
+mod xml;
 
 use std::path::PathBuf;
 
