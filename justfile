@@ -45,6 +45,14 @@ maps:
 init-plans:
     tools/init_plans.py target/release/benchdog
 
-# Licences, duplicate crates and sources of the dependencies (needs cargo-deny)
+# Advisories, licences and sources of the dependencies (needs cargo-deny, and the network)
 deny:
-    cargo deny check licenses bans sources
+    cargo deny check advisories licenses bans sources
+
+# Damaged input files for two minutes a kind
+fuzz:
+    bash .ci/run fuzz_inputs
+
+# Which changes of the judge and the statics no test notices: one in 46, round robin (needs cargo-mutants)
+mutants shard="0/46":
+    cargo mutants --shard {{shard}} --sharding round-robin

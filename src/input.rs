@@ -2,16 +2,18 @@
 //!
 //! Every module that reads a file that a user names reads it here. Knows no format.
 
+mod guard;
 mod similar;
 
 use std::{
     borrow::Cow,
-    fs::File,
+    fs::{self, File},
     io::{self, BufRead, Read},
     path::Path,
     sync::atomic::{AtomicBool, Ordering},
 };
 
+pub use guard::{guarded, is_decoding};
 pub use similar::{did_you_mean, meant_by, meant_by_value};
 
 /// The path that stands for the standard input, in messages as well. Commands have it for the argument `-`.
@@ -73,6 +75,18 @@ pub fn bytes_if<E: From<io::Error>>(
     let metadata = file.metadata()?;
     let length = metadata.is_file().then_some(metadata.len());
     rest_of(file, length, (most_bytes, count), test).map(|bytes| read(path, bytes))
+}
+
+/// The bytes of a file that this program keeps for itself, such as a journal. Anything may have its name: what is no file, such as a
+/// pipe that nobody writes to, is not opened.
+///
+/// # Errors
+/// As for [`bytes`], and if it is no file.
+pub fn kept(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
+    match fs::metadata(path)?.is_file() {
+        true => bytes(path, most_bytes),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "found no file, expected one")),
+    }
 }
 
 /// The bytes that were read from a file, and an event that says so.
@@ -258,6 +272,23 @@ mod tests {
         let refused = |first: &[u8]| Err::<(), _>(io::Error::other(String::from_utf8_lossy(first).into_owned()));
         assert_eq!(bytes_if(&path, 2, 3, refused).unwrap_err().to_string(), "123");
         assert_eq!(bytes_if(&path, 9, 9, |_| Ok::<_, io::Error>(())).unwrap(), b"12345");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn what_is_kept_is_a_file_up_to_its_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("kept");
+        // Reading it would not end.
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+        assert_eq!(kept(&path, 9).unwrap_err().to_string(), "found no file, expected one");
+        assert!(kept(folder.path(), 9).is_err());
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(kept(&path, 9).unwrap_err().kind(), io::ErrorKind::NotFound);
+        std::fs::write(&path, "123").unwrap();
+        assert_eq!(kept(&path, 3).unwrap(), b"123");
+        std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        assert_eq!(kept(&path, 3).unwrap_err().kind(), io::ErrorKind::FileTooLarge);
     }
 
     #[test]

@@ -17,6 +17,7 @@ use super::{
     record::Record,
 };
 use crate::{
+    input,
     planner::{MapLabel, MapSource, MapStore},
     report::file,
 };
@@ -95,7 +96,7 @@ impl Folder {
         entries.retain(|entry| !entry.is_temporary);
         entries.sort_by(|a, b| b.used.cmp(&a.used).then_with(|| a.path.cmp(&b.path)));
         let map = |entry: &Entry| {
-            let record = fs::read(&entry.path).ok().and_then(|bytes| Record::from_bytes(&bytes));
+            let record = input::kept(&entry.path, self.most_bytes).ok().and_then(|bytes| Record::from_bytes(&bytes));
             KeptMap {
                 is_current: record.as_ref().is_some_and(|record| record.program == PROGRAM),
                 label: record.map(|record| record.label),
@@ -165,12 +166,7 @@ fn is_map(path: &Path) -> bool {
 impl MapStore for Folder {
     fn read(&self, source: &MapSource<'_>) -> Option<Vec<u8>> {
         let path = self.path_of(source);
-        let metadata = fs::metadata(&path).ok()?;
-        // Anything may have this name: reading a pipe would not end.
-        if !metadata.is_file() || metadata.len() > self.most_bytes {
-            return None;
-        }
-        let map = Record::from_bytes(&fs::read(&path).ok()?)?.map(&key(PROGRAM, source))?;
+        let map = Record::from_bytes(&input::kept(&path, self.most_bytes).ok()?)?.map(&key(PROGRAM, source))?;
         // The time of the last use; that of a file that must not be changed stays.
         if let Ok(file) = fs::File::options().append(true).open(&path) {
             let _ = file.set_modified((self.host.now)());
@@ -259,5 +255,10 @@ mod tests {
         fs::create_dir(large.path_of(&source)).unwrap();
         assert_eq!(large.read(&source), None);
         assert!(large.maps().is_empty());
+        // Listed without being read.
+        fs::remove_dir(large.path_of(&source)).unwrap();
+        fs::File::create(large.path_of(&source)).unwrap().set_len(1 << 40).unwrap();
+        let maps = large.maps();
+        assert!(maps.len() == 1 && maps[0].label.is_none() && maps[0].bytes == 1 << 40, "{maps:?}");
     }
 }

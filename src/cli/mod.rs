@@ -62,12 +62,11 @@ pub use exit::Exit;
 use output::ColorWhen;
 pub use replan::MotionAnswer;
 
-/// Prints no message of a panic that means that a recording is damaged: it becomes an error.
-#[cfg(feature = "recording")]
+/// Prints no message of a panic that means that a file is damaged: it becomes an error.
 fn leave_damage_to_decoders() {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        if !crate::record::is_decoding() {
+        if !crate::input::is_decoding() {
             print(panic);
         }
     }));
@@ -99,7 +98,6 @@ pub fn run_command(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         }
     };
     log::begin(cli.verbose);
-    #[cfg(feature = "recording")]
     leave_damage_to_decoders();
     let outcome = std::panic::catch_unwind(|| match &cli.command {
         Command::Init(args) => init::init(args),

@@ -27,7 +27,6 @@ mod encode;
 mod entity;
 mod error;
 mod frames;
-mod guard;
 mod input;
 mod lengths;
 mod messages;
@@ -49,7 +48,6 @@ mod tests;
 
 pub use encode::encode;
 pub use error::RecordError;
-pub use guard::is_decoding;
 pub use input::{Capsule, PersonShape, RecordingInput};
 pub use posture::encode_posture;
 pub use read::{Peaks, RecordedPhase, RecordedRun, RecordedSummary, Recording, read_run, read_summary};

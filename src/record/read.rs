@@ -11,13 +11,12 @@ use rerun::log::Chunk;
 use super::{
     decode::{HEADER, check_header, chunks, document, json, texts, times_s},
     error::RecordError,
-    guard::guarded,
     plots::{FAILURE, LIMIT, NOT_JUDGED, without_time},
     stored,
     summary::{ABOUT, About},
 };
 use crate::{
-    input::{self, MOST_RECORDING},
+    input::{self, MOST_RECORDING, guarded},
     model::{FORMAT, plan::Plan, scenario::Scenario, trace::Trace, verdict::Verdict},
 };
 

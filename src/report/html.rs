@@ -7,6 +7,7 @@ use super::{
     plot::{Line, Plot},
     posture, stages,
     summary::recording_link,
+    xml,
 };
 use crate::model::{
     measures::{HandMeasures, JointMeasures, Measures},
@@ -49,7 +50,7 @@ pub(super) fn document(title: &str, style: &str, body: &Markup) -> String {
             }
         }
     };
-    page.into_string()
+    xml::legal(page.into_string())
 }
 
 /// The page: a table of all scenarios, then a section for each with checks and plots. Sections of failures are open.

@@ -2,7 +2,7 @@
 
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
-use super::Outcome;
+use super::{Outcome, xml};
 
 /// The outcomes of a run as one test suite, without durations, so that equal runs give equal files.
 ///
@@ -13,7 +13,7 @@ pub fn document(outcomes: &[Outcome]) -> Result<String, SerializeError> {
     suite.add_test_cases(outcomes.iter().map(test_case));
     let mut report = Report::new("benchdog");
     report.add_test_suite(suite);
-    report.to_string()
+    report.to_string().map(xml::legal)
 }
 
 fn test_case(outcome: &Outcome) -> TestCase {

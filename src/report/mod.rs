@@ -33,6 +33,7 @@ pub mod task;
 #[cfg(test)]
 mod tests;
 mod units;
+mod xml;
 
 use std::path::PathBuf;
 

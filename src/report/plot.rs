@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::xml::legal;
 use crate::model::measures::axis_top;
 
 /// Size of a plot, px.
@@ -212,7 +213,7 @@ pub(super) fn axis_titles(body: &mut String, area_px: [f64; 4], [horizontal, ver
 
 /// Text with the special characters of XML escaped.
 pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    legal(text.to_owned()).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

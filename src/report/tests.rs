@@ -224,6 +224,19 @@ fn a_limit_from_below_is_shown_as_one_everywhere() {
     assert!(page.contains("&gt;= 0.000") && page.contains("5.00 mm between left_wrist and the board"), "{page}");
 }
 
+/// A file may be named so, and its error quote it.
+#[test]
+fn page_and_junit_report_are_xml_whatever_names_and_messages_contain() {
+    let odd = "a\0\u{1b}[31m<b>&amp;]]>\"'\u{85}\u{fffe}\u{ffff}\u{202e}";
+    let outcomes = [Outcome::Crashed { name: odd.into(), message: odd.into() }];
+    for text in [html::page(&outcomes), junit::document(&outcomes).unwrap()] {
+        let text = text.replace("<!DOCTYPE html>", "");
+        let document = roxmltree::Document::parse(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        let shown = document.descendants().filter_map(|node| node.attribute("message").or_else(|| node.text()));
+        assert!(shown.filter(|shown| shown.contains("<b>&amp;]]>")).count() > 0, "{text}");
+    }
+}
+
 #[test]
 fn the_page_states_the_scores_of_the_posture_where_there_are_any() {
     let page = html::page(&outcomes());

@@ -2,7 +2,7 @@
 //!
 //! As in ROS, the unit of a COLLADA file counts and its up axis does not.
 
-use std::{collections::BTreeSet, path::Path, sync::Arc};
+use std::{collections::BTreeSet, sync::Arc};
 
 use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use parry3d_f64::{
@@ -15,12 +15,10 @@ use parry3d_f64::{
 
 use super::{
     geometry::{MeshFile, PlacedShape, Shape, TriangleMesh, Visual, VisualGeometry},
+    mesh_file,
     tree::{Link, Robot},
 };
-use crate::{
-    input::{self, MOST_MESH},
-    model::frames::Pose,
-};
+use crate::model::frames::Pose;
 
 /// The largest distance by which a point of a mesh's hull may stick out of the shape, m: a fifth of the usual clearance.
 const HULL_TOLERANCE_M: f64 = 1e-3;
@@ -59,10 +57,7 @@ impl MeshFile {
     /// What is wrong with the file.
     pub fn read(&self) -> Result<Vec<MeshPart>, String> {
         let at = |problem: String| format!("mesh {}: {problem}", self.path.display());
-        let bytes = input::bytes(&self.path, MOST_MESH).map_err(|error| at(format!("failed to read: {error}")))?;
-        let scene = mesh_loader::Loader::default()
-            .load_from_slice(&with_binary_header(&self.path, bytes), &self.path)
-            .map_err(|error| at(error.to_string()))?;
+        let scene = mesh_file::read(&self.path).map_err(at)?;
         let scale = Vector3::from(self.scale);
         let parts = scene.meshes.iter().enumerate().map(|(number, mesh)| {
             let corner = |p: &[f32; 3]| Point3::from(Vector3::from(p.map(f64::from)).component_mul(&scale));
@@ -104,20 +99,6 @@ impl MeshFile {
         };
         Ok(pieces.iter().map(|points| hull_shape(points)).collect())
     }
-}
-
-/// The content of a file with a header that says that it is binary if it is a binary STL file: some begin with `solid`, as
-/// text does.
-fn with_binary_header(path: &Path, mut bytes: Vec<u8>) -> Vec<u8> {
-    const HEADER: usize = 80;
-    const TRIANGLE: u64 = 50;
-    let is_stl = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("stl"));
-    let count = bytes.get(HEADER..HEADER + 4).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
-    let binary_length = count.map(|count| HEADER as u64 + 4 + TRIANGLE * u64::from(count));
-    if is_stl && binary_length == Some(bytes.len() as u64) {
-        bytes[..HEADER].fill(b' ');
-    }
-    bytes
 }
 
 /// All parts as one surface.

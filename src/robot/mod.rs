@@ -15,6 +15,7 @@ pub mod inverse;
 mod linkage;
 mod load;
 mod mesh;
+mod mesh_file;
 mod packages;
 pub mod tree;
 mod urdf;

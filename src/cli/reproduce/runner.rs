@@ -23,6 +23,7 @@ use crate::{
         planners::Planners,
         progress::Progress,
     },
+    input::{self, MOST_DOCUMENT},
     model::{plan::Plan, scenario::Scenario},
     pipeline::{self, Run, recording},
     planner::{FrontPoint, Outcome},
@@ -283,7 +284,7 @@ impl<'a> JobRunner<'a> {
 
 /// The cached result in a file, if it has this fingerprint.
 fn read<T: DeserializeOwned>(path: &Path, fingerprint: &str) -> Option<T> {
-    let cached: CachedResult<T> = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    let cached: CachedResult<T> = serde_json::from_slice(&input::kept(path, MOST_DOCUMENT).ok()?).ok()?;
     (cached.fingerprint == fingerprint).then_some(cached.result)
 }
 

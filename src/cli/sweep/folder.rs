@@ -13,6 +13,7 @@ use crate::{
         interrupt, output,
         progress::Progress,
     },
+    input::{self, MOST_DOCUMENT, MOST_RECORDING},
     report::{self, file::write_whole},
     sweep::{
         info::SweepInfo,
@@ -73,13 +74,13 @@ impl SweepFolder {
             return unfinished;
         }
         let same = self.summary().is_some_and(|summary| summary.info.key() == key);
-        let text = if same { fs::read_to_string(self.file(RUNS)).unwrap_or_default() } else { String::new() };
-        table::read(&text, header, false).unwrap_or_default()
+        let text = || input::kept(&self.file(RUNS), MOST_RECORDING).and_then(input::text_of).ok();
+        table::read(&same.then(text).flatten().unwrap_or_default(), header, false).unwrap_or_default()
     }
 
     /// The summary of a finished sweep, if it can be read.
     fn summary(&self) -> Option<SweepSummary> {
-        serde_json::from_slice(&fs::read(self.file(SUMMARY)).ok()?).ok()
+        serde_json::from_slice(&input::kept(&self.file(SUMMARY), MOST_DOCUMENT).ok()?).ok()
     }
 
     /// Removes what an earlier sweep left, so that it is not mistaken for this one's.

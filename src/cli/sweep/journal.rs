@@ -1,13 +1,14 @@
 //! The journal of a sweep: what is finished is kept in it, and an interrupted sweep goes on from it.
 
 use std::{
-    fs::{self, File, OpenOptions},
+    fs::{File, OpenOptions},
     io::Write,
     path::{Path, PathBuf},
 };
 
 use crate::{
     cli::exit::CliError,
+    input::{self, MOST_RECORDING},
     report::file::WriteError,
     sweep::{record::RunRecord, table},
 };
@@ -24,7 +25,9 @@ pub struct Journal {
 impl Journal {
     /// The runs of an unfinished sweep in a folder; none without a journal, or with that of another sweep.
     pub fn read(folder: &Path, fingerprint: &str, header: &[String]) -> Vec<RunRecord> {
-        let Ok(text) = fs::read_to_string(folder.join(JOURNAL)) else { return Vec::new() };
+        let Ok(text) = input::kept(&folder.join(JOURNAL), MOST_RECORDING).and_then(input::text_of) else {
+            return Vec::new();
+        };
         let Some((first, rows)) = text.split_once('\n') else { return Vec::new() };
         if first != fingerprint {
             return Vec::new();

@@ -11,7 +11,7 @@ use rerun::{
 };
 
 use super::*;
-use crate::record::guard::guarded;
+use crate::input::{guarded, is_decoding};
 
 type Message = <LogMsg as ToTransport>::Output;
 

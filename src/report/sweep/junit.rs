@@ -3,7 +3,7 @@
 use quick_junit::{NonSuccessKind, Property, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
 use super::sentence;
-use crate::sweep::summary::SweepSummary;
+use crate::{report::xml, sweep::summary::SweepSummary};
 
 /// The sweep as one test case: failed if the expected probability is not shown.
 ///
@@ -33,5 +33,5 @@ pub fn junit(summary: &SweepSummary) -> Result<String, SerializeError> {
     suite.add_test_case(case);
     let mut report = Report::new("benchdog");
     report.add_test_suite(suite);
-    report.to_string()
+    report.to_string().map(xml::legal)
 }
