@@ -164,7 +164,7 @@ mod tests {
     fn numbers_of_points_at_one_place_do_not_lie_on_one_another() {
         let mut body = String::new();
         numbers(&mut body, &[[10.0, 100.0], [11.0, 101.0], [10.0, 99.0]]);
-        for place in ["x=\"16.0\" y=\"95.0\"", "x=\"17.0\" y=\"84.0\"", "x=\"16.0\" y=\"70.0\""] {
+        for place in ["x=\"16.0\" y=\"95.0\"", "x=\"17.0\" y=\"72.0\"", "x=\"16.0\" y=\"58.0\""] {
             assert!(body.contains(place), "{place}: {body}");
         }
     }

@@ -12,8 +12,11 @@ use super::{
 };
 use crate::model::wrench::Wrench;
 
+/// Messages with their times, ns.
+type Messages = Vec<(u64, Vec<u8>)>;
+
 /// A channel of a file: topic, type, encoding, and messages with their times, ns.
-type Channel<'a> = (&'a str, &'a str, &'a str, Vec<(u64, Vec<u8>)>);
+type Channel<'a> = (&'a str, &'a str, &'a str, Messages);
 
 /// A file with these channels.
 fn file(channels: &[Channel<'_>], compression: Option<Compression>) -> Vec<u8> {
@@ -33,7 +36,7 @@ fn file(channels: &[Channel<'_>], compression: Option<Compression>) -> Vec<u8> {
 const STAMPED: &str = "geometry_msgs/msg/WrenchStamped";
 
 /// Wrenches whose force along x is 1, 2, 3 N, 10 ms apart, from 5 s on.
-fn wrenches() -> Vec<(u64, Vec<u8>)> {
+fn wrenches() -> Messages {
     let message = |number: u32| {
         let time_ns = 5_000_000_000 + 10_000_000 * u64::from(number);
         let wrench = Wrench::from([f64::from(number) + 1.0, 0.5, 0.0, 0.0, 0.0, 0.25]);
@@ -87,7 +90,7 @@ fn the_topic_is_chosen_or_asked_for() {
 
 #[test]
 fn messages_that_are_no_wrench_are_refused_with_their_number() {
-    let with = |change: &dyn Fn(&mut Vec<(u64, Vec<u8>)>)| {
+    let with = |change: &dyn Fn(&mut Messages)| {
         let mut data = wrenches();
         change(&mut data);
         series(&file(&[("/wrench", STAMPED, "cdr", data)], None), None).unwrap_err().to_string()

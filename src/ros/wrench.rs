@@ -1,15 +1,16 @@
 //! A measured wrench over time from a file of MCAP: `geometry_msgs/WrenchStamped` or `geometry_msgs/Wrench`, of ROS 2 (CDR) or of
 //! ROS 1.
 
-use std::collections::BTreeMap;
+use std::{borrow::Cow, collections::BTreeMap, io::Read};
 
 use ::mcap::{
-    McapError, parse_record,
-    records::{Channel, Record},
-    sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions},
+    McapError,
+    read::LinearReader,
+    records::{Channel, ChunkHeader, Record},
 };
 
 use super::cdr::Reader;
+use crate::input;
 
 /// The first bytes of every MCAP file.
 pub const MAGIC: &[u8] = b"\x89MCAP";
@@ -17,8 +18,8 @@ pub const MAGIC: &[u8] = b"\x89MCAP";
 /// The most messages of a topic. A plan carries them all.
 const MOST_MESSAGES: usize = 1_000_000;
 
-/// The most bytes of a record, and of all records of a file together once they are unpacked.
-const MOST_RECORD: usize = 256 << 20;
+/// The most bytes of a chunk, and of all chunks of a file together, once they are unpacked.
+const MOST_CHUNK: usize = 256 << 20;
 const MOST_TOTAL: usize = 1 << 30;
 
 /// The encodings of messages.
@@ -82,31 +83,55 @@ pub fn series(bytes: &[u8], topic: Option<&str>) -> Result<Vec<[f64; 7]>, Wrench
     Ok(rows)
 }
 
-/// Feeds the records of a file to `topics`.
+/// Feeds the records of a file to `topics`. Chunks are unpacked here and not by the library, whose reader does not end if a damaged
+/// chunk has less data than it says.
 fn read(bytes: &[u8], topics: &mut Topics) -> Result<(), WrenchError> {
     let damaged = |error: McapError| WrenchError::Damaged(error.to_string());
-    // The limit keeps a damaged length from asking for all memory.
-    let options = LinearReaderOptions::default().with_record_length_limit(MOST_RECORD).with_validate_chunk_crcs(true);
-    let mut reader = LinearReader::new_with_options(options);
-    let (mut rest, mut total) = (bytes, 0_usize);
-    while let Some(event) = reader.next_event() {
-        match event.map_err(damaged)? {
-            LinearReadEvent::ReadRequest(wanted) => {
-                let (now, later) = rest.split_at(wanted.min(rest.len()));
-                reader.insert(now.len()).copy_from_slice(now);
-                reader.notify_read(now.len());
-                rest = later;
-            }
-            LinearReadEvent::Record { data, opcode } => {
-                total = total.saturating_add(data.len());
+    let mut total = 0_usize;
+    // Its records are no longer than the file.
+    for record in LinearReader::new(bytes).map_err(damaged)? {
+        match record.map_err(damaged)? {
+            Record::Chunk { header, data } => {
+                let records = unpacked(&header, &data)?;
+                total = total.saturating_add(records.len());
                 if total > MOST_TOTAL {
                     return Err(WrenchError::Damaged("more than 1 GiB of records".to_owned()));
                 }
-                topics.add(parse_record(opcode, data).map_err(damaged)?);
+                for record in LinearReader::sans_magic(&records) {
+                    topics.add(record.map_err(damaged)?);
+                }
             }
+            record => topics.add(record),
         }
     }
     Ok(())
+}
+
+/// The records of a chunk.
+fn unpacked<'a>(header: &ChunkHeader, data: &'a [u8]) -> Result<Cow<'a, [u8]>, WrenchError> {
+    let damaged = |why: String| WrenchError::Damaged(format!("a chunk: {why}"));
+    let failed = |error: std::io::Error| damaged(error.to_string());
+    let size = usize::try_from(header.uncompressed_size).ok().filter(|size| *size <= MOST_CHUNK);
+    let size = size.ok_or_else(|| damaged(format!("found {} bytes", header.uncompressed_size)))?;
+    // One byte more tells a chunk that is too long.
+    let all = |reader: &mut dyn Read| {
+        let mut records = Vec::new();
+        reader.take(size as u64 + 1).read_to_end(&mut records).map_err(failed)?;
+        Ok(Cow::Owned(records))
+    };
+    let records = match header.compression.as_str() {
+        "" => Cow::Borrowed(data),
+        "zstd" => all(&mut zstd::Decoder::new(data).map_err(failed)?)?,
+        "lz4" => all(&mut lz4::Decoder::new(data).map_err(failed)?)?,
+        other => return Err(damaged(format!("found the compression \"{}\"", input::shown(other)))),
+    };
+    if records.len() != size {
+        return Err(damaged(format!("found {} bytes, expected {size}", records.len())));
+    }
+    if header.uncompressed_crc != 0 && crc32fast::hash(&records) != header.uncompressed_crc {
+        return Err(damaged("found another checksum than the one that it states".to_owned()));
+    }
+    Ok(records)
 }
 
 /// The topics of a file.

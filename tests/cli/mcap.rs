@@ -6,9 +6,12 @@ use mcap::MessageStream;
 
 use crate::process::{benchdog, folder, json, slipping_scenario, stderr};
 
-/// The messages of a file by topic: the types, the times, ns, and the bytes.
-fn topics(bytes: &[u8]) -> BTreeMap<String, (String, Vec<(u64, Vec<u8>)>)> {
-    let mut topics: BTreeMap<String, (String, Vec<(u64, Vec<u8>)>)> = BTreeMap::new();
+/// The type of a topic, and its messages: times, ns, and bytes.
+type Topic = (String, Vec<(u64, Vec<u8>)>);
+
+/// The topics of a file.
+fn topics(bytes: &[u8]) -> BTreeMap<String, Topic> {
+    let mut topics = BTreeMap::<String, Topic>::new();
     for message in MessageStream::new(bytes).unwrap() {
         let message = message.unwrap();
         let schema = message.channel.schema.as_ref().unwrap();
