@@ -2,13 +2,11 @@
 
 use std::path::Path;
 
-use nalgebra::{DVector, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{
     contact_model::ContactModel,
     equilibrium::{self, Equilibrium, EquilibriumOutcome, ResponseOutcome},
-    hand::HandModel,
-    limit_crossing::LimitCrossing,
     solvers::{
         clarabel::ReusedSolver,
         cone_program::ConeProgram,
@@ -20,11 +18,7 @@ use super::{
 use crate::{
     check::CheckedPlan,
     human::default_tool,
-    model::{
-        operation::OperationKind,
-        scenario::{Limits, Person},
-        wrench::Wrench,
-    },
+    model::{scenario::Person, wrench::Wrench},
     scenario::read_plan,
 };
 
@@ -172,30 +166,4 @@ fn the_newton_step_to_another_model_is_exact_to_first_order() {
         // the two models causes a few times that.
         assert!(error_m < 0.05 * moved_m + 1e-9, "{error_m:e} m of {moved_m:e} m");
     }
-}
-
-/// While no pad slips the welded stiffness predicts the first limit exactly, also that of a torque which the weight alone has used
-/// up in part: an equilibrium under the weight and one on each side of the limit end the search.
-#[test]
-fn a_torque_limit_near_the_weight_s_torque_is_found_in_three_equilibria() {
-    let limits = Limits { deflection_mm: 1e9, slip_mm: 1e9, slip_deg: 1e9, ..Limits::of(OperationKind::Cut) };
-    let mut found = 0;
-    for model in models() {
-        let mut workspace = StabilityWorkspace::new();
-        let EquilibriumOutcome::Found(unloaded) =
-            workspace.solve_equilibrium(&model, &HandEnergy::of_hands(&model), 0.0)
-        else {
-            continue;
-        };
-        let ratio = |(hand, torque): (&HandModel, &DVector<f64>)| {
-            (0..hand.dof()).map(|joint| torque[joint].abs() / hand.effort_nm[joint]).fold(0.0, f64::max)
-        };
-        let at_rest = model.hands.iter().zip(&unloaded.joint_torque_nm).map(ratio).fold(0.0, f64::max);
-        let near = Limits { torque_ratio: 1.02 * at_rest, ..limits };
-        let factor = workspace.compliant_load_factor(&model, &near).unwrap();
-        assert!(matches!(factor.first_limit, Some(LimitCrossing::Torque { .. })), "{factor:?}");
-        assert_eq!(factor.equilibria, 3, "{factor:?}");
-        found += 1;
-    }
-    assert!(found > 5, "{found}");
 }
