@@ -49,7 +49,7 @@ init-plans:
 deny:
     cargo deny check advisories licenses bans sources
 
-# Damaged input files for two minutes a kind
+# Damaged input files for two minutes
 fuzz:
     bash .ci/run fuzz_inputs
 

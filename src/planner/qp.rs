@@ -201,6 +201,9 @@ mod tests {
         );
     }
 
+    /// A constraint with a smaller margin counts as active: of the constraints that are not, one in some thousands is as near.
+    const ACTIVE: f64 = 1e-6;
+
     proptest! {
         /// The conditions of Karush, Kuhn and Tucker, with multipliers by least squares: the gradient at the solution is a
         /// combination of the active constraints' normals with coefficients of one sign. As in a refinement there are more
@@ -223,13 +226,14 @@ mod tests {
             for constraint in &constraints {
                 let margin = constraint.margin + constraint.gradient.dot(&d);
                 prop_assert!(margin > -1e-8);
-                if margin < 1e-8 && !normals.contains(&constraint.gradient) {
+                // Where normals are nearly dependent, rounding moves the step off the constraints that hold it by more than 1e-8.
+                if margin < ACTIVE && !normals.contains(&constraint.gradient) {
                     normals.push(constraint.gradient.clone());
                 }
             }
             for variable in 0..count {
                 prop_assert!(d[variable].abs() < radius + 1e-8);
-                if d[variable].abs() > radius - 1e-8 {
+                if d[variable].abs() > radius - ACTIVE {
                     let mut normal = DVector::zeros(count);
                     normal[variable] = -d[variable].signum();
                     normals.push(normal);
