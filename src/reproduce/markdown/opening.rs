@@ -62,9 +62,12 @@ fn pair(of: impl Fn(OperationKind) -> Option<String>) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(" and "))
 }
 
+/// A column of Table I.
+type Column = fn(&Row) -> Option<f64>;
+
 /// How much better than random holds.
 fn comfort(results: &Results) -> Option<String> {
-    let ratio = |reproduction: &Reproduction, kind, of: fn(&Row) -> Option<f64>| {
+    let ratio = |reproduction: &Reproduction, kind, of: Column| {
         let rows = table::rows(reproduction.holds.iter());
         let row = rows.into_iter().find(|row| row.kind == kind && row.planner == PlannerKind::Comfort)?;
         of(&row).map(|ratio| format!("{ratio:.2}"))
@@ -73,8 +76,8 @@ fn comfort(results: &Results) -> Option<String> {
         printed::table(kind, PlannerKind::Comfort).map(|paper| format!("{:.2}", of(&paper)))
     };
     let (natural, printed) = (&results.natural, &results.printed);
-    let (muscular, peripersonal): (fn(&Row) -> _, fn(&Row) -> _) =
-        (|row| row.muscular_normalised, |row| row.peripersonal_normalised);
+    let muscular: Column = |row| row.muscular_normalised;
+    let peripersonal: Column = |row| row.peripersonal_normalised;
     Some(format!(
         "**Comfort.** The comfort planner gives a natural person {} times the muscular comfort of random holds, and {} times their\n  \
          peripersonal comfort; as printed it is {} and {}; the paper's Table I has {} and {}.",
