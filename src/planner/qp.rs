@@ -24,9 +24,6 @@ pub struct LinearConstraint {
 
 /// A constraint that is violated by less than this share of its gradient's length is satisfied.
 const TOLERANCE: f64 = 1e-9;
-/// A step of a variable that is no rounding, in the units of the variables.
-const DRIFT: f64 = 1e-9;
-
 /// Changes of the active set after which a program is given up; a few more than the number of variables are usual.
 const MAX_CHANGES: usize = 200;
 
@@ -79,13 +76,7 @@ pub fn solve(
         factors.add();
         multipliers.push(multiplier);
     }
-    let d = DVector::from_vec(d);
-    // Rounding on nearly dependent normals may have moved d along the active constraints: a Newton step within them takes it back.
-    // Smaller moves are rounding, too.
-    let Workspace { primal, dual, .. } = &mut workspace;
-    factors.direction((gradient - hessian * &d).as_slice(), primal, dual);
-    let step = DVector::from_column_slice(primal);
-    Some(if step.amax() > DRIFT { d + step } else { d })
+    Some(DVector::from_vec(d))
 }
 
 /// Memory of one program.
