@@ -7,7 +7,7 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
     process::Output,
     time::SystemTime,
 };
@@ -316,8 +316,8 @@ fn reproduce(arguments: &[&str], out: &Path) -> Output {
 
 /// The files of a run that are committed, by path.
 fn written(folder: &Path) -> Files {
-    let kept = |path: &Path| ["work", "recordings", "timing.csv"].iter().any(|name| path.starts_with(name));
-    contents(folder).into_iter().filter(|(path, _)| !kept(path)).collect()
+    let is_own = |name: Component<'_>| ["work", "recordings", "timing.csv"].iter().any(|own| name.as_os_str() == *own);
+    contents(folder).into_iter().filter(|(path, _)| !path.components().any(is_own)).collect()
 }
 
 /// A cut and a hole, which threads finish in any order.
