@@ -7,7 +7,7 @@ use benchdog::{
     model::{plan::Plan, scenario::Scenario, sweep::Sweep as Deviations},
     pipeline::{
         RunError,
-        sweep::{self, Description, Extent, Study, SweepOptions, as_swept, why_not_simulated},
+        sweep::{self, Description, Extent, Study, SweepOptions, as_swept},
     },
     robot::Robot,
     sim::SimError,
@@ -114,7 +114,7 @@ impl Sweep {
     fn done(&self, known: &mut Known, work: &Work) -> PyResult<(SweepInfo, Vec<RunRecord>)> {
         let Self { scenario, robot, plan, deviations, options, .. } = self;
         let checked = CheckedPlan::new(robot, plan, &scenario.human, &scenario.tool).map_err(errors::other)?;
-        if let Some(reason) = why_not_simulated(&checked, scenario) {
+        if let Some((_, reason)) = checked.refusal(&scenario.limits) {
             return Err(errors::other(format!("{}: not simulated: {reason}", plan.name)));
         }
         let draws = Draws::new(deviations, &ArmJoints::of(plan)).map_err(errors::other)?;

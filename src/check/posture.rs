@@ -15,6 +15,7 @@ use crate::{
         muscle_work::{MuscleBelly, MuscleWork},
         plan::{PostureConstraint, PostureFigures, exceeded_scores},
         scenario::Limits,
+        verdict::VerdictKind,
     },
 };
 
@@ -61,6 +62,13 @@ impl CheckedPlan<'_> {
         let flaws = self.posture_flaws().into_iter().chain(self.score_flaws(limits));
         let named: Vec<_> = flaws.map(|flaw| format!("{}: {flaw}", flaw.verdict_name().unwrap_or_default())).collect();
         (!named.is_empty()).then(|| named.join("; "))
+    }
+
+    /// Why a plan is not simulated, with the verdict on it: bodies meet as planned, or the person would not stand or see so.
+    #[must_use]
+    pub fn refusal(&self, limits: &Limits) -> Option<(VerdictKind, String)> {
+        let contact = self.first_contact(0.0).map(|contact| (contact.verdict, contact.reason));
+        contact.or_else(|| Some((VerdictKind::Infeasible, self.why_not_so(limits)?)))
     }
 
     /// The scores of the person's posture that exceed their limits.

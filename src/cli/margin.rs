@@ -91,13 +91,8 @@ fn margin_of(checked: &CheckedPlan<'_>, scenario: &Scenario, progress: &Progress
         expected,
         met: expected == VerdictKind::Touches,
     };
-    if let Some(contact) = checked.first_contact(0.0) {
-        let (ended_by, met) = (contact.verdict, expected == contact.verdict);
-        return Ok(Margin { reason: Some(contact.reason), ended_by, met, ..empty });
-    }
-    if let Some(reason) = checked.why_not_so(&scenario.limits) {
-        let (ended_by, met) = (VerdictKind::Infeasible, expected == VerdictKind::Infeasible);
-        return Ok(Margin { reason: Some(reason), ended_by, met, ..empty });
+    if let Some((ended_by, reason)) = checked.refusal(&scenario.limits) {
+        return Ok(Margin { reason: Some(reason), ended_by, met: expected == ended_by, ..empty });
     }
     let guess = empty.predicted.as_ref().map_or(1.0, |predicted| predicted.compliant);
     let FailingLoad { holds_at, fails_at, judgement, simulations } = simulated(checked, scenario, guess, progress)?;

@@ -92,11 +92,8 @@ fn checked_and_judged(
     scenario: &Scenario,
     stop: &dyn Stop,
 ) -> Result<(Verdict, Option<(Trace, Judgement)>), RunError> {
-    if let Some(contact) = checked.first_contact(0.0) {
-        return Ok((verdict_without_simulation(scenario, contact.verdict, contact.reason), None));
-    }
-    if let Some(reason) = checked.why_not_so(&scenario.limits) {
-        return Ok((verdict_without_simulation(scenario, VerdictKind::Infeasible, reason), None));
+    if let Some((verdict, reason)) = checked.refusal(&scenario.limits) {
+        return Ok((verdict_without_simulation(scenario, verdict, reason), None));
     }
     let (trace, judgement) = simulated_and_judged(checked, scenario, stop)?;
     let plan = checked.plan();

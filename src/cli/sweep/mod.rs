@@ -23,7 +23,7 @@ use crate::{
     model::{plan::Plan, scenario::Scenario, stop::Stop as _, sweep::Sweep},
     pipeline::{
         self, recording,
-        sweep::{self, Description, Extent, OptionError, Study, SweepOptions, as_swept, info, why_not_simulated},
+        sweep::{self, Description, Extent, OptionError, Study, SweepOptions, as_swept, info},
     },
     planner::Outcome,
     report,
@@ -67,7 +67,7 @@ pub fn sweep(args: &SweepArgs) -> Result<Exit, CliError> {
     };
     let plan = as_swept(plan, &scenario, &sweep);
     let checked = CheckedPlan::new(&robot, &plan, &scenario.human, &scenario.tool)?;
-    if let Some(reason) = why_not_simulated(&checked, &scenario) {
+    if let Some((_, reason)) = checked.refusal(&scenario.limits) {
         progress.finish();
         output::message(&format!("{}: not simulated: {reason}", plan.name));
         return Ok(Exit::NotMet);

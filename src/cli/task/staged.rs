@@ -45,7 +45,7 @@ pub fn run_staged(
         .collect::<Result<Vec<_>, _>>()?;
     let empty = empty_verdict(scenario, plan);
     for (piece, checked) in states.pieces.iter().zip(&pieces) {
-        if let Some((verdict, reason)) = refused(checked, scenario) {
+        if let Some((verdict, reason)) = checked.refusal(&scenario.limits) {
             let reason = format!("piece {} of the hold: {reason}", piece.number + 1);
             let failed = FailedStage { stage: piece.stage + 1, kind: "hold".into(), first_failure: None, reason };
             return Ok(StagedRun { verdict: with_kind(empty, verdict, Some(failed)), simulated: None });
@@ -66,12 +66,6 @@ pub fn run_staged(
     let (trace, judgement) = confirmed_staged(scenario.simulation.timestep_s, run)?;
     let verdict = verdict(empty, plan, &trace, &judgement);
     Ok(StagedRun { verdict, simulated: Some((trace, judgement)) })
-}
-
-/// Why a piece is not simulated.
-fn refused(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Option<(VerdictKind, String)> {
-    let contact = checked.first_contact(0.0).map(|contact| (contact.verdict, contact.reason));
-    contact.or_else(|| Some((VerdictKind::Infeasible, checked.why_not_so(&scenario.limits)?)))
 }
 
 fn empty_verdict(scenario: &Scenario, plan: &StagedPlan) -> StagedVerdict {

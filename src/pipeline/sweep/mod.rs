@@ -13,4 +13,4 @@ mod study;
 pub use info::{Description, info};
 pub use options::{OptionError, SweepOptions};
 pub use runs::{Extent, SweepWatch, run};
-pub use study::{Study, as_swept, screen, why_not_simulated};
+pub use study::{Study, as_swept, screen};

@@ -125,9 +125,3 @@ pub fn as_swept(mut plan: Plan, scenario: &Scenario, sweep: &Sweep) -> Plan {
     plan.scenario = Some(Scenario { sweep: Some(sweep.clone()), ..scenario.clone() });
     plan
 }
-
-/// Why no run of a plan would be simulated.
-#[must_use]
-pub fn why_not_simulated(checked: &CheckedPlan<'_>, scenario: &Scenario) -> Option<String> {
-    checked.first_contact(0.0).map(|contact| contact.reason).or_else(|| checked.why_not_so(&scenario.limits))
-}
