@@ -90,7 +90,7 @@ class Site:
         self.src = out / "src"
         self.sections = re.findall(r"^### (\S+)$", (DOCS / "verdicts.md").read_text(), flags=re.MULTILINE)
 
-        self.tables = set(json.loads(benchdog("schema", "scenario"))["properties"])
+        self.scenario_schema = json.loads(benchdog("schema", "scenario"))
 
     def target(self, target: str, page: PurePosixPath) -> str:
         """A link of a page of docs/ as the site has it; `page` is the path of the page in the site."""
@@ -129,7 +129,7 @@ class Site:
             table = code.split(".")[0]
             if code in self.sections and code != own:
                 return f"[`{code}`](#{code})"
-            is_key = "." in code and table in self.tables
+            is_key = "." in code and table in self.scenario_schema["properties"]
             return f"[`{code}`](../schemas/scenario.schema.json#{table})" if is_key else found[0]
 
         return re.sub(r"`([^`]+)`", linked, text)
@@ -178,9 +178,9 @@ def commands_page() -> str:
 class ScenarioKeys:
     """The reference of a scenario's keys, of its JSON Schema."""
 
-    def __init__(self) -> None:
-        self.schema = json.loads(benchdog("schema", "scenario"))
-        self.definitions = self.schema["$defs"]
+    def __init__(self, schema: dict) -> None:
+        self.schema = schema
+        self.definitions = schema["$defs"]
         self.to_write: list[str] = []
 
     def resolved(self, schema: dict) -> tuple[str | None, dict]:
@@ -205,7 +205,7 @@ class ScenarioKeys:
                 self.to_write.append(name)
             return f"[{self.title(name)}](#{self.title(name).lower().replace(' ', '-')})"
         kinds = found.get("type", "any")
-        kind = next((kind for kind in [kinds] if isinstance(kind, str)), None) or next(kind for kind in kinds if kind != "null")
+        kind = kinds if isinstance(kinds, str) else next(kind for kind in kinds if kind != "null")
         if kind == "array" and "items" in found:
             least, most = found.get("minItems"), found.get("maxItems")
             count = f"{least} x " if least is not None and least == most else "list of "
@@ -327,7 +327,7 @@ def main() -> None:
         elif file.suffix == ".md" and name not in ("verdicts.md", "SUMMARY.md"):
             site.write(name, file.read_text())
     names = site.write_verdicts()
-    site.write("reference/scenario.md", ScenarioKeys().page())
+    site.write("reference/scenario.md", ScenarioKeys(site.scenario_schema).page())
     site.write("reference/commands.md", commands_page())
     # The table of contents has an entry without a page for what is made here.
     summary = (DOCS / "SUMMARY.md").read_text()

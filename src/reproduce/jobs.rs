@@ -47,21 +47,22 @@ pub fn jobs_of(scenario: &Scenario, random_seeds: u64, first: Stage) -> Vec<Job>
 /// The comfort planner with the paper's stability constraint alone: some contact forces balance the load.
 #[must_use]
 pub fn best_case(scenario: &Scenario) -> Job {
-    let mut scenario = scenario.clone();
-    scenario.planner.kind = PlannerKind::Comfort;
-    scenario.planner.seed = FIRST_SEED;
-    scenario.planner.stability = StabilityKind::Paper;
-    Job { scenario, variant: Some("the paper's stability"), stage: Stage::Simulate }
+    comfort_variant(scenario, "the paper's stability", |scenario| scenario.planner.stability = StabilityKind::Paper)
 }
 
 /// The comfort planner with the effort of the muscles as its muscular comfort.
 #[must_use]
 pub fn by_muscles(scenario: &Scenario) -> Job {
+    comfort_variant(scenario, "by muscles", |scenario| scenario.comfort.muscular = MuscularMetric::Muscles)
+}
+
+/// The comfort planner's job with another setting, simulated.
+fn comfort_variant(scenario: &Scenario, name: &'static str, change: fn(&mut Scenario)) -> Job {
     let mut scenario = scenario.clone();
     scenario.planner.kind = PlannerKind::Comfort;
     scenario.planner.seed = FIRST_SEED;
-    scenario.comfort.muscular = MuscularMetric::Muscles;
-    Job { scenario, variant: Some("by muscles"), stage: Stage::Simulate }
+    change(&mut scenario);
+    Job { scenario, variant: Some(name), stage: Stage::Simulate }
 }
 
 impl Job {

@@ -50,16 +50,15 @@ fn picture(reproduction: &Reproduction, kind: OperationKind, folder: &str) -> Op
     Some(format!("![{}]({folder}pictures/{})", picture_title(row), picture_name(row)))
 }
 
-/// The figures of both kinds of operation, `1.73 in cutting and 1.69 in drilling`; `None` without any.
-fn by_task(of: impl Fn(OperationKind) -> Option<String>) -> Option<String> {
-    let parts: Vec<_> = KINDS.into_iter().filter_map(|kind| Some(format!("{} in {}", of(kind)?, task(kind)))).collect();
-    (!parts.is_empty()).then(|| parts.join(" and "))
-}
-
-/// The same without their names, `1.73 and 1.69`.
+/// The figures of both kinds of operation, `1.73 and 1.69`; `None` without any.
 fn pair(of: impl Fn(OperationKind) -> Option<String>) -> Option<String> {
     let parts: Vec<_> = KINDS.into_iter().filter_map(of).collect();
     (!parts.is_empty()).then(|| parts.join(" and "))
+}
+
+/// The same with their names, `1.73 in cutting and 1.69 in drilling`.
+fn by_task(of: impl Fn(OperationKind) -> Option<String>) -> Option<String> {
+    pair(|kind| Some(format!("{} in {}", of(kind)?, task(kind))))
 }
 
 /// A column of Table I.

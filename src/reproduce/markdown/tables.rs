@@ -12,6 +12,7 @@ use crate::{
     reproduce::{
         claims::{self, Claim},
         evaluation::{HoldRow, KINDS, Kept, Reproduction, Results, task},
+        paper::Evaluation,
         printed::{self, Printed},
         statistics,
         table::{self, Row},
@@ -20,7 +21,7 @@ use crate::{
 
 /// Both evaluations with their names.
 fn both(results: &Results) -> [(&'static str, &Reproduction); 2] {
-    [("natural", &results.natural), ("as printed", &results.printed)]
+    [(Evaluation::Natural.name(), &results.natural), (Evaluation::Printed.name(), &results.printed)]
 }
 
 /// Rows of Table I of both evaluations, by task and planner.
