@@ -549,6 +549,17 @@ pub enum RecordChoice {
     Always,
 }
 
+impl RecordChoice {
+    /// True if a simulation is recorded whose expectation was met or not.
+    pub fn wants(self, met: bool) -> bool {
+        match self {
+            Self::Never => false,
+            Self::Failed => !met,
+            Self::Always => true,
+        }
+    }
+}
+
 /// A file format that has a schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SchemaOf {

@@ -7,10 +7,10 @@ use std::{
 };
 
 use super::{
-    args::{RecordChoice, ReportArgs},
+    args::ReportArgs,
     exit::{CliError, Exit},
     format::Format,
-    inputs::{self, is_same_file},
+    inputs::{Inputs, is_same_file},
     output,
 };
 use crate::{
@@ -89,19 +89,19 @@ impl RunFiles {
 ///
 /// # Errors
 /// If a file of the run is one of the inputs.
-pub fn protect(args: &ReportArgs, folder: &Path, plan_file: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
+pub fn protect(args: &ReportArgs, folder: &Path, plan_file: Option<&Path>, inputs: &Inputs) -> Result<(), CliError> {
     let RunFiles { plan, recording, mcap, verdict } = RunFiles::new(folder);
     let is_own = plan_file.is_some_and(|file| is_same_file(file, &plan));
     let outputs = [recording, mcap, verdict].into_iter().chain((!is_own).then_some(plan)).chain(args.junit.clone());
-    inputs::protect(inputs, outputs)
+    inputs.protect(outputs)
 }
 
 /// Refuses to overwrite input files with the reports on all runs.
 ///
 /// # Errors
 /// If a report is one of the inputs.
-pub fn protect_from_reports(args: &ReportArgs, inputs: &[PathBuf]) -> Result<(), CliError> {
-    inputs::protect(inputs, REPORTS.map(|name| args.out.of_all().join(name)))
+pub fn protect_from_reports(args: &ReportArgs, inputs: &Inputs) -> Result<(), CliError> {
+    inputs.protect(REPORTS.map(|name| args.out.of_all().join(name)))
 }
 
 /// Refuses a template of `--out` with which two scenarios would have one folder.
@@ -127,7 +127,7 @@ pub fn folders_differ<'a>(folders: impl IntoIterator<Item = (&'a str, &'a Path)>
 /// If there is another plan.
 pub fn keep_other_plan(folder: &Path, plan: &Plan) -> Result<(), CliError> {
     let path = RunFiles::new(folder).plan;
-    let bytes = match input::bytes(&path, MOST_DOCUMENT) {
+    let bytes = match input::kept(&path, MOST_DOCUMENT) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::FileTooLarge => return Err(CliError::OverwritesPlan(path)),
         Err(_) => return Ok(()),
@@ -180,12 +180,7 @@ pub fn write_run(
     (folder, args): (&Path, &ReportArgs),
 ) -> Result<FinishedRun, CliError> {
     let files = RunFiles::new(folder);
-    let wanted = match args.record {
-        RecordChoice::Never => false,
-        RecordChoice::Failed => !run.verdict.met,
-        RecordChoice::Always => true,
-    };
-    let recording = if wanted { recording::encode(&run, scenario, robot)? } else { None };
+    let recording = if args.record.wants(run.verdict.met) { recording::encode(&run, scenario, robot)? } else { None };
     let mcap = if args.mcap { mcap::encode(&run, robot)? } else { None };
     let plan = run.plan.as_ref().map(|plan| report::json::plan(plan).into_bytes());
     let recorded = recording.is_some();

@@ -46,14 +46,11 @@ use runner::JobRunner;
 pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let progress = Progress::counting("reading the operations", "")?;
     let out = args.folder();
-    let operations = Evaluation::ALL.map(|evaluation| operations(args, evaluation));
-    let [natural, printed] = operations;
-    let (natural, printed) = (natural?, printed?);
+    let (natural, printed) = (operations(args, Evaluation::Natural)?, operations(args, Evaluation::Printed)?);
     let Some(LoadedScenario { robot, .. }) = natural.first() else { return Ok(Exit::Met) };
     file::check_folder(&out)?;
-    let runner = |evaluation, folder: &Path| JobRunner::new(evaluation, robot, folder, args, &progress);
-    let of_natural = runner(Evaluation::Natural, &out)?;
-    let of_printed = runner(Evaluation::Printed, &out.join(PRINTED))?;
+    let of_natural = JobRunner::natural(robot, &out, args, &progress)?;
+    let of_printed = of_natural.printed(&out.join(PRINTED));
     let folder = of_natural.folder();
     let folder = folder.display();
     progress.leaves(&format!("finished results are kept in {folder}, and the same command continues from them"));

@@ -7,6 +7,7 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::Arc,
     time::Instant,
 };
 
@@ -26,7 +27,7 @@ use crate::{
     input::{self, MOST_DOCUMENT},
     model::{plan::Plan, scenario::Scenario},
     pipeline::{self, Run, recording},
-    planner::{FrontPoint, Outcome},
+    planner::{Front, FrontPoint, Outcome},
     report::file,
     reproduce::{
         evaluation::{Circle, FrontRow, HoldRow},
@@ -54,11 +55,12 @@ impl JobResult {
 }
 
 /// Runs the jobs of an evaluation and caches their results in a folder.
+#[derive(Clone)]
 pub struct JobRunner<'a> {
     evaluation: Evaluation,
     robot: &'a Robot,
     progress: &'a Progress,
-    planners: Planners,
+    planners: Arc<Planners>,
     out: PathBuf,
     /// SHA-256 of this executable.
     executable: String,
@@ -74,12 +76,11 @@ struct CachedResult<T> {
 }
 
 impl<'a> JobRunner<'a> {
-    /// A runner whose results go to the folder `out`.
+    /// The runner of the natural evaluation, whose results go to the folder `out`.
     ///
     /// # Errors
     /// If the executable file cannot be read.
-    pub fn new(
-        evaluation: Evaluation,
+    pub fn natural(
         robot: &'a Robot,
         out: &Path,
         args: &ReproduceArgs,
@@ -89,14 +90,19 @@ impl<'a> JobRunner<'a> {
             .and_then(fs::read)
             .map_err(|error| CliError::Machine(format!("failed to read this program's own file: {error}")))?;
         Ok(Self {
-            evaluation,
+            evaluation: Evaluation::Natural,
             robot,
             progress,
-            planners: Planners::new(args.cache),
+            planners: Arc::new(Planners::new(args.cache)),
             out: out.to_owned(),
             executable: base16ct::lower::encode_string(&Sha256::digest(executable)),
             record: args.record,
         })
+    }
+
+    /// The runner of the evaluation as printed, with a folder of its own and the same planners.
+    pub fn printed(&self, out: &Path) -> Self {
+        Self { evaluation: Evaluation::Printed, out: out.to_owned(), ..self.clone() }
     }
 
     /// The evaluation whose jobs it runs.
@@ -156,27 +162,12 @@ impl<'a> JobRunner<'a> {
     /// If the search is stopped or a file cannot be written.
     pub fn front(&self, scenario: &Scenario) -> Result<Option<FrontRow>, CliError> {
         let path = self.folder().join("front").join(format!("{}.json", scenario.name));
-        let fingerprint = self.fingerprint_of(&("front", scenario));
-        if let Some(row) = read(&path, &fingerprint) {
-            return Ok(Some(row));
-        }
-        self.progress.begins(&format!("{} front", scenario.name));
-        let planner = self.planners.of(self.robot);
-        let Outcome::Found(front) = planner.search(scenario).watch(self.progress).front()? else { return Ok(None) };
-        let [weight_muscular, weight_peripersonal] = scenario.comfort.weights();
-        let objective = |point: &FrontPoint| {
-            let [muscular, peripersonal_m] = point.comforts();
-            weight_muscular * muscular + weight_peripersonal * peripersonal_m
-        };
-        let best = front.points.iter().chain([&front.own]).map(objective).fold(f64::NEG_INFINITY, f64::max);
-        let row = FrontRow {
-            operation: scenario.name.clone(),
-            kind: scenario.operation.kind,
-            points: front.points.len(),
-            optima: front.optima,
-            best_objective: best,
-        };
-        write(&path, fingerprint, row).map(Some)
+        read_or_compute(&path, self.fingerprint_of(&("front", scenario)), || {
+            self.progress.begins(&format!("{} front", scenario.name));
+            let planner = self.planners.of(self.robot);
+            let outcome = planner.search(scenario).watch(self.progress).front()?;
+            Ok(outcome.found().map(|front| front_row(scenario, &front)))
+        })
     }
 
     /// The whole circle, from the cache or else planned, compared, simulated and judged.
@@ -186,10 +177,7 @@ impl<'a> JobRunner<'a> {
     pub fn circle(&self) -> Result<Circle, CliError> {
         let path = self.folder().join("circle.json");
         let fingerprint = self.fingerprint_of(&("circle", circle::SCENARIO));
-        match read(&path, &fingerprint) {
-            Some(circle) => Ok(circle),
-            None => write(&path, fingerprint, circle::circle(&self.planners, self.progress)?),
-        }
+        read_or_compute(&path, fingerprint, || circle::circle(&self.planners, self.progress))
     }
 
     /// SHA-256 of all that a job's result depends on: the executable, the scenario and the stage.
@@ -207,17 +195,9 @@ impl<'a> JobRunner<'a> {
         self.out.join("recordings").join(job.folder()).join(format!("{}.rrd", job.stem()))
     }
 
-    fn is_recorded(&self, met: bool) -> bool {
-        match self.record {
-            RecordChoice::Never => false,
-            RecordChoice::Failed => !met,
-            RecordChoice::Always => true,
-        }
-    }
-
     /// True if a recording is wanted that an earlier run did not write.
     fn lacks_recording(&self, job: &Job, row: &HoldRow) -> bool {
-        let wanted = row.verdict.as_ref().is_some_and(|verdict| self.is_recorded(verdict.met));
+        let wanted = row.verdict.as_ref().is_some_and(|verdict| self.record.wants(verdict.met));
         wanted && cfg!(feature = "recording") && !self.recording_path(job).exists()
     }
 
@@ -271,7 +251,7 @@ impl<'a> JobRunner<'a> {
 
     fn write_recording(&self, job: &Job, run: &Run) -> Result<(), CliError> {
         let path = self.recording_path(job);
-        if self.is_recorded(run.verdict.met)
+        if self.record.wants(run.verdict.met)
             && let Some(bytes) = recording::encode(run, &job.scenario, self.robot)?
         {
             let _writing = interrupt::writing();
@@ -279,6 +259,34 @@ impl<'a> JobRunner<'a> {
         }
         // A recording of an earlier run does not belong to this result.
         Ok(file::remove(&path)?)
+    }
+}
+
+/// What a front says of its operation.
+fn front_row(scenario: &Scenario, front: &Front) -> FrontRow {
+    let [weight_muscular, weight_peripersonal] = scenario.comfort.weights();
+    let objective = |point: &FrontPoint| {
+        let [muscular, peripersonal_m] = point.comforts();
+        weight_muscular * muscular + weight_peripersonal * peripersonal_m
+    };
+    FrontRow {
+        operation: scenario.name.clone(),
+        kind: scenario.operation.kind,
+        points: front.points.len(),
+        optima: front.optima,
+        best_objective: front.points.iter().chain([&front.own]).map(objective).fold(f64::NEG_INFINITY, f64::max),
+    }
+}
+
+/// The cached result in a file, or else a computed one, which is then cached.
+fn read_or_compute<T: Serialize + DeserializeOwned>(
+    path: &Path,
+    fingerprint: String,
+    compute: impl FnOnce() -> Result<T, CliError>,
+) -> Result<T, CliError> {
+    match read(path, &fingerprint) {
+        Some(result) => Ok(result),
+        None => write(path, fingerprint, compute()?),
     }
 }
 
