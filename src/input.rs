@@ -14,7 +14,7 @@ use std::{
 };
 
 pub use guard::{guarded, is_decoding};
-pub use similar::{did_you_mean, meant_by, meant_by_value};
+pub use similar::{did_you_mean, meant, meant_by, meant_by_value};
 
 /// The path that stands for the standard input, in messages as well. Commands have it for the argument `-`.
 pub const STDIN: &str = "<stdin>";
@@ -67,14 +67,21 @@ pub fn bytes_if<E: From<io::Error>>(
     count: u64,
     test: impl FnOnce(&[u8]) -> Result<(), E>,
 ) -> Result<Vec<u8>, E> {
-    if path == Path::new(STDIN) {
-        let bytes = rest_of(standard_input()?, None, (most_bytes, count), test)?;
-        return Ok(read(path, bytes));
-    }
     let file = File::open(path).map_err(|error| similar::of_opening(path, error))?;
     let metadata = file.metadata()?;
     let length = metadata.is_file().then_some(metadata.len());
     rest_of(file, length, (most_bytes, count), test).map(|bytes| read(path, bytes))
+}
+
+/// As [`bytes`], of a file that an argument names: [`STDIN`] is the standard input. A file that another file names is never that.
+///
+/// # Errors
+/// As for [`bytes`], and if the standard input was read before.
+pub fn argument(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
+    if path != Path::new(STDIN) {
+        return bytes(path, most_bytes);
+    }
+    rest_of::<io::Error>(standard_input()?, None, (most_bytes, 0), |_| Ok(())).map(|bytes| read(path, bytes))
 }
 
 /// The bytes of a file that this program keeps for itself, such as a journal. Anything may have its name: what is no file, such as a

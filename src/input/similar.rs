@@ -42,19 +42,26 @@ fn similarity_of_files(a: &str, b: &str) -> f64 {
 /// The end of a message about an unknown name: `; did you mean "friction"?`, or nothing.
 #[must_use]
 pub fn did_you_mean<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(found, known).map(|name| format!("; did you mean \"{name}\"?")).unwrap_or_default()
+    suggestion(nearest(found, known))
+}
+
+fn suggestion(name: Option<&str>) -> String {
+    name.map(|name| format!("; did you mean \"{name}\"?")).unwrap_or_default()
 }
 
 /// As [`did_you_mean`], for a message of a reader of files about an unknown key or variant, which lists those that are known:
 /// ``unknown field `a`, expected one of `b`, `c` ``. Nothing for any other message.
 #[must_use]
 pub fn meant_by(message: &str) -> String {
-    let start = ["unknown field `", "unknown variant `"].iter().find_map(|start| message.find(start));
-    let names = start.map(|start| message[start..].split('`').skip(1).step_by(2).collect::<Vec<_>>());
-    match names.as_deref() {
-        Some([found, known @ ..]) => did_you_mean(found, known.iter().copied()),
-        _ => String::new(),
-    }
+    suggestion(meant(message))
+}
+
+/// The name that a message of [`meant_by`] suggests.
+#[must_use]
+pub fn meant(message: &str) -> Option<&str> {
+    let start = ["unknown field `", "unknown variant `"].iter().find_map(|start| message.find(start))?;
+    let mut names = message[start..].split('`').skip(1).step_by(2);
+    nearest(names.next()?, names)
 }
 
 /// As [`did_you_mean`], for a value that was found and the values that were expected, in words. Only names in quotation marks are
@@ -82,15 +89,22 @@ pub(super) fn of_opening(path: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// A path that exists and is similar to one that does not: the name of the file is mistyped, or that of a folder.
+/// A file that is similar to one that does not exist: its name is mistyped, or that of a folder above.
 fn similar_file(path: &Path) -> Option<PathBuf> {
+    similar_path(path, |path| !path.is_dir())
+}
+
+/// A path that exists, is similar to one that does not, and is of a kind.
+fn similar_path(path: &Path, is_of_kind: fn(&Path) -> bool) -> Option<PathBuf> {
     let name = path.file_name()?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     if !here.exists() {
-        return similar_file(folder).map(|folder| folder.join(name)).filter(|path| path.exists());
+        let meant = similar_path(folder, Path::is_dir)?.join(name);
+        return meant.exists().then_some(meant);
     }
     let entries = here.read_dir().ok()?.take(MOST_ENTRIES).flatten();
+    let entries = entries.filter(|entry| is_of_kind(&entry.path()));
     let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     names.sort();
     let known = names.iter().map(String::as_str).filter(|known| !known.starts_with('.'));
@@ -139,6 +153,7 @@ mod tests {
         assert_eq!(similar("scenarios/quikstart.toml"), found);
         assert_eq!(similar("scenaros/quickstart.toml"), found);
         assert_eq!(similar("scenaros/other.toml"), None);
+        assert_eq!(similar("scenarioss"), None, "a folder is no file");
         assert_eq!(similar("plan.json"), None);
         assert_eq!(similar("scenarios/a.toml"), None, "the extension alone is no similarity");
     }

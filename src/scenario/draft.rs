@@ -20,6 +20,7 @@ use super::{
     check::Checker,
     locate::{self, KeyPart, key_parts},
 };
+use crate::input::meant;
 
 /// The most faults that are looked for in one file.
 const MOST_FAULTS: usize = 100;
@@ -93,7 +94,7 @@ impl<D: Document> Draft<D> {
             // The user wrote it in another way.
             let follows = missing.is_some() && self.removed.iter().any(|removed| parent(removed) == key);
             if !follows {
-                self.sections.insert(section(&key).to_owned(), Wrong::Form);
+                self.sections.insert(section(meant_section(&key, &error)).to_owned(), Wrong::Form);
                 self.faults.push(error);
             }
             let goes_on = match missing {
@@ -172,7 +173,7 @@ const DEPENDENCES: [(&str, &[&str]); 9] = [
     ("grip", &["robot"]),
     ("planner", &["robot"]),
     ("operation", &["object"]),
-    ("load", &["operation"]),
+    ("load", &["operation", "simulation"]),
     ("limits", &["operation"]),
     ("uncertainty", &["object"]),
     ("human", &["tool"]),
@@ -190,6 +191,14 @@ fn section(key: &str) -> &str {
     match key.split(['.', '[']).next() {
         Some("task") => "operation",
         section => section.unwrap_or_default(),
+    }
+}
+
+/// The section that the user meant by an unknown one, or the key as it is.
+fn meant_section<'a>(key: &'a str, error: &'a InputError) -> &'a str {
+    match &error.kind {
+        InputErrorKind::Syntax(message) if parent(key).is_empty() => meant(message).unwrap_or(key),
+        _ => key,
     }
 }
 

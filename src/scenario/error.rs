@@ -130,9 +130,9 @@ impl fmt::Display for InputError {
 
 impl std::error::Error for InputError {}
 
-/// Reads a text file of at most this many bytes.
+/// Reads a text file of at most this many bytes that an argument names.
 pub(super) fn read_text(path: &Path, most_bytes: u64) -> Result<String, InputError> {
-    let bytes = input::bytes(path, most_bytes).map_err(|error| InputError::file(path, error))?;
+    let bytes = input::argument(path, most_bytes).map_err(|error| InputError::file(path, error))?;
     if bytes.starts_with(RECORDING) {
         let problem =
             "found a recording, expected text; `benchdog inspect` judges recordings, `benchdog view` shows them";
