@@ -51,7 +51,7 @@ pub fn merge(args: &MergeArgs) -> Result<Exit, CliError> {
             return Ok(None);
         };
         let path = SweepFolder::new(part.folder).recording(index);
-        match input::bytes(&path, MOST_RECORDING) {
+        match input::kept(&path, MOST_RECORDING) {
             // A program without recordings made the part.
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             read => read.map(Some).map_err(|error| unreadable(&path, &error, "")),

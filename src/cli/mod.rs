@@ -2,6 +2,7 @@
 //! codes, decides about threads, and writes files.
 
 mod args;
+mod batch;
 mod cache;
 mod compare;
 mod completions;

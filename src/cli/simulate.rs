@@ -3,14 +3,15 @@
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
     time::Instant,
 };
 
 use super::{
     args::{ReportArgs, SimulateArgs},
+    batch::Batch,
     exit::{CliError, Exit},
     finish::{self, FinishedRun, RunSummary},
+    inputs::Inputs,
     interrupt,
     out_folder::Values,
     output,
@@ -19,7 +20,7 @@ use super::{
 };
 use crate::{
     pipeline::{self, parallel},
-    report::{self, Outcome, SkipReason},
+    report::{self, Outcome},
     scenario::{self, AnyPlan, FileText, LoadedPlan},
 };
 
@@ -36,7 +37,7 @@ pub fn simulate(args: &SimulateArgs) -> Result<Exit, CliError> {
 
 fn one_hold(args: &SimulateArgs, loaded: LoadedPlan, progress: &Progress) -> Result<Exit, CliError> {
     let folder = folder_of(&loaded, args);
-    check_outputs(&args.report, &loaded, &folder, &loaded.inputs)?;
+    check_outputs(&args.report, &loaded, &folder, &Inputs::new(&loaded.inputs))?;
     report::file::check_folder(&args.report.out.of_all())?;
     let start = Instant::now();
     let mut writing = None;
@@ -64,7 +65,7 @@ fn folder_of(loaded: &LoadedPlan, args: &SimulateArgs) -> PathBuf {
 }
 
 /// Refuses to overwrite an input file or another plan.
-fn check_outputs(report: &ReportArgs, loaded: &LoadedPlan, folder: &Path, inputs: &[PathBuf]) -> Result<(), CliError> {
+fn check_outputs(report: &ReportArgs, loaded: &LoadedPlan, folder: &Path, inputs: &Inputs) -> Result<(), CliError> {
     finish::protect(report, folder, Some(&loaded.path), inputs)?;
     finish::keep_other_plan(folder, &loaded.plan)
 }
@@ -74,59 +75,37 @@ fn several(args: &SimulateArgs, paths: &[PathBuf]) -> Result<Exit, CliError> {
     let progress = Progress::counting("reading the plans", "the finished plans are reported")?;
     let plans = read(args, paths)?;
     let inputs: Vec<_> = plans.iter().flat_map(|loaded| loaded.inputs.clone()).collect();
+    let inputs = Inputs::new(&inputs);
     let folders: Vec<_> = plans.iter().map(|loaded| folder_of(loaded, args)).collect();
     let names = plans.iter().map(|loaded| loaded.plan.name.as_str());
     finish::folders_differ(names.zip(folders.iter().map(PathBuf::as_path)))?;
     let mut planned = plans.iter().zip(&folders);
     planned.try_for_each(|(loaded, folder)| check_outputs(&args.report, loaded, folder, &inputs))?;
     report::file::check_folder(&args.report.out.of_all())?;
-    progress.expect(plans.len());
-    progress.keep();
-    // The first error that affects all plans, such as a full disk.
-    let fatal: Mutex<Option<CliError>> = Mutex::new(None);
-    let run = |loaded: &LoadedPlan| {
-        let name = &loaded.plan.name;
-        if interrupt::requested() {
-            return FinishedRun::skipped(name, SkipReason::Interrupted);
-        }
-        if fatal.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
-            return FinishedRun::skipped(name, SkipReason::AfterFailure);
-        }
-        one_of_several(args, loaded, &progress).unwrap_or_else(|error| {
-            fatal.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-            FinishedRun::skipped(name, SkipReason::AfterFailure)
-        })
+    let batch = Batch::new(progress, plans.len(), false);
+    let run = |(loaded, folder): &(LoadedPlan, PathBuf)| {
+        batch.run(&loaded.plan.name, || one_of_several(loaded, (folder, &args.report), batch.progress()))
     };
-    let finished = threads::with_threads(args.jobs, || parallel::map_in_parallel(&plans, run))?;
-    progress.finish();
-    if let Some(error) = fatal.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        return Err(error);
-    }
-    let summary = RunSummary::from(finished);
+    let planned: Vec<_> = plans.into_iter().zip(folders).collect();
+    let finished = threads::with_threads(args.jobs, || parallel::map_in_parallel(&planned, run))?;
+    let summary = batch.end(finished)?;
     finish::report(&summary, &args.report)?;
     Ok(summary.exit)
 }
 
-fn one_of_several(args: &SimulateArgs, loaded: &LoadedPlan, progress: &Progress) -> Result<FinishedRun, CliError> {
+fn one_of_several(
+    loaded: &LoadedPlan,
+    output: (&Path, &ReportArgs),
+    progress: &Progress,
+) -> Result<FinishedRun, CliError> {
     let LoadedPlan { path, plan, filled_in, robot, scenario, .. } = loaded;
-    progress.begins(&plan.name);
-    let start = Instant::now();
-    let mut finished = FinishedRun::catch(&plan.name, || {
-        progress.simulates();
-        let run = pipeline::run_plan(scenario, robot, plan.clone(), filled_in, progress)?;
-        let folder = folder_of(loaded, args);
-        finish::write_run(run, scenario, robot, Some(path), (&folder, &args.report))
-    })?;
-    let wall_s = start.elapsed().as_secs_f64();
-    finished.wall_s = Some(wall_s);
-    match finished.outcome {
-        Outcome::Skipped { .. } => progress.advances(None),
-        _ => progress.ends(&finished.outcome, wall_s),
-    }
-    Ok(finished)
+    progress.simulates();
+    let run = pipeline::run_plan(scenario, robot, plan.clone(), filled_in, progress)?;
+    finish::write_run(run, scenario, robot, Some(path), output)
 }
 
-/// Reads plans, at least one of one hold. Those of tasks are left out.
+/// Reads plans, at least one of one hold. Those of tasks are left out if a folder or a pattern has found them, and refused if they were
+/// named.
 fn read(args: &SimulateArgs, paths: &[PathBuf]) -> Result<Vec<LoadedPlan>, CliError> {
     let of_scenario = args.scenario.as_deref().map(scenario::scenario_text).transpose()?.unwrap_or_default();
     let given = args.scenario.as_ref().map(|path| FileText { path, text: &of_scenario });
@@ -136,6 +115,11 @@ fn read(args: &SimulateArgs, paths: &[PathBuf]) -> Result<Vec<LoadedPlan>, CliEr
         let text = scenario::plan_text(path)?;
         let loaded = match scenario::load_any_plan_text(FileText { path, text: &text }, given)? {
             AnyPlan::OneHold(loaded) => *loaded,
+            AnyPlan::Staged(_) if args.plans.iter().any(|given| Path::new(given) == path) => {
+                let path = path.display();
+                let expected = "expected plans of one hold; give it to `benchdog simulate` alone";
+                return Err(CliError::Usage(format!("{path}: found a plan of a task, {expected}")));
+            }
             AnyPlan::Staged(_) => {
                 let path = path.display();
                 output::message(&format!("{path}: a plan of a task, left out: give it to `benchdog simulate` alone"));

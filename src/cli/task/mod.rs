@@ -123,7 +123,8 @@ pub fn task(args: &TaskArgs) -> Result<Exit, CliError> {
     }
     let robot = loaded.robot.at_gap(staged.object.size_m[2]);
     let states = StagedStates::new(&robot, &staged)?;
-    let output = (&files, args.format, [!args.no_recording, args.mcap], comparison);
+    let record = if args.no_recording { RecordChoice::Never } else { RecordChoice::Always };
+    let output = (&files, args.format, Records { record, mcap: args.mcap }, comparison);
     let verdict = judged(&loaded.scenario, &robot, &staged, &states, output, &progress)?;
     if let Some(planned_s) = planned_s {
         let Waiting { first_s, later_s } = Waiting::new(&planned_s, &verdict.stages);
@@ -192,9 +193,16 @@ fn print_comparison(comparison: Option<&Comparison>, format: Format) -> Result<(
     }
 }
 
+/// Which files of the simulation are wanted.
+#[derive(Clone, Copy)]
+struct Records {
+    record: RecordChoice,
+    mcap: bool,
+}
+
 /// The bytes of the recording and of the MCAP file, each if it is wanted.
-fn recorded(task: &TaskRecording<'_>, [record, mcap]: [bool; 2]) -> Result<[Option<Vec<u8>>; 2], CliError> {
-    let recording = if record { recording::encode_task(task)? } else { None };
+fn recorded(task: &TaskRecording<'_>, Records { record, mcap }: Records) -> Result<[Option<Vec<u8>>; 2], CliError> {
+    let recording = if record.wants(task.verdict.met) { recording::encode_task(task)? } else { None };
     let mcap = if mcap { mcap::encode_task(task)? } else { None };
     Ok([recording, mcap])
 }
@@ -207,8 +215,8 @@ pub fn simulate(args: &SimulateArgs, loaded: &LoadedStagedPlan, progress: &Progr
     inputs::protect(inputs, files.all().into_iter().skip(4))?;
     report::file::check_folder(&args.report.out.of_all())?;
     report::file::write_whole(&files.path, report::task::path_csv(plan, &[]).as_bytes())?;
-    let is_recorded = args.report.record != RecordChoice::Never;
-    let output = (&files, args.report.format, [is_recorded, args.report.mcap], None);
+    let records = Records { record: args.report.record, mcap: args.report.mcap };
+    let output = (&files, args.report.format, records, None);
     judged(scenario, robot, plan, states, output, progress).map(|of| Exit::judged(of.met, of.verdict))
 }
 
@@ -219,7 +227,7 @@ fn judged(
     robot: &Robot,
     plan: &StagedPlan,
     states: &StagedStates,
-    (files, format, records, comparison): (&TaskFiles, Format, [bool; 2], Option<Comparison>),
+    (files, format, records, comparison): (&TaskFiles, Format, Records, Option<Comparison>),
     progress: &Progress,
 ) -> Result<StagedVerdict, CliError> {
     report::file::remove(&files.verdict)?;
