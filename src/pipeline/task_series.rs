@@ -17,11 +17,11 @@ use crate::{
 /// Time between two samples of a task's recording, s.
 const TASK_SAMPLE_S: f64 = 0.01;
 
-/// The stages of a task in a row, with a sample each 10 ms.
+/// The stages of a task in a row: a sample each 10 ms, the first one of each stage, and that at which the task fails.
 pub struct TaskSeries {
     /// The thinned trace.
     pub trace: Trace,
-    /// The judge's series, at the same samples.
+    /// The judge's series, at the same samples up to the end of the last stage that was judged.
     pub measures: Measures,
     /// The beginning of each stage, and the limits that are crossed.
     pub events: Vec<Event>,
@@ -33,15 +33,12 @@ impl TaskSeries {
     /// Those of a task; `None` without a step.
     #[must_use]
     pub fn of(task: &TaskRecording<'_>) -> Option<Self> {
-        let [start, second, ..] = &task.trace.trace.samples[..] else { return None };
-        // That of the simulation that decides, which may be shorter than the scenario's.
-        let timestep_s = second.time_s - start.time_s;
-        let every = ((TASK_SAMPLE_S / timestep_s).round() as usize).max(1);
-        let samples = task.trace.trace.samples.iter().step_by(every).cloned().collect();
+        let kept = kept_samples(task)?;
+        let samples = kept.iter().map(|&sample| task.trace.trace.samples[sample].clone()).collect();
         let trace = Trace { samples, ..task.trace.trace.clone() };
         let verdict = verdict_of_task(task, fingerprint(&trace));
         Some(Self {
-            measures: measures_of_stages(task.judgements, every),
+            measures: measures_of_stages(task.judgements, &kept),
             events: events_of_stages(task),
             verdict,
             trace,
@@ -49,11 +46,33 @@ impl TaskSeries {
     }
 }
 
-/// The measures of all stages in a row, each n-th sample.
-fn measures_of_stages(judgements: &[StageJudgement], every: usize) -> Measures {
+/// The numbers of the samples that are kept, ascending; `None` without a step.
+fn kept_samples(task: &TaskRecording<'_>) -> Option<Vec<usize>> {
+    let samples = &task.trace.trace.samples;
+    let [start, second, ..] = &samples[..] else { return None };
+    // That of the simulation that decides, which may be shorter than the scenario's.
+    let timestep_s = second.time_s - start.time_s;
+    let every = ((TASK_SAMPLE_S / timestep_s).round() as usize).max(1);
+    let failure_s = task.verdict.failed.as_ref().and_then(|failed| Some(failed.first_failure.as_ref()?.time_s));
+    let begins = |sample: usize| task.trace.spans.iter().any(|span| span.first == sample);
+    let is_kept = |&sample: &usize| {
+        sample.is_multiple_of(every)
+            || begins(sample)
+            || failure_s.is_some_and(|time_s| samples[sample].time_s == time_s)
+    };
+    Some((0..samples.len()).filter(is_kept).collect())
+}
+
+/// The measures of all stages in a row, at the samples of the task that are kept.
+fn measures_of_stages(judgements: &[StageJudgement], kept: &[usize]) -> Measures {
     let mut all = Measures::default();
-    for StageJudgement { judgement: Judgement { measures, .. }, .. } in judgements {
-        let thin = |values: &[f64]| values.iter().step_by(every).copied().collect::<Vec<_>>();
+    for StageJudgement { span, judgement: Judgement { measures, .. } } in judgements {
+        let own: Vec<usize> = kept
+            .iter()
+            .filter(|&&sample| (span.first..=span.last).contains(&sample))
+            .map(|sample| sample - span.first)
+            .collect();
+        let thin = |values: &[f64]| own.iter().filter_map(|&sample| values.get(sample)).copied().collect::<Vec<_>>();
         if all.hands.is_empty() {
             let empty = |hand: &HandMeasures| HandMeasures { name: hand.name.clone(), ..HandMeasures::default() };
             all.hands = measures.hands.iter().map(empty).collect();
@@ -68,6 +87,7 @@ fn measures_of_stages(judgements: &[StageJudgement], every: usize) -> Measures {
         for (hand, own) in all.hands.iter_mut().zip(&measures.hands) {
             hand.slip_mm.extend(thin(&own.slip_mm));
             hand.slip_deg.extend(thin(&own.slip_deg));
+            hand.grip_ratio.extend(thin(&own.grip_ratio));
         }
         for (joint, own) in all.joints.iter_mut().zip(&measures.joints) {
             joint.torque_ratio.extend(thin(&own.torque_ratio));

@@ -1,10 +1,17 @@
 //! MCAP files: written by `--mcap`, read with the library, and as measured forces.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::Path,
+};
 
 use mcap::MessageStream;
 
-use crate::process::{benchdog, folder, json, slipping_scenario, stderr};
+use crate::{
+    process::{benchdog, folder, json, slipping_scenario, stderr},
+    task::too_fast,
+};
 
 /// The type of a topic, and its messages: times, ns, and bytes.
 type Topic = (String, Vec<(u64, Vec<u8>)>);
@@ -64,6 +71,32 @@ fn an_mcap_file_has_joints_wrenches_board_links_and_checks_as_ros_messages() {
     assert_eq!(*crossed_ns, (failure_s * 1e9).round() as u64);
     // Of every sample one message.
     assert_eq!(topics["/board/pose"].1.len(), topics["/joint_states"].1.len());
+}
+
+/// The judge has a series for each stage, the recording has one for the task.
+#[test]
+fn the_checks_of_a_task_are_at_the_times_of_its_joints_and_one_is_at_the_failure() {
+    let (plan, _) = too_fast();
+    let folder = folder(&[("plan.json", &plan.to_string())]);
+    let output = benchdog(folder.path(), &["simulate", "plan.json", "--mcap", "--record", "never"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let results = folder.path().join("out").join(plan["name"].as_str().unwrap());
+    let topics = topics(&fs::read(results.join("trace.mcap")).unwrap());
+    let times = |topic: &str| topics[topic].1.iter().map(|(time_ns, _)| *time_ns).collect::<BTreeSet<_>>();
+    let joints = times("/joint_states");
+    assert!(joints.len() > 100);
+    for topic in topics.keys().filter(|topic| topic.starts_with("/checks/")) {
+        assert!(times(topic).is_subset(&joints), "{topic}");
+    }
+    let verdict = json(&results.join("verdict.json"));
+    let failure = &verdict["failed"]["first_failure"];
+    let failed = verdict["stages"].as_array().unwrap().last().unwrap();
+    let is_crossed = |check: &&serde_json::Value| check["name"] == failure["check"];
+    let limit = failed["checks"].as_array().unwrap().iter().find(is_crossed).unwrap()["limit"].as_f64().unwrap();
+    let failure_ns = (failure["time_s"].as_f64().unwrap() * 1e9).round() as u64;
+    let at_failure = &topics[&format!("/checks/{}", failure["check"].as_str().unwrap())].1;
+    let (_, data) = at_failure.iter().find(|(time_ns, _)| *time_ns == failure_ns).expect("a message at the failure");
+    assert!(number(data, 0) > limit);
 }
 
 #[test]

@@ -21,7 +21,8 @@ fn circle() -> &'static Path {
     OUT.path()
 }
 
-fn circle_plan() -> Value {
+/// The plan of the whole circle.
+pub fn circle_plan() -> Value {
     json(&circle().join("whole-circle/plan.json"))
 }
 
@@ -281,14 +282,31 @@ fn a_comparison_is_the_same_with_one_thread_and_two() {
     assert!(compared("1") == compared("2"));
 }
 
-/// A motion that is twenty times as fast, with the inertia of arms and board in its way.
-#[test]
-fn a_motion_that_is_too_fast_fails_in_its_stage() {
+/// The circle's plan with its first motion twenty times as fast, with the inertia of arms and board in its way; and that stage.
+pub fn too_fast() -> (Value, usize) {
     let mut plan = circle_plan();
     let stage = stages_of(&plan, "move")[0];
     for time_s in plan["stages"][stage - 1]["move"]["time_s"].as_array_mut().unwrap() {
         *time_s = (time_s.as_f64().unwrap() / 20.0).into();
     }
+    (plan, stage)
+}
+
+/// `--record failed` records the failure, not the success.
+#[test]
+fn a_task_that_fails_is_recorded() {
+    for (plan, is_recorded) in [(too_fast().0, true), (circle_plan(), false)] {
+        let folder = folder(&[("plan.json", &plan.to_string())]);
+        let output = benchdog(folder.path(), &["simulate", "plan.json", "--record", "failed"]);
+        assert_eq!(output.status.code(), Some(i32::from(is_recorded)), "{}", stderr(&output));
+        let recording = folder.path().join("out").join(plan["name"].as_str().unwrap()).join("recording.rrd");
+        assert_eq!(recording.exists(), is_recorded);
+    }
+}
+
+#[test]
+fn a_motion_that_is_too_fast_fails_in_its_stage() {
+    let (plan, stage) = too_fast();
     let (verdict, code) = simulated(&plan);
     assert_eq!((&verdict["failed"]["stage"], &verdict["failed"]["kind"]), (&stage.into(), &"move".into()));
     assert!(["slips", "pivots", "saturates", "deflects", "opens"].contains(&verdict["verdict"].as_str().unwrap()));
