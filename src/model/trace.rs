@@ -90,6 +90,30 @@ pub struct ArmTrace {
     pub wrench_limits: Option<WrenchLimits>,
 }
 
+/// A part of an arm that events are about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArmPart {
+    /// The hand.
+    Hand,
+    /// The pad with this number.
+    Pad(usize),
+    /// The joint with this number.
+    Joint(usize),
+}
+
+impl ArmTrace {
+    /// The part that an event calls so: `left hand`, `left upper pad`, or the name of a joint.
+    #[must_use]
+    pub fn part(&self, name: &str) -> Option<ArmPart> {
+        let of_arm = name.strip_prefix(&self.name).and_then(|rest| rest.strip_prefix(' '));
+        let is_pad = |pad: &String| of_arm.and_then(|rest| rest.strip_suffix(" pad")) == Some(pad);
+        let hand = (of_arm == Some("hand")).then_some(ArmPart::Hand);
+        let pad = || self.pads.iter().position(is_pad).map(ArmPart::Pad);
+        let joint = || self.joints.iter().position(|joint| joint == name).map(ArmPart::Joint);
+        hand.or_else(pad).or_else(joint)
+    }
+}
+
 /// The state after one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::model::{
     measures::{Event, EventKind},
-    trace::Sample,
+    trace::{ArmPart, Sample},
     verdict::CheckKind,
 };
 
@@ -86,18 +86,17 @@ pub(super) fn log_mark(messages: &mut Messages, input: &RecordingInput, arms: &[
 /// The position of a hand, pad, joint or link in a sample, in W, m; for other names the tool point.
 fn position_w(input: &RecordingInput, sample: &Sample, what: &str, arms: &[usize]) -> Vector3<f64> {
     for ((arm, state), &robot_arm) in input.trace.arms.iter().zip(&sample.arms).zip(arms) {
-        if what == format!("{} hand", arm.name) {
-            return (sample.x_wo * Point3::from(state.x_oc.translation.vector)).coords;
-        }
-        let pads = arm.pads.iter().zip(&state.pads);
-        if let Some((_, pad)) = pads.into_iter().find(|(pad, _)| what == format!("{} {pad} pad", arm.name)) {
-            return pad.p_wp_m;
-        }
-        if let Some(joint) = arm.joints.iter().position(|joint| joint == what) {
-            let robot = input.robot;
-            let link = robot.joints[robot.arms[robot_arm].joints[joint]].child_link;
-            let state = crate::robot::ArmState { arm: robot_arm, q_rad: &state.q_rad, finger_travel_m: [0.0; 2] };
-            return robot.link_poses(&robot.positions(&[state]))[link].translation.vector;
+        match arm.part(what) {
+            Some(ArmPart::Hand) => return (sample.x_wo * Point3::from(state.x_oc.translation.vector)).coords,
+            // In a regrasp a hand has no pads.
+            Some(ArmPart::Pad(pad)) if pad < state.pads.len() => return state.pads[pad].p_wp_m,
+            Some(ArmPart::Joint(joint)) => {
+                let robot = input.robot;
+                let link = robot.joints[robot.arms[robot_arm].joints[joint]].child_link;
+                let state = crate::robot::ArmState { arm: robot_arm, q_rad: &state.q_rad, finger_travel_m: [0.0; 2] };
+                return robot.link_poses(&robot.positions(&[state]))[link].translation.vector;
+            }
+            Some(ArmPart::Pad(_)) | None => {}
         }
     }
     let of_person = input.trace.person_touch.iter().map(|touch| &touch.body);

@@ -6,7 +6,7 @@ use super::xml::legal;
 use crate::model::measures::axis_top;
 
 /// Size of a plot, px.
-const SIZE_PX: [f64; 2] = [460.0, 216.0];
+const SIZE_PX: [f64; 2] = [460.0, 220.0];
 
 /// The edges of the plot's axes, px: left, right, top, bottom.
 const AREA_PX: [f64; 4] = [60.0, 450.0, 26.0, 172.0];

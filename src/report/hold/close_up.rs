@@ -27,6 +27,13 @@ const DRAWN_M: f64 = 0.008;
 const DRAWN_RAD: f64 = 0.5;
 const FACTORS: [f64; 6] = [100.0, 50.0, 20.0, 10.0, 5.0, 2.0];
 
+/// Motions and rotations that are not seen even by the largest factor are drawn as they are: of half a pixel, and of half a degree.
+const SEEN_M: f64 = 0.5 * SHOWN_M / SIZE_PX / FACTORS[0];
+const SEEN_RAD: f64 = 0.5_f64.to_radians() / FACTORS[0];
+
+/// Length of the scale's bar, m.
+const SCALE_M: f64 = 0.02;
+
 /// Thickness of a drawn pad, m.
 const PAD_M: f64 = 0.004;
 
@@ -79,7 +86,8 @@ impl<'a> CloseUp<'a> {
         let turned_o = hand_now.x_oc.rotation * hand_before.x_oc.rotation.inverse();
         let moved_m = |part: &Part| (part.now_o - part.before_o).norm();
         let most_m = parts.iter().map(moved_m).fold(0.0, f64::max);
-        let is_small = |factor: &f64| factor * most_m <= DRAWN_M && factor * turned_o.angle() <= DRAWN_RAD;
+        let is_seen = most_m > SEEN_M || turned_o.angle() > SEEN_RAD;
+        let is_small = |factor: &f64| is_seen && factor * most_m <= DRAWN_M && factor * turned_o.angle() <= DRAWN_RAD;
         let moved = hand_now.x_oc.translation.vector - hand_before.x_oc.translation.vector;
         Some(Self {
             object,
@@ -132,7 +140,8 @@ impl<'a> CloseUp<'a> {
         let name = view.name;
         format!(
             "<svg class=\"scene near\" viewBox=\"0 0 {SIZE_PX} {SIZE_PX}\" role=\"img\" aria-label=\"hand, {name}\">{body}\
-             <text class=\"name\" x=\"6\" y=\"14\">{name}</text></svg>\n"
+             <text class=\"name\" x=\"6\" y=\"14\">{name}</text>{}</svg>\n",
+            scale_bar()
         )
     }
 
@@ -171,6 +180,19 @@ impl<'a> CloseUp<'a> {
             );
         }
     }
+}
+
+/// The bar of the scale, with its length.
+fn scale_bar() -> String {
+    let (left, y, length) = (10.0, SIZE_PX - 10.0, SCALE_M * SIZE_PX / SHOWN_M);
+    let (right, mm) = (left + length, 1e3 * SCALE_M);
+    format!(
+        "<path class=\"scale\" d=\"M{left} {} v8 M{left} {y} H{right:.1} m0 -4 v8\"/><text class=\"scale\" x=\"{:.1}\" y=\"{}\">\
+         {mm:.0} mm</text>",
+        y - 4.0,
+        right + 6.0,
+        y + 4.0
+    )
 }
 
 /// The pads, or a gripper without pads as one part.

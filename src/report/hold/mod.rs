@@ -23,7 +23,7 @@ use crate::{
     model::{
         measures::{Event, EventKind, Measures},
         trace::{Sample, Trace},
-        verdict::{Check, Failure, Verdict},
+        verdict::{Check, CheckKind, Failure, Verdict},
     },
 };
 
@@ -72,7 +72,7 @@ impl HoldPictures {
             let moment = Moment::planned(holding.plan, holding.robot);
             let scene = HoldScene::new(holding, &moment, Palette::Page)?;
             let force_n = moment.force_w_n.norm();
-            let caption = format!("As planned; the arrow is the tool's force, {force_n:.0} N.");
+            let caption = format!("As planned. Arrow: the tool's force, {force_n:.0} N{}.", in_view(holding));
             return Ok(Self { views: views(&scene), caption, near: None });
         };
         let moment = Moment::simulated(crossing.hold.trace, crossing.sample, holding.robot);
@@ -80,7 +80,13 @@ impl HoldPictures {
         let near = crossing
             .close_up(holding)
             .map(|(name, close_up)| (close_up.svg(), in_words(&name, &close_up, crossing.sample.load_factor)));
-        Ok(Self { views: views(&scene), caption: crossing.caption(verdict), near })
+        let caption = format!(
+            "{}. Arrow: the tool's force, {:.0} N; dashed outlines: as planned{}.",
+            crossing.in_words(verdict),
+            moment.force_w_n.norm(),
+            in_view(holding)
+        );
+        Ok(Self { views: views(&scene), caption, near })
     }
 
     /// The pictures with their captions.
@@ -127,31 +133,37 @@ impl<'a> Crossing<'a> {
         })
     }
 
-    /// `deflects at 1.13 s: deflection 15.0 mm, limit 15 mm`.
-    fn caption(&self, verdict: &Verdict) -> String {
+    /// `deflects at 1.13 s: deflection 15.02 mm, limit 15 mm`, and the bodies that meet.
+    fn in_words(&self, verdict: &Verdict) -> String {
         let Check { name, limit, .. } = self.check;
         let (unit, bound) = (unit_suffix(*name), if name.is_least() { "at least" } else { "limit" });
         let series = self.hold.measures.series(*name);
         let values = series.iter().filter_map(|values| values.get(self.index)).copied();
         let value = if name.is_least() { values.reduce(f64::min) } else { values.reduce(f64::max) };
-        // A ratio and a limit below 1 need another digit.
-        let digits = if unit.is_empty() || limit.abs() < 1.0 { 2 } else { 1 };
-        let value = value.map_or_else(String::new, |value| format!(" {value:.digits$}{unit}"));
-        format!("{} at {:.2} s: {name}{value}, {bound} {limit}{unit}", verdict.verdict, self.failure.time_s)
+        let value =
+            value.map_or_else(String::new, |value| format!(" {}{unit}", beside(value, *limit, unit.is_empty())));
+        let between = match name {
+            CheckKind::Clearance | CheckKind::PersonOverlap => self.event().map(|event| format!(" ({})", event.what)),
+            _ => None,
+        };
+        let between = between.unwrap_or_default();
+        format!("{} at {:.2} s: {name}{value}{between}, {bound} {limit}{unit}", verdict.verdict, self.failure.time_s)
     }
 
-    /// The hand that the crossing is about, with the name of its arm: that of the event, or else the one that has moved most in
-    /// relation to the limits.
-    fn close_up<'b>(&self, holding: &Holding<'b>) -> Option<(String, CloseUp<'b>)> {
-        let SimulatedHold { trace, measures, events } = self.hold;
+    fn event(&self) -> Option<&'a Event> {
         let of_check = |event: &&Event| event.kind == EventKind::LimitCrossed(self.failure.check);
-        let what = events.iter().find(of_check).map_or("", |event| event.what.as_str());
-        let named = trace.arms.iter().position(|arm| {
-            let is_pad = |pad: &String| what == format!("{} {pad} pad", arm.name);
-            what == format!("{} hand", arm.name)
-                || arm.pads.iter().any(is_pad)
-                || arm.joints.iter().any(|joint| what == joint)
-        });
+        self.hold.events.iter().find(of_check)
+    }
+
+    /// The hand that the crossing is about, with the name of its arm: that of the event, or else the one that has moved most.
+    /// `None` for bodies that meet elsewhere.
+    fn close_up<'b>(&self, holding: &Holding<'b>) -> Option<(String, CloseUp<'b>)> {
+        let SimulatedHold { trace, measures, .. } = self.hold;
+        if [CheckKind::Clearance, CheckKind::PersonOverlap].contains(&self.failure.check) {
+            return None;
+        }
+        let what = self.event().map_or("", |event| event.what.as_str());
+        let named = trace.arms.iter().position(|arm| arm.part(what).is_some());
         let motion = |index: &usize| {
             let at = |values: &[f64]| values.get(self.index).copied().unwrap_or(0.0);
             measures.hands.get(*index).map_or(0.0, |hand| at(&hand.slip_mm) + at(&hand.slip_deg))
@@ -162,6 +174,19 @@ impl<'a> Crossing<'a> {
         let close_up = CloseUp::new(object, holding.robot, trace, index, samples)?;
         Some((trace.arms[index].name.clone(), close_up))
     }
+}
+
+/// A value with as many digits as tell it from a limit, four at most: at least two of a ratio and beside a limit below 1, otherwise one.
+fn beside(value: f64, limit: f64, is_ratio: bool) -> String {
+    let least = if is_ratio || limit.abs() < 1.0 { 2 } else { 1 };
+    let with = |digits| format!("{value:.digits$}");
+    let is_other = |text: &String| text.parse() != Ok(limit);
+    (least..=4).map(with).find(is_other).unwrap_or_else(|| with(least).trim_start_matches('-').to_owned())
+}
+
+/// What else the caption of a view explains.
+fn in_view(holding: &Holding<'_>) -> &'static str {
+    if holding.plan.human.is_some() { "; dashed line: line of sight" } else { "" }
 }
 
 /// What the picture of a hand shows.

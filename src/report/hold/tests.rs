@@ -169,7 +169,9 @@ fn a_plan_is_drawn_from_two_sides_with_robot_board_person_and_force() {
 #[test]
 fn a_failure_is_drawn_at_its_moment_with_the_plan_dashed_and_its_values() {
     let pictures = example().failed();
-    assert_eq!(pictures.caption, "slips at 0.50 s: slip 0.52 mm, limit 0.5 mm");
+    let caption = "slips at 0.50 s: slip 0.52 mm, limit 0.5 mm. Arrow: the tool's force, 20 N; dashed outlines: as planned; dashed line: \
+                   line of sight.";
+    assert_eq!(pictures.caption, caption);
     assert!(pictures.views.iter().all(|view| count(view, "ghost") > 1));
     let (near, caption) = pictures.near.clone().unwrap();
     // 0.5 mm and 0.01 rad = 0.57 deg; 10 times that is less than 8 mm, 20 times is more.
@@ -181,7 +183,38 @@ fn a_failure_is_drawn_at_its_moment_with_the_plan_dashed_and_its_values() {
         assert_eq!(["pad", "ghost", "force", "force-size"].map(|class| count(view, class)), [2; 4], "{view}");
     }
     let page = pictures.markup().into_string();
-    assert!(page.contains("<strong>slips at 0.50 s: slip 0.52 mm, limit 0.5 mm</strong>"), "{page}");
+    assert!(page.contains("<strong>slips at 0.50 s: slip 0.52 mm, limit 0.5 mm. "), "{page}");
+}
+
+#[test]
+fn a_value_has_the_digits_that_tell_it_from_its_limit() {
+    for (value, limit, is_ratio, text) in [
+        (5.0321, 5.0, false, "5.03"),
+        (5.0004, 5.0, false, "5.0004"),
+        (15.6, 15.0, false, "15.6"),
+        (-0.0012, 0.0, false, "-0.001"),
+        (-1e-7, 0.0, false, "0.00"),
+        (1.0312, 1.0, true, "1.03"),
+        (0.496, 0.5, false, "0.496"),
+    ] {
+        assert_eq!(beside(value, limit, is_ratio), text);
+    }
+}
+
+/// Where robot and board meet no hand is to be seen.
+#[test]
+fn bodies_that_meet_are_named_and_no_hand_is_drawn() {
+    let mut example = example();
+    let name = CheckKind::Clearance;
+    example.measures.clearance_mm = vec![4.0, -0.0012];
+    example.verdict.checks[0] = Check { name, value: -3.0, limit: 0.0, margin: -3.0, unit: "mm".into(), passed: false };
+    example.verdict.first_failure = Some(Failure { check: name, time_s: 0.5, load_factor: 0.75 });
+    example.events[0].kind = EventKind::LimitCrossed(name);
+    example.events[0].what = "left_lower_forearm and the board".into();
+    let pictures = example.failed();
+    assert!(pictures.near.is_none());
+    let expected = " at 0.50 s: clearance -0.001 mm (left_lower_forearm and the board), at least 0 mm. ";
+    assert!(pictures.caption.contains(expected), "{}", pictures.caption);
 }
 
 #[test]
@@ -197,7 +230,7 @@ fn the_hand_is_that_of_the_event_or_else_the_one_that_moved_most() {
     // A hand that has not moved is drawn as it is.
     example.events[0].what = "right hand".into();
     let text = near(&example);
-    assert!(text.contains("slipped 0.00 mm and turned 0.00 deg"), "{text}");
+    assert!(text.contains("slipped 0.00 mm and turned 0.00 deg. Arrows"), "{text}");
 }
 
 #[test]
