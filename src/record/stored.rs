@@ -42,9 +42,9 @@ const ROBOT_CLEARANCE: &str = "robot_clearance_m";
 /// The column of a measured gripper's wrench; its rows are empty after it has let go.
 const GRIP_WRENCH: &str = "grip_wrench_g";
 
-/// A phase is stored as its index; later versions append.
+/// A phase is stored as the number of its variant.
 const PHASES: [Phase; 7] =
-    [Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Grip, Phase::Move, Phase::Regrasp];
+    [Phase::Grip, Phase::Settle, Phase::Ramp, Phase::Hold, Phase::Release, Phase::Move, Phase::Regrasp];
 
 /// Data of the trace that does not depend on time.
 #[derive(Serialize, Deserialize)]
@@ -255,7 +255,7 @@ fn arm_series(chunks: &[Chunk], arm: &ArmTrace, count: usize) -> Result<std::vec
 
 fn phase(number: f64) -> Result<Phase, String> {
     let found = PHASES.into_iter().find(|phase| f64::from(*phase as u8) == number);
-    found.ok_or_else(|| format!("found phase {number}, expected 0 to 3"))
+    found.ok_or_else(|| format!("found phase {number}, expected 0 to 6"))
 }
 
 fn wrench_of(numbers: [f64; 6]) -> Wrench {
