@@ -54,12 +54,22 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let folder = of_natural.folder();
     let folder = folder.display();
     progress.leaves(&format!("finished results are kept in {folder}, and the same command continues from them"));
+    let [natural_jobs, printed_jobs] =
+        [(&natural, Evaluation::Natural), (&printed, Evaluation::Printed)].map(|(operations, evaluation)| {
+            let scope = if args.quick { Scope::quick(evaluation) } else { Scope::full(evaluation) };
+            (Schedule::new(operations, &scope), scope)
+        });
+    let with_fronts = if args.quick { &[] } else { &natural[..] };
+    let with_circle = !args.quick && args.filter.is_empty();
+    let jobs = natural_jobs.0.jobs.len() + printed_jobs.0.jobs.len();
+    progress.expect(jobs + with_fronts.len() + usize::from(with_circle));
+    let left_out = left_out(args, &natural_jobs.1, natural.len());
     let results = threads::with_threads(args.jobs, || {
         Ok::<_, CliError>(Results {
-            natural: evaluate(&natural, &of_natural, args)?,
-            printed: evaluate(&printed, &of_printed, args)?,
-            fronts: if args.quick { Vec::new() } else { fronts(&natural, &of_natural)? },
-            circle: if args.quick { None } else { Some(of_natural.circle()?) },
+            natural: evaluate(natural_jobs, &of_natural, left_out.clone())?,
+            printed: evaluate(printed_jobs, &of_printed, left_out)?,
+            fronts: fronts(with_fronts, &of_natural)?,
+            circle: if with_circle { Some(of_natural.circle()?) } else { None },
         })
     })??;
     progress.finish();
@@ -74,20 +84,21 @@ const PRINTED: &str = "printed";
 
 /// Runs the jobs of one evaluation.
 fn evaluate(
-    operations: &[LoadedScenario],
+    (schedule, scope): (Schedule, Scope),
     runner: &JobRunner<'_>,
-    args: &ReproduceArgs,
+    left_out: Option<String>,
 ) -> Result<Reproduction, CliError> {
-    let evaluation = runner.evaluation();
-    let scope = if args.quick { Scope::quick(evaluation) } else { Scope::full(evaluation) };
-    let schedule = Schedule::new(operations, &scope);
     let rows = run_jobs(runner, &schedule.jobs)?;
-    Ok(schedule.reproduction(rows, &scope, left_out(args, &scope, operations.len())))
+    Ok(schedule.reproduction(rows, &scope, left_out))
 }
 
 /// The fronts of both comforts, one per operation.
 fn fronts(operations: &[LoadedScenario], runner: &JobRunner<'_>) -> Result<Vec<FrontRow>, CliError> {
-    let rows = parallel::map_in_parallel(operations, |operation| runner.front(&operation.scenario));
+    let rows = parallel::map_in_parallel(operations, |operation| {
+        let row = runner.front(&operation.scenario);
+        runner.progress().advances(None);
+        row
+    });
     Ok(rows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
@@ -122,7 +133,6 @@ fn operations(args: &ReproduceArgs, evaluation: Evaluation) -> Result<Vec<Loaded
 /// Runs all jobs and returns their results in order.
 fn run_jobs(runner: &JobRunner<'_>, jobs: &[Job]) -> Result<Vec<HoldRow>, CliError> {
     let progress = runner.progress();
-    progress.expect(jobs.len());
     // An error such as a full disk would repeat, so no job starts after the first one.
     let first_error: Mutex<Option<CliError>> = Mutex::new(None);
     runner.prepare(jobs);
@@ -160,7 +170,7 @@ fn left_out(args: &ReproduceArgs, scope: &Scope, operations: usize) -> Option<St
         ));
     }
     if operations < paper::CUTS + paper::DRILLS {
-        parts.push(format!("only {operations} of the operations (`--filter`)"));
+        parts.push(format!("only {operations} of the operations, without the whole circle (`--filter`)"));
     }
     (!parts.is_empty()).then(|| parts.join("; "))
 }

@@ -105,11 +105,6 @@ impl<'a> JobRunner<'a> {
         Self { evaluation: Evaluation::Printed, out: out.to_owned(), ..self.clone() }
     }
 
-    /// The evaluation whose jobs it runs.
-    pub fn evaluation(&self) -> Evaluation {
-        self.evaluation
-    }
-
     /// Where the run's progress is shown.
     pub fn progress(&self) -> &'a Progress {
         self.progress
