@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::process::{benchdog, contents, folder, stderr};
+use crate::process::{benchdog, contents, folder, json, stderr};
 
 const CUT: &str = include_str!("../../scenarios/cut-rim.toml");
 const PLAN: &str = include_str!("../../scenarios/plans/cut-rim.json");
@@ -168,5 +168,18 @@ fn a_scenario_and_a_plan_from_a_pipe_are_read_once() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let scenario = include_str!("../../scenarios/fails-out-of-reach.toml");
     let output = piped(&["run", "/dev/stdin", "--record", "never", "--out", out], scenario);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+/// In the place of an earlier plan is a pipe to which nobody writes: it is no plan, and it is not waited for.
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_the_output_folder_is_not_read() {
+    let folder = folder(&[("plan.json", PLAN)]);
+    let name = json(&folder.path().join("plan.json"))["name"].as_str().unwrap().to_owned();
+    let place = folder.path().join("out").join(name);
+    fs::create_dir_all(&place).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(place.join("plan.json")).status().unwrap().success());
+    let output = benchdog(folder.path(), &["simulate", "plan.json", "--record", "never"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }

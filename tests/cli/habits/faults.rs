@@ -4,6 +4,7 @@ use std::fs;
 
 use crate::{
     bad_input::{PLAN, SCENARIO, assert_plan_refused, assert_refused, assert_scenario_refused},
+    common::root,
     process::{benchdog, folder, stderr},
 };
 
@@ -91,6 +92,45 @@ fn what_follows_from_another_fault_is_not_listed() {
         assert!(SCENARIO.contains(replace), "{replace}");
         let said = refused(&SCENARIO.replacen(replace, with, 1));
         assert!(said.starts_with(&format!("error: {message}")), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+/// Without its section, what is checked against it may be wrong: the header alone is listed.
+#[test]
+fn a_misspelt_header_is_one_fault() {
+    let mut headers = 0;
+    let files = fs::read_dir(root().join("scenarios")).unwrap().map(|file| file.unwrap().path());
+    for path in files.filter(|path| path.is_file()) {
+        let text = fs::read_to_string(&path).unwrap();
+        // The files that it names are not in the other folder.
+        let text: String =
+            text.lines().filter(|line| !line.contains(".toml\"")).map(|line| format!("{line}\n")).collect();
+        for header in text.lines().filter(|line| line.starts_with('[')) {
+            let misspelt = header.replacen(&header[2..3], "", 1);
+            let said = refused(&text.replacen(header, &misspelt, 1));
+            let name = path.display();
+            assert_eq!(said.lines().count(), 1, "{name}: {misspelt}: {said}");
+            assert!(
+                said.contains(": unknown field `") && said.contains("; did you mean "),
+                "{name}: {misspelt}: {said}"
+            );
+            headers += 1;
+        }
+    }
+    assert!(headers > 50, "{headers} headers");
+}
+
+/// The load is checked against the times of the simulation.
+#[test]
+fn a_load_is_not_blamed_for_the_section_of_times() {
+    let drill = "[load]\nkind = \"drill\"\nspindle_torque_nm = 1.0\nvibration_n = 2.0\nvibration_hz = 300.0\nbreakthrough_s = 5.0\n";
+    for (simulation, message) in [
+        ("hold_s = \"10.0\"", "simulation.hold_s: invalid type: string \"10.0\", expected f64"),
+        ("hold_s = 10.0\ntimestep = 0.0005", "simulation.timestep: unknown field `timestep`"),
+    ] {
+        let said = refused(&format!("{SCENARIO}\n{drill}\n[simulation]\n{simulation}\n"));
+        assert!(said.contains(message), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
 }

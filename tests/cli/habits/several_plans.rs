@@ -6,6 +6,7 @@ use super::{plan, without_times};
 use crate::{
     bad_input::assert_refused,
     process::{benchdog, contents, json, stderr},
+    task::circle_plan,
 };
 
 #[test]
@@ -59,4 +60,20 @@ fn a_plan_with_a_fault_among_others_is_refused_before_anything_is_simulated() {
     let output = benchdog(folder.path(), &["simulate", "none/*.json"]);
     assert_refused(&output, "none/*.json: found no file that matches, expected plans");
     assert!(!folder.path().join("out").exists());
+}
+
+/// A task's plan has a report of its own: by itself it is simulated, among others it must not be lost silently.
+#[test]
+fn a_plan_of_a_task_that_is_named_among_others_is_refused_and_one_that_a_folder_has_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    plan(folder.path(), "cut-rim.json", "plans/a.json", "one");
+    plan(folder.path(), "cut-rim.json", "plans/b.json", "two");
+    fs::write(folder.path().join("plans/task.json"), circle_plan().to_string()).unwrap();
+    let output = benchdog(folder.path(), &["simulate", "plans/a.json", "plans/task.json"]);
+    let expected = "expected plans of one hold; give it to `benchdog simulate` alone";
+    assert_refused(&output, &format!("plans/task.json: found a plan of a task, {expected}"));
+    assert!(!folder.path().join("out").exists());
+    let output = benchdog(folder.path(), &["simulate", "plans", "--record", "never"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("2 ok"), "{}", String::from_utf8_lossy(&output.stdout));
 }

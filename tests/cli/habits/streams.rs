@@ -97,3 +97,13 @@ fn an_export_on_standard_output_is_that_of_a_file() {
     assert_eq!(output.stdout, fs::read(place.path().join("scene.xml")).unwrap());
     assert!(!place.path().join("-").exists());
 }
+
+/// What a file calls so is a file.
+#[test]
+fn a_scenario_cannot_name_the_standard_input() {
+    let text = format!("{SCENARIO}\n[load]\nkind = \"measured\"\nfile = \"<stdin>\"\n");
+    let place = folder(&[("a.toml", &text)]);
+    let output = with_input(place.path(), &["run", "a.toml"], b"t_s,x_n,y_n,z_n\n0,0,0,1\n1,0,0,1\n");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("load.file: failed to read <stdin>: "), "{}", stderr(&output));
+}
