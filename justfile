@@ -45,11 +45,15 @@ maps:
 init-plans:
     tools/init_plans.py target/release/benchdog
 
+# Draw the pictures of docs/verdicts.md again after a change of the drawings
+verdict-pictures:
+    tools/draw_verdicts.py docs/verdicts
+
 # Advisories, licences and sources of the dependencies (needs cargo-deny, and the network)
 deny:
     cargo deny check advisories licenses bans sources
 
-# Damaged input files for two minutes
+# Damaged input files, 15 s of each of eight kinds
 fuzz:
     bash .ci/run fuzz_inputs
 

@@ -4,7 +4,7 @@
     tools/release_archive.py --binary target/release/benchdog --target x86_64-unknown-linux-gnu --out dist
 
 The name is benchdog-VERSION-TARGET.tar.gz, or .zip for Windows; `[package.metadata.binstall]` in Cargo.toml relies on it. Equal
-files give equal archives: entries are sorted and have the time 0, or SOURCE_DATE_EPOCH. The binary runs once for each page and
+files give equal archives: entries are sorted, and their time is 1980-01-01, or SOURCE_DATE_EPOCH if that is later. The binary runs once for each page and
 completion script, so this is for the machine's own target.
 """
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs what a page tells a reader to type: every line of its `sh` blocks, in one folder, in order.
+"""Runs what a page tells a reader to type: every line of its `sh` blocks, in order, beginning in a folder; `cd FOLDER` changes it.
 
     tools/run_walk.py PAGE FOLDER
 
@@ -30,6 +30,9 @@ def main() -> None:
         print(f"$ {line}", flush=True)
         stated = re.search(r"# exit code (\d+)$", line)
         expected = int(stated[1]) if stated else 0
+        if line.startswith("cd "):
+            folder = folder / line.removeprefix("cd ").strip()
+            continue
         found = subprocess.run(line, shell=True, cwd=folder).returncode
         if found != expected:
             sys.exit(f"{page}: found exit code {found}, expected {expected}: {line}")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Union
+from typing import Any, Dict, List, Optional
 
 import pytest
 
@@ -83,8 +83,13 @@ def failure_text(verdict: Verdict) -> str:
 
 def plan_files(folder: Path) -> Dict[str, Path]:
     """The plans of a folder by name: its JSON files, and `plan.json` of its folders, as `benchdog run` writes them."""
-    named = {path.stem: path for path in sorted(folder.glob("*.json"))}
-    named.update({path.parent.name: path for path in sorted(folder.glob("*/plan.json"))})
+    named: Dict[str, Path] = {}
+    files = [(path.stem, path) for path in sorted(folder.glob("*.json"))]
+    files += [(path.parent.name, path) for path in sorted(folder.glob("*/plan.json"))]
+    for name, path in files:
+        if name in named:
+            raise pytest.UsageError(f"{path}: found the plan {name} twice, expected one; the other is {named[name]}")
+        named[name] = path
     return named
 
 
@@ -122,6 +127,5 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def benchdog(request: pytest.FixtureRequest) -> BenchdogTester:
     """Asserts that plans hold; recordings of failures go into `tmp_path`, or the folder of `--benchdog-out`."""
     given: Optional[str] = request.config.getoption("--benchdog-out")
-    folder: Union[Path, Any] = request.getfixturevalue("tmp_path") if given is None else None
-    out = request.config.invocation_params.dir / given if given is not None else folder
+    out: Path = request.getfixturevalue("tmp_path") if given is None else request.config.invocation_params.dir / given
     return BenchdogTester(out, re.sub(r"[^A-Za-z0-9_.-]+", "-", request.node.nodeid).strip("-"))
