@@ -21,7 +21,7 @@ use super::{
 use crate::{
     pipeline::{self, parallel},
     report::{self, Outcome},
-    scenario::{self, AnyPlan, FileText, LoadedPlan},
+    scenario::{self, AnyPlan, FileText, LoadedPlan, PlanReader},
 };
 
 /// Simulates and judges plans under the given scenario, the one in each plan, or the defaults for its operation.
@@ -109,11 +109,12 @@ fn one_of_several(
 fn read(args: &SimulateArgs, paths: &[PathBuf]) -> Result<Vec<LoadedPlan>, CliError> {
     let of_scenario = args.scenario.as_deref().map(scenario::scenario_text).transpose()?.unwrap_or_default();
     let given = args.scenario.as_ref().map(|path| FileText { path, text: &of_scenario });
+    let mut reader = PlanReader::new(given)?;
     let mut names = BTreeMap::<String, &Path>::new();
     let mut plans = Vec::new();
     for path in paths {
         let text = scenario::plan_text(path)?;
-        let loaded = match scenario::load_any_plan_text(FileText { path, text: &text }, given)? {
+        let loaded = match reader.any(FileText { path, text: &text })? {
             AnyPlan::OneHold(loaded) => *loaded,
             AnyPlan::Staged(_) if args.plans.iter().any(|given| Path::new(given) == path) => {
                 let path = path.display();

@@ -18,6 +18,7 @@ pub mod material;
 mod object_section;
 pub mod plan_file;
 pub mod plan_input;
+mod plan_reader;
 pub mod replan_request;
 mod resolve;
 mod robot_file;
@@ -34,14 +35,16 @@ pub use error::{InputError, InputErrorKind};
 use file::ScenarioFile;
 use plan_file::ReadPlan;
 pub use plan_file::read_plan;
+pub use plan_reader::{AnyPlan, LoadedPlan, PlanReader, load_any_plan, load_plan, load_plan_text};
 pub use replan_request::{ReplanRequest, read_replan_request};
+use robot_file::Robots;
 pub use robot_file::robot_parameters;
 pub use staged_file::LoadedStagedPlan;
 pub use sweep_section::usual_sweep;
 
 use crate::{
     input::{MOST_DOCUMENT, MOST_TOML},
-    model::{plan::Plan, scenario::Scenario, staged_plan::STAGED_FORMAT, task::Task},
+    model::{plan::Plan, scenario::Scenario, task::Task},
     robot::Robot,
 };
 use resolve::Resolved;
@@ -71,24 +74,6 @@ impl LoadedScenario {
     pub fn plan_path(&self) -> Option<PathBuf> {
         self.scenario.planner.plan.as_ref().map(|plan| folder_of(&self.path).join(plan))
     }
-}
-
-/// A plan with its robot and the scenario to judge it by.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct LoadedPlan {
-    /// The file that the plan was read from.
-    pub path: PathBuf,
-    /// The plan.
-    pub plan: Plan,
-    /// For each value that the file leaves out, what it follows from.
-    pub filled_in: Vec<String>,
-    /// The robot.
-    pub robot: Robot,
-    /// The scenario.
-    pub scenario: Scenario,
-    /// All files that were read.
-    pub inputs: Vec<PathBuf>,
 }
 
 /// Reads, checks and completes a scenario file.
@@ -180,7 +165,7 @@ fn load_any(path: &Path, text: &str) -> Result<LoadedScenario, InputError> {
             let plan_path = folder.join(plan);
             let plan_text = check::Checker::toml(path, text).named_file("planner.plan", &plan_path, MOST_DOCUMENT)?;
             let ReadPlan { plan, filled_in, .. } =
-                plan_file::from_text(&plan_path, &plan_text, Some(&robot), Some(&scenario))?;
+                plan_file::from_text(&plan_path, &plan_text, &mut Robots::with(&robot), Some(&scenario))?;
             resolve::check_plan_matches(path, text, &scenario, &plan)?;
             inputs.push(plan_path);
             (Some(plan), filled_in)
@@ -200,9 +185,9 @@ fn read_and_resolve(path: &Path, text: &str) -> Result<(ScenarioFile, Resolved),
         None => error,
     })?;
     let mut draft = Draft::new(path, document);
-    let mut known = None;
+    let mut robots = Robots::default();
     while let Some(file) = draft.read::<ScenarioFile>() {
-        match resolve::resolve(path, text, &file, &mut known) {
+        match resolve::resolve(path, text, &file, &mut robots) {
             Ok(resolved) if draft.is_whole() => {
                 let Resolved { scenario, robot, .. } = &resolved;
                 tracing::debug!(scenario = scenario.name, robot = robot.description, "checked a scenario");
@@ -224,19 +209,6 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
 }
 
-/// Reads a plan file and the scenario to judge the plan by: that of the file `scenario`, which must have the plan's robot,
-/// board, operation and grip force; or the one in the plan; or the defaults for its operation. The scenario gets the
-/// plan's name.
-///
-/// # Errors
-/// As [`read_plan`] and [`load`], and if the scenario is for another robot, board, operation or grip force.
-pub fn load_plan(path: &Path, scenario: Option<&Path>) -> Result<LoadedPlan, InputError> {
-    let text = plan_text(path)?;
-    // A scenario from a pipe can be read once.
-    let of_scenario = scenario.map(scenario_text).transpose()?.unwrap_or_default();
-    load_plan_text(FileText { path, text: &text }, scenario.map(|path| FileText { path, text: &of_scenario }))
-}
-
 /// The text of a file, and the path that messages name and to whose folder the files in it are relative.
 #[derive(Clone, Copy, Debug)]
 pub struct FileText<'a> {
@@ -244,31 +216,6 @@ pub struct FileText<'a> {
     pub path: &'a Path,
     /// The text.
     pub text: &'a str,
-}
-
-/// Checks and completes the text of a plan file, as [`load_plan`].
-///
-/// # Errors
-/// As [`load_plan`].
-pub fn load_plan_text(plan: FileText<'_>, scenario: Option<FileText<'_>>) -> Result<LoadedPlan, InputError> {
-    let loaded = scenario.map(|scenario| load_text(scenario.path, scenario.text)).transpose()?;
-    let scenario_text = scenario.map_or("", |scenario| scenario.text);
-    let of_file = loaded.as_ref().map(|loaded| &loaded.scenario);
-    let FileText { path, text } = plan;
-    let ReadPlan { plan, robot, filled_in } = plan_file::from_text(path, text, None, of_file)?;
-    let mut inputs = vec![path.to_owned()];
-    inputs.extend(robot.files.iter().cloned());
-    let mut scenario = match (loaded, &plan.scenario) {
-        (Some(LoadedScenario { path, scenario, inputs: others, .. }), _) => {
-            resolve::check_plan_matches(&path, scenario_text, &scenario, &plan)?;
-            inputs.extend(others);
-            scenario
-        }
-        (None, Some(scenario)) => scenario.clone(),
-        (None, None) => default_for_plan(&plan, &robot),
-    };
-    scenario.name.clone_from(&plan.name);
-    Ok(LoadedPlan { path: path.to_owned(), plan, filled_in, robot, scenario, inputs })
 }
 
 /// Checks the values of a scenario that a program has changed after it was read. An error names `path` and the key.
@@ -280,42 +227,6 @@ pub fn check_changed(path: &Path, scenario: &Scenario, robot: &Robot) -> Result<
     let evaluations = scenario.planner.evaluations;
     check.that(evaluations != Some(0), "planner.evaluations", "0", "a positive number of candidates")?;
     resolve::check_values(&check, scenario, robot)
-}
-
-/// A plan of one hold or of a task.
-#[derive(Clone, Debug)]
-pub enum AnyPlan {
-    /// Format 1.
-    OneHold(Box<LoadedPlan>),
-    /// Format 2.
-    Staged(Box<LoadedStagedPlan>),
-}
-
-/// Reads a plan file of any format. A staged plan is judged by its own scenario.
-///
-/// # Errors
-/// As [`load_plan`]; if a staged plan is not one or does not fit the robot; and for a `scenario` beside a staged plan.
-pub fn load_any_plan(path: &Path, scenario: Option<&Path>) -> Result<AnyPlan, InputError> {
-    let text = plan_text(path)?;
-    let of_scenario = scenario.map(scenario_text).transpose()?.unwrap_or_default();
-    let scenario = scenario.map(|path| FileText { path, text: &of_scenario });
-    load_any_plan_text(FileText { path, text: &text }, scenario)
-}
-
-/// As [`load_any_plan`], from the texts of the files.
-///
-/// # Errors
-/// As [`load_any_plan`].
-pub fn load_any_plan_text(plan: FileText<'_>, scenario: Option<FileText<'_>>) -> Result<AnyPlan, InputError> {
-    let FileText { path, text } = plan;
-    if plan_file::format_of(text) != Some(STAGED_FORMAT) {
-        return load_plan_text(plan, scenario).map(|plan| AnyPlan::OneHold(Box::new(plan)));
-    }
-    if scenario.is_some() {
-        let expected = "1, a plan of one hold, beside a scenario file: a staged plan is judged by the scenario in it";
-        return Err(check::Checker::json(path, text).value("format", STAGED_FORMAT.to_string(), expected));
-    }
-    staged_file::from_text(path, text).map(|plan| AnyPlan::Staged(Box::new(plan)))
 }
 
 /// A scenario for a plan that contains none: the plan's own values, and defaults for its kind of operation.

@@ -14,7 +14,7 @@ use super::{
     foreign::other_format,
     plan_input::PlanFile,
     resolve,
-    robot_file::{load_robot, options_of},
+    robot_file::{Robots, options_of},
 };
 use crate::{
     check::{CheckedPlan, Flaw, check_plate},
@@ -43,7 +43,8 @@ pub struct ReadPlan {
 /// # Errors
 /// If the file cannot be read, is not a plan of the supported format, does not determine a plan, or does not fit the robot.
 pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), InputError> {
-    let ReadPlan { plan, robot, .. } = from_text(path, &read_text(path, MOST_DOCUMENT)?, robot, None)?;
+    let mut robots = robot.map_or_else(Robots::default, Robots::with);
+    let ReadPlan { plan, robot, .. } = from_text(path, &read_text(path, MOST_DOCUMENT)?, &mut robots, None)?;
     Ok((plan, robot))
 }
 
@@ -51,7 +52,7 @@ pub fn read_plan(path: &Path, robot: Option<&Robot>) -> Result<(Plan, Robot), In
 pub fn from_text(
     path: &Path,
     text: &str,
-    robot: Option<&Robot>,
+    robots: &mut Robots<'_>,
     scenario: Option<&Scenario>,
 ) -> Result<ReadPlan, InputError> {
     let check = Checker::json(path, text);
@@ -68,15 +69,11 @@ pub fn from_text(
             return Err(too_long.map_or(error, |array| check.value(&array.key, array.found, array.expected)));
         }
     };
-    let robot = match robot {
-        Some(robot) if robot.description == file.robot => robot.at_gap(file.object.size_m[2]),
-        _ => {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            let options =
-                scenario.or(file.scenario.as_ref()).map(|scenario| options_of(&scenario.robot)).unwrap_or_default();
-            load_robot(&file.robot, folder, &options, file.object.size_m[2]).map_err(|e| check.robot("robot", e))?
-        }
-    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let options = scenario.or(file.scenario.as_ref()).map(|scenario| options_of(&scenario.robot)).unwrap_or_default();
+    let robot = robots
+        .get(&file.robot, folder, &options, file.object.size_m[2])
+        .map_err(|error| check.robot("robot", error))?;
     check.name(&file.name)?;
     let FilledPlan { mut plan, notes, angle_keys } = fill_in(&check, file, &robot, scenario)?;
     plan.robot.clone_from(&robot.description);

@@ -7,12 +7,10 @@ use nalgebra::Vector3;
 use super::{
     InputError,
     check::Checker,
-    file::{
-        GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, RobotSection, ScenarioFile, ToolSection,
-    },
+    file::{GripSection, HumanSection, LimitsSection, OperationSection, PlaceKind, ScenarioFile, ToolSection},
     load_section::{self, LoadSection, check_load},
     object_section,
-    robot_file::{load_robot, robot_parameters},
+    robot_file::{Robots, robot_parameters},
     sweep_section::{self, check_expectation, check_sweep},
     task_section,
     uncertainty_section::check_uncertainty,
@@ -52,27 +50,15 @@ pub struct Resolved {
     pub robot: Robot,
 }
 
-/// A robot that was loaded for a `[robot]`. Some robots have meshes of many megabytes, and a file with faults is resolved several
-/// times.
-pub struct KnownRobot {
-    section: RobotSection,
-    robot: Robot,
-}
-
-/// The resolved scenario of a file, and its robot, which is kept in `known`.
+/// The resolved scenario of a file, and its robot.
 ///
 /// # Errors
 /// If the robot cannot be loaded or a value is invalid.
-pub fn resolve(
-    path: &Path,
-    text: &str,
-    file: &ScenarioFile,
-    known: &mut Option<KnownRobot>,
-) -> Result<Resolved, InputError> {
+pub fn resolve(path: &Path, text: &str, file: &ScenarioFile, robots: &mut Robots<'_>) -> Result<Resolved, InputError> {
     let check = Checker::toml(path, text);
     check.name(&file.name)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let robot = robot(&check, file, folder, known)?;
+    let robot = robot(&check, file, folder, robots)?;
     grip_keys(&check, &file.grip, &robot)?;
     if let Some(arm) = robot.arms.iter().find(|arm| arm.gripper.cup.is_some()) {
         let expected = "the path of a plan: planners know grasps of edges alone";
@@ -111,20 +97,15 @@ fn robot(
     check: &Checker<'_>,
     file: &ScenarioFile,
     folder: &Path,
-    known: &mut Option<KnownRobot>,
+    robots: &mut Robots<'_>,
 ) -> Result<Robot, InputError> {
-    let thickness_m = file.object.thickness_m();
-    if let Some(KnownRobot { robot, .. }) = known.as_ref().filter(|known| known.section == file.robot) {
-        return Ok(robot.at_gap(thickness_m));
-    }
     let options = RobotOptions {
         packages: file.robot.packages.iter().map(PathBuf::from).collect(),
         posture: file.robot.posture.clone(),
     };
-    let robot = load_robot(&file.robot.description, folder, &options, thickness_m)
-        .map_err(|e| check.robot("robot.description", e))?;
-    *known = Some(KnownRobot { section: file.robot.clone(), robot: robot.clone() });
-    Ok(robot)
+    robots
+        .get(&file.robot.description, folder, &options, file.object.thickness_m())
+        .map_err(|error| check.robot("robot.description", error))
 }
 
 /// The operation of a file or, of a task file, that of the first piece, with the task.
