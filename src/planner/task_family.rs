@@ -31,15 +31,17 @@ impl TaskFamily {
         let axes = [Vector3::x(), Vector3::y()].map(|axis| x_ot.rotation * axis);
         let pointer = if axes[0].xy().norm() > LEVEL { axes[0] } else { axes[1] };
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -pointer.y.atan2(pointer.x));
-        let mut coords = (turn * x_ot.rotation).into_inner().coords;
-        // Of the two quaternions of a rotation the one whose largest part is positive.
-        coords *= coords[coords.iamax()].signum();
-        let rotation = UnitQuaternion::from_quaternion(coords.map(rounded).into());
+        let coords = (turn * x_ot.rotation).into_inner().coords;
+        // Of the two quaternions of a rotation the one whose largest part is positive; of equally large parts, which rounding may order
+        // in either way, the first one.
+        let largest = coords.amax();
+        let sign = coords.iter().find(|part| part.abs() > largest - ROUNDING_UNIT).map_or(1.0, |part| part.signum());
+        let rotation = UnitQuaternion::from_quaternion((coords * sign).map(rounded).into());
         let wrench_t = wrench_t(&scenario.operation);
         let wrench_t = Wrench::new(wrench_t.force_n.map(rounded), wrench_t.moment_nm.map(rounded));
         let p_ot_m = turn * x_ot.translation.vector;
         let roll_is_free = scenario.operation.kind.roll_is_free();
-        let coarse = |v: f64| if roll_is_free { 0.0 } else { (v / PLACE_UNIT_M).round() * PLACE_UNIT_M };
+        let coarse = |v: f64| if roll_is_free { 0.0 } else { to_unit(v, PLACE_UNIT_M) };
         let p_ot_m = Vector3::new(coarse(p_ot_m.x), coarse(p_ot_m.y), rounded(p_ot_m.z));
         Self(Scenario {
             name: String::new(),
@@ -63,7 +65,12 @@ impl TaskFamily {
 }
 
 fn rounded(v: f64) -> f64 {
-    (v / ROUNDING_UNIT).round() * ROUNDING_UNIT
+    to_unit(v, ROUNDING_UNIT)
+}
+
+/// Rounded to a unit; 0 is never negative.
+fn to_unit(v: f64, unit: f64) -> f64 {
+    (v / unit).round() * unit + 0.0
 }
 
 /// An operation with a wrench in T axes, the tool at a pose on the board.
@@ -104,4 +111,34 @@ pub fn solved_tasks(shared: &Scenario) -> Vec<Scenario> {
         at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad) * translation.vector, turn_rad)
     };
     (0..whole).map(direction).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::scenario;
+
+    /// Cuts of one circle, in all directions, and holes at all places share their maps: the family, whose text is the key of its maps, is
+    /// the same byte for byte.
+    #[test]
+    fn the_family_does_not_depend_on_place_and_direction() {
+        let key = |scenario: &Scenario| format!("{:?}", TaskFamily::of(scenario));
+        for file in ["cut-rim.toml", "quickstart.toml"] {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(file);
+            let given = scenario::load(&path).unwrap().scenario;
+            let of_given = key(&given);
+            for degrees in 0..360 {
+                let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), f64::from(degrees).to_radians());
+                let Operation { x_ot, .. } = given.operation;
+                let moved_m = if given.operation.kind.roll_is_free() { 0.001 * f64::from(degrees) - 0.18 } else { 0.0 };
+                let p_ot_m = turn * x_ot.translation.vector + Vector3::new(moved_m, -0.3 * moved_m, 0.0);
+                let operation = placed(&given.operation, &wrench_t(&given.operation), p_ot_m, turn * x_ot.rotation);
+                let turned = Scenario { operation, ..given.clone() };
+                let (found, operation) = (key(&turned), TaskFamily::of(&turned).0.operation);
+                assert!(found == of_given, "{file}: turned by {degrees} degrees: {operation:?}");
+            }
+        }
+    }
 }
