@@ -243,6 +243,19 @@ impl CollisionModel {
             .or_else(|| scene.person.iter().find_map(|part| person(&links, &board, part)))
     }
 
+    /// True if the fingers of an arm keep the clearance from the board that links have which may not touch it.
+    #[must_use]
+    pub fn fingers_are_off(&self, scene: &Scene<'_>, arm: usize) -> bool {
+        let board = scene.board.piece.placed(&scene.x_wo);
+        self.fingers[arm].iter().all(|&link| {
+            let (shapes, x_wl) = (&self.links[link], &scene.link_poses[link]);
+            let pieces: Vec<_> = place_all(&shapes.pieces, x_wl).collect();
+            let centre_w = point_w(x_wl, &shapes.centre_l);
+            let placed = PlacedLink { pieces: &pieces, centre_w, radius_m: shapes.radius_m };
+            placed.too_close(&board, self.board_clearance_m(link, scene.clearance_m)).is_none()
+        })
+    }
+
     /// The first violation of the person. Robot and board are not checked and must be finite. Without link poses only the board
     /// is an obstacle.
     #[must_use]

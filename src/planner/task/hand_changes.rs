@@ -9,7 +9,7 @@ use super::{
     grasp_loads::GraspLoads,
     holds::{Holds, changed_arms},
     problem::TaskProblem,
-    regrasp,
+    regrasp::{self, Ends, WayOff},
 };
 use crate::statics::StabilityWorkspace;
 
@@ -19,7 +19,7 @@ pub struct HandChange {
     /// All grasps before it.
     pub before: BoardGrasp,
     /// Its ways off the board.
-    ends: regrasp::Ends,
+    ends: Ends,
 }
 
 impl HandChange {
@@ -31,19 +31,37 @@ impl HandChange {
     }
 }
 
-/// Whether holds carry the board without one of their arms, or with all (`None`).
-pub type CarriedHolds = BTreeMap<(usize, Option<usize>), bool>;
+/// What is known of single holds.
+#[derive(Default)]
+pub struct HoldFacts {
+    /// Whether a hold carries the board without one of its arms, or with all (`None`).
+    carried: BTreeMap<(usize, Option<usize>), bool>,
+    /// The way off the board of an arm of a hold, if there is one, while the others hold the board.
+    ways_off: BTreeMap<(usize, usize), Option<WayOff>>,
+}
 
-/// Computes which holds carry the board with a reserve for its acceleration, each once.
-pub struct Carrying<'k> {
-    pub known: &'k CarriedHolds,
+impl HoldFacts {
+    /// Takes over what others have found.
+    pub fn extend(&mut self, Self { carried, ways_off }: Self) {
+        self.carried.extend(carried);
+        self.ways_off.extend(ways_off);
+    }
+}
+
+/// Computes the facts about holds, each once.
+pub struct FactFinder<'k> {
+    pub known: &'k HoldFacts,
     /// What was computed beyond this.
-    pub new: CarriedHolds,
+    pub new: HoldFacts,
     pub workspace: &'k mut StabilityWorkspace,
 }
 
-impl Carrying<'_> {
-    /// True if the arms of a hold but `without` carry the board.
+impl<'k> FactFinder<'k> {
+    pub fn new(known: &'k HoldFacts, workspace: &'k mut StabilityWorkspace) -> Self {
+        Self { known, new: HoldFacts::default(), workspace }
+    }
+
+    /// True if the arms of a hold but `without` carry the board, with a reserve for its acceleration.
     pub fn carries(
         &mut self,
         problem: &TaskProblem<'_>,
@@ -52,12 +70,35 @@ impl Carrying<'_> {
         without: Option<usize>,
     ) -> bool {
         let key = (hold, without);
-        if let Some(&known) = self.known.get(&key).or_else(|| self.new.get(&key)) {
+        if let Some(&known) = self.known.carried.get(&key).or_else(|| self.new.carried.get(&key)) {
             return known;
         }
         let carries = self.grasp_carries(problem, &holds.holds[hold].grasp, without);
-        self.new.insert(key, carries);
+        self.new.carried.insert(key, carries);
         carries
+    }
+
+    /// The way of an arm off the board from its grasp in a hold, while the others hold the board as in `here`.
+    fn way_off(
+        &mut self,
+        problem: &TaskProblem<'_>,
+        holds: &Holds<'_>,
+        (here, hold): (&BoardGrasp, usize),
+        arm: usize,
+    ) -> Option<WayOff> {
+        let grasp = &holds.holds[hold].grasp;
+        let compute = || regrasp::way_off(problem.robot, here, &grasp.arms[arm], arm);
+        let mut others = here.arms.iter().zip(&grasp.arms).enumerate().filter(|(number, _)| *number != arm);
+        if here.x_wo != grasp.x_wo || !others.all(|(_, (here, of_hold))| here.q_rad == of_hold.q_rad) {
+            return compute();
+        }
+        let key = (hold, arm);
+        if let Some(known) = self.known.ways_off.get(&key).or_else(|| self.new.ways_off.get(&key)) {
+            return known.clone();
+        }
+        let way = compute();
+        self.new.ways_off.insert(key, way.clone());
+        way
     }
 
     fn grasp_carries(&mut self, problem: &TaskProblem<'_>, grasp: &BoardGrasp, without: Option<usize>) -> bool {
@@ -69,21 +110,21 @@ impl Carrying<'_> {
 pub fn hand_changes(
     problem: &TaskProblem<'_>,
     holds: &Holds<'_>,
-    carrying: &mut Carrying<'_>,
+    facts: &mut FactFinder<'_>,
     [from, to]: [usize; 2],
 ) -> Option<Vec<HandChange>> {
     let arms = changed_arms(&holds.holds[from].grasp, &holds.holds[to].grasp);
-    if !carrying.carries(problem, holds, from, None) || !carrying.carries(problem, holds, to, None) {
+    if !facts.carries(problem, holds, from, None) || !facts.carries(problem, holds, to, None) {
         return None;
     }
-    orders(arms).into_iter().find_map(|order| in_order(problem, holds, carrying, ([from, to], &order)))
+    orders(arms).into_iter().find_map(|order| in_order(problem, holds, facts, ([from, to], &order)))
 }
 
 /// The changes in this order of arms.
 fn in_order(
     problem: &TaskProblem<'_>,
     holds: &Holds<'_>,
-    carrying: &mut Carrying<'_>,
+    facts: &mut FactFinder<'_>,
     ([from, to], order): ([usize; 2], &[usize]),
 ) -> Option<Vec<HandChange>> {
     let [before, after] = [from, to].map(|hold| &holds.holds[hold].grasp);
@@ -96,14 +137,18 @@ fn in_order(
         // The last one reaches the hold, which is clear and carries the board; before it all other arms have its grasps.
         let is_last = number + 1 == order.len();
         let is_held = match number {
-            0 => carrying.carries(problem, holds, from, Some(arm)),
-            _ if is_last => carrying.carries(problem, holds, to, Some(arm)),
-            _ => carrying.grasp_carries(problem, &here, Some(arm)),
+            0 => facts.carries(problem, holds, from, Some(arm)),
+            _ if is_last => facts.carries(problem, holds, to, Some(arm)),
+            _ => facts.grasp_carries(problem, &here, Some(arm)),
         };
-        if !is_held || !(is_last || robot.is_clear(&next) && carrying.grasp_carries(problem, &next, None)) {
+        if !is_held || !(is_last || robot.is_clear(&next) && facts.grasp_carries(problem, &next, None)) {
             return None;
         }
-        let ends = regrasp::ends(robot, &here, &next.arms[arm], arm)?;
+        // Until its turn an arm has its grasp of the hold before.
+        let ends = Ends {
+            away: facts.way_off(problem, holds, (&here, from), arm)?,
+            towards: facts.way_off(problem, holds, (&here, to), arm)?,
+        };
         changes.push(HandChange { arm, before: here, ends });
         here = next;
     }

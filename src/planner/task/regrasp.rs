@@ -5,6 +5,8 @@
 //! board, as they are in a grasp; in between the whole arm keeps its clearance from robot and board. The clearance is larger than that
 //! of a hold: the board has slid in the hands that hold it.
 
+use std::sync::Arc;
+
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand_pcg::Pcg64;
 
@@ -19,20 +21,24 @@ use super::{
 };
 use crate::{
     collision::Scene,
+    model::frames::Pose,
     robot::{ArmState, Gripper},
 };
 
-/// The ways off the board at both ends of a regrasp, each from the grasp; between them the arm moves freely.
+/// The joint path of an open gripper off the board, from its grasp on.
+pub type WayOff = Arc<[Vec<f64>]>;
+
+/// The ways off the board at both ends of a regrasp; between them the arm moves freely.
 pub struct Ends {
-    away: Vec<Vec<f64>>,
-    towards: Vec<Vec<f64>>,
+    /// From the old grasp.
+    pub away: WayOff,
+    /// From the new grasp.
+    pub towards: WayOff,
 }
 
-/// The ends of an arm's regrasp from its grasp to another one on the board where it is; `None` if the gripper cannot leave one of
-/// them.
-pub fn ends(robot: &GraspingRobot, from: &BoardGrasp, to: &ArmGrasp, arm: usize) -> Option<Ends> {
-    let free = FreeArm::new(robot, from, arm);
-    Some(Ends { away: free.withdrawn(&from.arms[arm])?, towards: free.withdrawn(to)? })
+/// The way off the board from a grasp `own` of an arm, while the others hold the board as in `from`; `None` if there is none.
+pub fn way_off(robot: &GraspingRobot, from: &BoardGrasp, own: &ArmGrasp, arm: usize) -> Option<WayOff> {
+    FreeArm::new(robot, from, arm).withdrawn(own).map(Arc::from)
 }
 
 /// The joint path of a regrasp with these ends; `None` if none was found.
@@ -45,7 +51,7 @@ pub fn path(
 ) -> Option<Vec<Vec<f64>>> {
     let free = FreeArm::new(robot, from, arm);
     let chain = &robot.arms[arm].chain;
-    let is_free = |q_rad: &[f64]| free.is_clear(q_rad, false);
+    let is_free = |q_rad: &[f64]| free.is_clear(&free.scene(&free.link_poses(q_rad), &free.others));
     let problem = FreeMotion {
         lower: chain.lower(),
         upper: chain.upper(),
@@ -55,7 +61,7 @@ pub fn path(
     };
     let between = free_motion::find(&problem, away.last()?, towards.last()?, random)?;
     let towards = towards.iter().rev().cloned().collect();
-    Some([away.clone(), between, towards].concat())
+    Some([away.to_vec(), between, towards].concat())
 }
 
 /// An arm that has let go, beside the others that hold the board.
@@ -64,7 +70,8 @@ struct FreeArm<'a> {
     from: &'a BoardGrasp,
     arm: usize,
     /// The robot's arms that hold the board, and all of them.
-    holding: [Vec<usize>; 2],
+    others: Vec<usize>,
+    all: Vec<usize>,
     open_m: [f64; 2],
 }
 
@@ -72,15 +79,15 @@ impl<'a> FreeArm<'a> {
     fn new(robot: &'a GraspingRobot, from: &'a BoardGrasp, arm: usize) -> Self {
         let all: Vec<_> = robot.arms.iter().map(|arm| arm.index).collect();
         let others = all.iter().copied().filter(|&index| index != robot.arms[arm].index).collect();
-        Self { robot, from, arm, holding: [others, all], open_m: open_travel_m(Self::gripper_of(robot, arm)) }
+        Self { robot, from, arm, others, all, open_m: open_travel_m(Self::gripper_of(robot, arm)) }
     }
 
     fn gripper_of(robot: &GraspingRobot, arm: usize) -> &Gripper {
         &robot.robot.arms[robot.arms[arm].index].gripper
     }
 
-    /// True if the arm with an open gripper is clear of everything; of the board only but for the fingers if it is `at_board`.
-    fn is_clear(&self, q_rad: &[f64], at_board: bool) -> bool {
+    /// The robot's links with the arm in a configuration, its gripper open.
+    fn link_poses(&self, q_rad: &[f64]) -> Vec<Pose> {
         let state = |(number, (arm, own)): (usize, (&'a GraspingArm, &'a ArmGrasp))| (number, arm.index, &own.q_rad);
         let states = self.robot.arms.iter().zip(&self.from.arms).enumerate().map(state);
         let states: Vec<_> = states
@@ -91,11 +98,17 @@ impl<'a> FreeArm<'a> {
                 ArmState { arm: index, q_rad: if is_free { q_rad } else { own }, finger_travel_m }
             })
             .collect();
-        let link_poses = self.robot.robot.link_poses(&self.robot.robot.positions(&states));
-        let holding = &self.holding[usize::from(at_board)];
-        let planned = self.robot.scene(&link_poses, self.from.x_wo);
-        let scene = Scene { holding, clearance_m: planned.clearance_m + MORE_CLEARANCE_M, ..planned };
-        self.robot.collision.first_violation(&scene).is_none()
+        self.robot.robot.link_poses(&self.robot.robot.positions(&states))
+    }
+
+    /// The arm with an open gripper, with the arms whose fingers may be at the board.
+    fn scene<'s>(&'s self, link_poses: &'s [Pose], holding: &'s [usize]) -> Scene<'s> {
+        let planned = self.robot.scene(link_poses, self.from.x_wo);
+        Scene { holding, clearance_m: planned.clearance_m + MORE_CLEARANCE_M, ..planned }
+    }
+
+    fn is_clear(&self, scene: &Scene<'_>) -> bool {
+        self.robot.collision.first_violation(scene).is_none()
     }
 
     /// The shortest of some ways off the board in its plane, the grasp first: at its end the whole arm keeps its clearance.
@@ -116,12 +129,13 @@ impl<'a> FreeArm<'a> {
             let share = number as f64 / steps as f64;
             let shift = Isometry3::from_parts((direction_g * (WITHDRAWAL_M * share)).into(), about_y(turn_rad * share));
             let q_rad = self.robot.arms[self.arm].inverse.near(&(x_wg * shift), &way[number - 1]).found()?;
-            let is_off = self.is_clear(&q_rad, false);
-            if !is_off && !self.is_clear(&q_rad, true) {
+            let link_poses = self.link_poses(&q_rad);
+            let at_board = self.scene(&link_poses, &self.all);
+            if !self.is_clear(&at_board) {
                 return None;
             }
             way.push(q_rad);
-            if is_off {
+            if self.robot.collision.fingers_are_off(&at_board, self.robot.arms[self.arm].index) {
                 return Some(way);
             }
         }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::{
     graph::{Arc, ArcKind, Exact, Step},
     grasp_loads::GraspLoads,
-    hand_changes::{CarriedHolds, Carrying, HandChange, hand_changes},
+    hand_changes::{FactFinder, HandChange, HoldFacts, hand_changes},
     holds::Holds,
     motion,
     problem::{Posture, TaskProblem},
@@ -25,7 +25,7 @@ pub struct Transitions<'p, 'a> {
     served: BTreeMap<(usize, usize), Option<Posture>>,
     moves: BTreeMap<(usize, usize), bool>,
     regrasps: BTreeMap<(usize, usize), Option<Vec<HandChange>>>,
-    carried: BTreeMap<(usize, Option<usize>), bool>,
+    facts: HoldFacts,
     accepted: BTreeMap<(usize, usize), Option<(Plan, Posture)>>,
 }
 
@@ -39,7 +39,7 @@ impl<'p, 'a> Transitions<'p, 'a> {
             served: BTreeMap::new(),
             moves: BTreeMap::new(),
             regrasps: BTreeMap::new(),
-            carried: BTreeMap::new(),
+            facts: HoldFacts::default(),
             accepted: BTreeMap::new(),
         }
     }
@@ -92,11 +92,11 @@ impl<'p, 'a> Transitions<'p, 'a> {
 
     fn moves(&mut self, from: usize, to: usize) -> bool {
         let (problem, holds) = (&*self.problem, self.holds);
-        let Self { workspace, carried, .. } = self;
-        let mut carrying = Carrying { known: carried, new: CarriedHolds::new(), workspace };
-        let carried = [from, to].iter().all(|&hold| carrying.carries(problem, holds, hold, None));
-        let new = carrying.new;
-        self.carried.extend(new);
+        let Self { workspace, facts, .. } = self;
+        let mut finder = FactFinder::new(facts, workspace);
+        let carried = [from, to].iter().all(|&hold| finder.carries(problem, holds, hold, None));
+        let new = finder.new;
+        self.facts.extend(new);
         let [from, to] = [from, to].map(|hold| &holds.holds[hold].grasp);
         carried && motion::between(problem.robot, from, to).is_some()
     }
@@ -113,7 +113,7 @@ enum Asked<'p> {
 /// The answers.
 enum Answer<'p> {
     Pieces { hold: usize, loads: Box<GraspLoads<'p>>, postures: Vec<(usize, Option<Posture>)> },
-    Regrasps { between: [usize; 2], changes: Option<Vec<HandChange>>, carried: CarriedHolds },
+    Regrasps { between: [usize; 2], changes: Option<Vec<HandChange>>, facts: HoldFacts },
 }
 
 impl<'p> Asked<'p> {
@@ -121,7 +121,7 @@ impl<'p> Asked<'p> {
         self,
         problem: &TaskProblem<'_>,
         holds: &Holds<'_>,
-        known: &CarriedHolds,
+        known: &HoldFacts,
         workspace: &mut StabilityWorkspace,
     ) -> Answer<'p> {
         match self {
@@ -131,9 +131,9 @@ impl<'p> Asked<'p> {
                 Answer::Pieces { hold, loads, postures }
             }
             Self::Regrasps(between) => {
-                let mut carrying = Carrying { known, new: CarriedHolds::new(), workspace };
-                let changes = hand_changes(problem, holds, &mut carrying, between);
-                Answer::Regrasps { between, changes, carried: carrying.new }
+                let mut finder = FactFinder::new(known, workspace);
+                let changes = hand_changes(problem, holds, &mut finder, between);
+                Answer::Regrasps { between, changes, facts: finder.new }
             }
         }
     }
@@ -163,7 +163,7 @@ fn posture(
 
 impl<'p> Exact for Transitions<'p, '_> {
     fn prepare(&mut self, steps: &[(usize, Step)]) {
-        let (problem, holds, known) = (&*self.problem, self.holds, &self.carried);
+        let (problem, holds, known) = (&*self.problem, self.holds, &self.facts);
         let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut asked = Vec::with_capacity(steps.len());
         for (piece, step) in steps.iter().filter(|(piece, step)| !self.is_known(*piece, step)) {
@@ -189,9 +189,9 @@ impl<'p> Exact for Transitions<'p, '_> {
                     self.loads.insert(hold, loads);
                     self.served.extend(postures.into_iter().map(|(piece, posture)| ((hold, piece), posture)));
                 }
-                Answer::Regrasps { between: [from, to], changes, carried } => {
+                Answer::Regrasps { between: [from, to], changes, facts } => {
                     self.regrasps.insert((from, to), changes);
-                    self.carried.extend(carried);
+                    self.facts.extend(facts);
                 }
             }
         }
