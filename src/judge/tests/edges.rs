@@ -95,12 +95,17 @@ fn the_momentum_balance_counts_at_the_ends_of_settling_and_hold() {
         trace.samples[at].self_check.force_residual_n = 2.0 * self_checks::FORCE_LIMIT_N;
         judge(&trace, &limits()).verdict
     };
-    for steady in [SETTLE - 1] {
+    for steady in [SETTLE - 1, LAST_JUDGED] {
         assert_eq!(verdict_with_residual_at(steady), VerdictKind::NoVerdict, "{steady}");
     }
     for moving in [GRIP, SETTLE - 2, SETTLE, SETTLE + RAMP - 1, SETTLE + RAMP, LAST_JUDGED - 1, LAST_JUDGED + 1] {
         assert_eq!(verdict_with_residual_at(moving), VerdictKind::Holds, "{moving}");
     }
+    // A trace may end with the hold: whether the forces have become steady is not known then.
+    let mut unreleased = still();
+    unreleased.samples.truncate(LAST_JUDGED + 1);
+    unreleased.samples[LAST_JUDGED].self_check.force_residual_n = 2.0 * self_checks::FORCE_LIMIT_N;
+    assert_eq!(judge(&unreleased, &limits()).verdict, VerdictKind::Holds);
 }
 
 #[test]
