@@ -200,3 +200,15 @@ fn welded_crossing(model: &ContactModel, limits: &Limits, unloaded: &Equilibrium
     }
     first
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_residual_is_bounded_and_zero_at_the_limit() {
+        let residual = |ratio: f64| Probe { load_factor: 1.0, ratio, crossing: LimitCrossing::Deflection }.residual();
+        let expected = [(0.0, -1.0), (1.0, 0.0), (3.0, 0.5), (f64::INFINITY, 1.0)];
+        expected.into_iter().for_each(|(ratio, value)| assert_eq!(residual(ratio), value, "{ratio}"));
+    }
+}

@@ -267,4 +267,8 @@ fn invalid_limits_and_stiffnesses_are_told() {
         message(&|measured| measured.stiffness = Some(Vector6::repeat(-1.0))),
         "left gripper: found stiffness -1, expected more than 0"
     );
+    assert_eq!(
+        message(&|measured| measured.stiffness = Some(Vector6::new(1.0, 1.0, 1.0, 1.0, 1.0, 0.0))),
+        "left gripper: found stiffness 0, expected more than 0"
+    );
 }
