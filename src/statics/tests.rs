@@ -106,6 +106,7 @@ fn a_contact_model_of_a_deviating_world_is_scaled() {
         grip_force_scale: 2.0,
         joint_stiffness_scale: 0.75,
         contact_stiffness_scale: 1.25,
+        joint_offset_deg: vec![vec![0.1, -0.2, 0.3, 0.0, 0.1, -0.1, 0.2]],
         force_scale: 1.5,
         ..Uncertainty::default()
     };
@@ -119,8 +120,17 @@ fn a_contact_model_of_a_deviating_world_is_scaled() {
         hand.scale_grip(2.0);
         hand.stiffness_nm_rad *= 0.75;
     }
+    // Of the first arm alone, `t = J (K_q + dg/dq)^-1 K_q d`.
+    let hand = &mut expected.hands[0];
+    let offsets_rad = DVector::from_iterator(7, of.joint_offset_deg[0].iter().map(|deg: &f64| deg.to_radians()));
+    let stiffness = DMatrix::from_diagonal(&hand.stiffness_nm_rad);
+    let yielded = (&stiffness + &hand.gravity_stiffness_nm_rad).lu().solve(&(stiffness * offsets_rad)).unwrap();
+    let offset = &hand.jacobian_o * yielded;
+    let found = ContactModel::under(&checked, FRICTION, &of).unwrap();
+    assert!((found.hands[0].offset.to_vector() - &offset).norm() < 1e-12 * offset.norm(), "{offset}");
+    hand.offset = found.hands[0].offset;
     assert!(expected.hands.iter().all(|hand| hand.pads().iter().all(|pad| pad.stiffness_n_m == Some(2.5e4))));
-    assert_eq!(ContactModel::under(&checked, FRICTION, &of).unwrap(), expected);
+    assert_eq!(found, expected);
     // The push of the person is a share of the force.
     let push_n = |of: &Uncertainty| {
         let load = Load { lateral_share: 0.2, ..Load::default() };

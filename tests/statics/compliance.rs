@@ -370,7 +370,7 @@ fn a_joint_that_is_ten_orders_stiffer_than_the_others_counts_as_rigid() {
     let with_joint = |nm_rad: f64| {
         let mut hold = two_strong_hands(Wrench::default(), Wrench::default());
         hold.hands.iter_mut().for_each(|hand| {
-            hand.stiffness_nm_rad.fill(0.04e3);
+            hand.stiffness_nm_rad.fill(0.04e6);
             hand.stiffness_nm_rad.rows_mut(0, 3).fill(1e3);
             hand.stiffness_nm_rad[5] = nm_rad;
         });

@@ -2,12 +2,14 @@
 
 use benchdog::{
     model::{
+        load::Load,
+        operation::{Operation, OperationKind},
         scenario::{Limits, StabilityKind},
         wrench::Wrench,
     },
-    statics::{ContactModel, StabilityWorkspace},
+    statics::{ContactModel, LoadCases, StabilityWorkspace},
 };
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use crate::fixtures::{limits, two_strong_hands};
 
@@ -40,7 +42,7 @@ fn the_criterion_of_the_paper_is_the_share_of_the_load_factor() {
 fn the_compliant_criterion_is_the_largest_share_of_a_limit() {
     let limits = Limits { deflection_mm: 15.0, torque_ratio: 1.0, ..limits() };
     let at = |hold: &ContactModel, load_factor: f64| {
-        utilisation(hold, &Limits { load_factor, ..limits.clone() }, StabilityKind::Compliant)
+        utilisation(hold, &Limits { load_factor, ..limits }, StabilityKind::Compliant)
     };
     let mut hold = pushed();
     approx::assert_relative_eq!(at(&hold, 1.5), 7.5 / 15.0, max_relative = 1e-9);
@@ -50,6 +52,29 @@ fn the_compliant_criterion_is_the_largest_share_of_a_limit() {
         hand.effort_nm[0] = 10.0;
     }
     approx::assert_relative_eq!(at(&hold, 1.5), 7.5 / 10.0, max_relative = 1e-9);
+}
+
+/// The figures of a plan: load factors, the deflection at load 1, and the torques there by the hand's name.
+#[test]
+fn a_prediction_has_the_figures_of_the_closed_forms() {
+    let hold = pushed();
+    let operation = Operation {
+        kind: OperationKind::Wrench,
+        wrench_o: hold.load,
+        x_ot: Isometry3::from_parts(hold.p_ot.into(), UnitQuaternion::identity()),
+    };
+    let cases = LoadCases::new(hold, &operation, &Load { lateral_share: 0.0, ..Load::default() });
+    let limits = Limits { deflection_mm: 15.0, ..limits() };
+    let found = StabilityWorkspace::new().predict(&cases, &limits).unwrap().unwrap().stability;
+    approx::assert_relative_eq!(found.load_factor, 7.2, max_relative = TOLERANCE);
+    // From below, to a thousandth.
+    approx::assert_relative_eq!(found.compliant_load_factor, 3.0, max_relative = 1e-3);
+    approx::assert_relative_eq!(found.predicted_deflection_mm, 5.0, max_relative = 1e-9);
+    let names: Vec<_> = found.joint_torque_nm.keys().map(String::as_str).collect();
+    assert_eq!(names, ["left", "right"]);
+    for torque_nm in found.joint_torque_nm.values() {
+        approx::assert_relative_eq!(torque_nm[0], -5.0, max_relative = 1e-9);
+    }
 }
 
 /// With a torque ratio above 1 the compliant equilibrium may need more than the torque limits, so lambda* is asked for as well.

@@ -187,4 +187,8 @@ fn the_worst_case_is_that_of_all_cases_alone() {
     let without_load = Limits { load_factor: 0.0, ..limits() };
     let found = workspace.assess(&cases(&pinch(1.0, hand()), 0.2), &without_load, StabilityKind::Paper).unwrap();
     assert_eq!((found.utilisation, found.case), (0.0, 0));
+    // Nor do loads of nothing differ.
+    let idle = cases(&pinch(1.0, hand()), 0.2).scaled(0.0);
+    let (case, found) = workspace.least_compliant_load_factor(&idle, &limits()).unwrap();
+    assert_eq!((case, found.load_factor), (0, 100.0));
 }

@@ -204,6 +204,9 @@ fn at_the_cap_no_variation_limits() {
         approx::assert_relative_eq!(found.load_factor, 7.2, max_relative = 1e2 * TOLERANCE);
         assert_eq!(found.limiting, [1]);
     }
+    // The first of two that are the same.
+    let twice = [Variation { friction_ratio: 0.01, ..light }; 2];
+    assert_eq!(robust(&hold, &twice, InternalForces::Adapt).limiting, [0]);
 }
 
 /// One hand has no internal force that could be fixed, so its stiffness does not matter.

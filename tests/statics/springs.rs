@@ -76,6 +76,21 @@ fn the_weight_is_fed_forward_and_the_load_is_not() {
     approx::assert_abs_diff_eq!(found.deflection_m.x, 10.0 / STIFFENED, epsilon = ROUNDING);
 }
 
+/// What a controller feeds forward is the share of the board's weight, without what holds the arm itself.
+#[test]
+fn arms_carry_the_board_with_half_of_its_weight_each() {
+    let mut workspace = StabilityWorkspace::new();
+    let carried = workspace.carrying_torque_nm(&stiffened()).unwrap().unwrap();
+    assert_eq!(carried.len(), 2);
+    for torque_nm in carried {
+        approx::assert_abs_diff_eq!(torque_nm[0], -4.0, epsilon = ROUNDING);
+        assert!(torque_nm.iter().skip(1).all(|nm| nm.abs() < ROUNDING));
+    }
+    let heavy = ContactModel { weight: Wrench::from_force(Vector3::x() * 80.0), ..stiffened() };
+    // 72 N of friction.
+    assert_eq!(workspace.carrying_torque_nm(&heavy).unwrap(), None);
+}
+
 /// Forces in all directions, and pads beside the grasp point and beside each other.
 fn skew() -> ContactModel {
     let load = Wrench::from_force(Vector3::new(4.0, -3.0, 5.0)).about(&Vector3::new(0.1, 0.05, 0.015));
