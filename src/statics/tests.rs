@@ -127,7 +127,7 @@ fn a_contact_model_of_a_deviating_world_is_scaled() {
     let yielded = (&stiffness + &hand.gravity_stiffness_nm_rad).lu().solve(&(stiffness * offsets_rad)).unwrap();
     let offset = &hand.jacobian_o * yielded;
     let found = ContactModel::under(&checked, FRICTION, &of).unwrap();
-    assert!((found.hands[0].offset.to_vector() - &offset).norm() < 1e-12 * offset.norm(), "{offset}");
+    assert!((found.hands[0].offset.to_vector() - offset).norm() < 1e-12 * offset.norm(), "{offset}");
     hand.offset = found.hands[0].offset;
     assert!(expected.hands.iter().all(|hand| hand.pads().iter().all(|pad| pad.stiffness_n_m == Some(2.5e4))));
     assert_eq!(found, expected);
