@@ -190,5 +190,5 @@ fn the_worst_case_is_that_of_all_cases_alone() {
     // Nor do loads of nothing differ.
     let idle = cases(&pinch(1.0, hand()), 0.2).scaled(0.0);
     let (case, found) = workspace.least_compliant_load_factor(&idle, &limits()).unwrap();
-    assert_eq!((case, found.load_factor), (0, 100.0));
+    assert_eq!((case, found.load_factor, found.first_limit), (0, 100.0, None));
 }
