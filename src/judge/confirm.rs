@@ -339,4 +339,19 @@ mod tests {
             assert_eq!(is_near(&check(kind, value_mm, 0.0)), near, "{kind} {value_mm}");
         }
     }
+
+    /// They have a limit as other checks, but whether the board is lost is no matter of a little.
+    #[test]
+    fn a_lost_board_is_near_to_no_limit() {
+        for (kind, value, limit) in [(CheckKind::ContactLost, 0.0, 0.0), (CheckKind::Drop, 50.0, 50.0)] {
+            assert!(!is_near(&check(kind, value, limit)), "{kind}");
+        }
+    }
+
+    #[test]
+    fn a_value_is_near_up_to_a_tenth_of_its_limit_on_either_side() {
+        for (value_mm, near) in [(4.4, false), (4.5, true), (5.0, true), (5.5, true), (5.6, false)] {
+            assert_eq!(is_near(&check(CheckKind::Slip, value_mm, 5.0)), near, "{value_mm}");
+        }
+    }
 }

@@ -83,8 +83,8 @@ fn next_factor(holds_at: Option<f64>, fails_at: Option<f64>, stride: f64) -> Opt
 mod tests {
     use super::*;
 
-    /// The failing load of a grasp that holds below `limit`.
-    fn search(guess: f64, limit: f64) -> FailingLoad {
+    /// The failing load of a grasp that holds below `limit`, and the factors that were tried.
+    fn searched(guess: f64, limit: f64) -> (FailingLoad, Vec<f64>) {
         let judgement = |verdict| Judgement {
             verdict,
             checks: Vec::new(),
@@ -97,10 +97,18 @@ mod tests {
             events: Vec::new(),
             measures: crate::model::measures::Measures::default(),
         };
-        let verdict = |factor| if factor < limit { VerdictKind::Holds } else { VerdictKind::Slips };
-        let judged = |factor: f64| Ok::<_, std::convert::Infallible>(judgement(verdict(factor)));
+        let mut factors = Vec::new();
+        let judged = |factor: f64| {
+            factors.push(factor);
+            let verdict = if factor < limit { VerdictKind::Holds } else { VerdictKind::Slips };
+            Ok::<_, std::convert::Infallible>(judgement(verdict))
+        };
         let Ok(found) = failing_load(guess, judged);
-        found
+        (found, factors)
+    }
+
+    fn search(guess: f64, limit: f64) -> FailingLoad {
+        searched(guess, limit).0
     }
 
     #[test]
@@ -116,6 +124,26 @@ mod tests {
         }
         // Four to bracket a prediction that is 5 % off, eight to bisect 15 % to 0.1 %.
         assert!(search(1.3, 1.36).simulations <= 12);
+    }
+
+    /// Strides grow as 1.1, 1.1^2, 1.1^4 and so on up to the largest factor, or down to the smallest positive one and then 0.
+    #[test]
+    fn strides_grow_until_the_failing_load_is_bracketed() {
+        let close = |found: &[f64], expected: &[f64]| {
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= 1e-12 * b), "{found:?}");
+        };
+        let tried = |limit: f64| {
+            let (found, factors) = searched(1.0, limit);
+            assert_eq!(found.simulations, factors.len());
+            factors
+        };
+        let power = |exponent: i32| 1.1_f64.powi(exponent);
+        close(&tried(f64::INFINITY), &[1.0, power(1), power(3), power(7), power(15), power(31), 100.0]);
+        close(&tried(-1.0), &[1.0, power(-1), power(-3), power(-7), power(-15), power(-31), 1.0 / 64.0, 0.0]);
+        // Then the middle of the bracket.
+        let bracketed = tried(0.8);
+        close(&bracketed[..4], &[1.0, power(-1), power(-3), (power(-1) + power(-3)) / 2.0]);
     }
 
     #[test]

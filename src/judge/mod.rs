@@ -56,7 +56,7 @@ pub fn judge(trace: &Trace, limits: &Limits) -> Judgement {
     let findings = checks::findings(trace, judged, &measures, limits, ends_because.is_none() && !is_lost);
     let first = checks::first_failure(&findings);
     let decided = first.map_or(hand_over + judged.len(), |(_, crossing)| hand_over + crossing.sample + 1);
-    let self_checks = self_checks::self_checks(trace, &samples[..decided], hand_over);
+    let self_checks = self_checks::self_checks(trace, samples, decided, hand_over);
     let unfinished = ends_because.clone().filter(|_| first.is_none());
     if let Some(reason) = unfinished.or_else(|| self_checks::failed_self_checks(&self_checks)) {
         return no_verdict(trace, measures, self_checks, reason);

@@ -34,12 +34,15 @@ pub(super) const CHATTER_WINDOW_S: f64 = 0.05;
 /// Half of the longest period that counts as fast, s, if the time step is shorter.
 pub(super) const CHATTER_LAG_S: f64 = 0.002;
 
-/// Penetration, created energy and finger coupling up to the sample that decides the verdict, the momentum balance at the
-/// end of settling and of a hold that is followed by a release, and chatter from the hand-over on, the sample of this
-/// number. Samples without contact are left out.
-pub(super) fn self_checks(trace: &Trace, decisive: &[Sample], hand_over: usize) -> Vec<Check> {
+/// Penetration, created energy and finger coupling up to the sample that decides the verdict, the last of the first `decided`, the
+/// momentum balance at the end of settling and of a hold that is followed by a release, and chatter from the hand-over on, the
+/// sample of this number. Samples without contact are left out.
+pub(super) fn self_checks(trace: &Trace, samples: &[Sample], decided: usize, hand_over: usize) -> Vec<Check> {
+    let decisive = &samples[..decided];
     let largest = |of: fn(&Sample) -> f64| decisive.iter().map(of).fold(0.0, worse);
-    let ends = |phase| decisive.windows(2).filter(move |pair| pair[0].phase == phase && pair[1].phase != phase);
+    // That a phase ends with the deciding sample is known from the one after it.
+    let pairs = samples.windows(2).take(decided);
+    let ends = |phase| pairs.clone().filter(move |pair| pair[0].phase == phase && pair[1].phase != phase);
     let steady_ends = ends(Phase::Settle).chain(ends(Phase::Hold)).map(|pair| &pair[0]);
     let held = steady_ends.filter(|sample| sample.has_contact());
     let residual_n = held.map(|sample| sample.self_check.force_residual_n).fold(0.0, worse);

@@ -1,8 +1,10 @@
 //! Synthetic traces: each limit crossed alone, met exactly, and together with others.
 
+mod edges;
 mod measured;
 mod mechanics;
 mod page;
+mod stages;
 
 use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;

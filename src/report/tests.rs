@@ -225,6 +225,7 @@ fn a_limit_from_below_is_shown_as_one_everywhere() {
 }
 
 /// A file may be named so, and its error quote it.
+#[cfg(feature = "cli")]
 #[test]
 fn page_and_junit_report_are_xml_whatever_names_and_messages_contain() {
     let odd = "a\0\u{1b}[31m<b>&amp;]]>\"'\u{85}\u{fffe}\u{ffff}\u{202e}";

@@ -216,6 +216,49 @@ mod tests {
     }
 
     #[test]
+    fn a_hole_beside_the_line_through_the_hands_weakens_the_clamped_strip() {
+        let size_m = [0.5, 0.4, 0.006];
+        let mut plan = plan([[-0.2, -0.1], [-0.2, 0.1]], [0.1, 0.05], 15.0, size_m);
+        let outline_m = plan.object.shape().outline_m();
+        let mut with_hole = |x: f64| {
+            let hole = vec![[x, 0.0], [x + 0.04, 0.0], [x + 0.04, 0.1], [x, 0.1]];
+            plan.object.plate = Some(PlateRecord { outline_m: outline_m.clone(), holes_m: vec![hole] }.into());
+            bending(&plan, &FOAM).unwrap()
+        };
+        // The strip reaches from the line at x = -0.2 m to the tool at 0.1 m: a hole in between takes a quarter of its width.
+        let strip =
+            |width_m: f64| Strip { length_m: 0.3, width_m, thickness_m: 0.006 }.clamped(15.0, FOAM.youngs_modulus_pa);
+        assert!((with_hole(0.0).deflection_m / strip(0.3).deflection_m - 1.0).abs() < 1e-9);
+        assert!((with_hole(0.15).deflection_m / strip(0.4).deflection_m - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_tool_at_the_only_hand_bends_nothing() {
+        let mut plan = plan([[-0.2, 0.0], [-0.2, 0.0]], [-0.2, 0.0], 15.0, [0.5, 0.4, 0.006]);
+        plan.arms.truncate(1);
+        let none = Bending { deflection_m: 0.0, stress_pa: 0.0 };
+        assert_eq!(bending(&plan, &FOAM).unwrap(), none);
+        let outline_m = plan.object.shape().outline_m();
+        plan.object.plate = Some(PlateRecord { outline_m, holes_m: Vec::new() }.into());
+        assert_eq!(bending(&plan, &FOAM).unwrap(), none);
+    }
+
+    #[test]
+    fn a_board_at_its_strength_or_at_half_of_its_limit_has_no_note() {
+        let plan = plan([[-0.2, 0.0], [0.2, 0.0]], [0.0, 0.0], 15.0, [0.5, 0.4, 0.03]);
+        let Bending { deflection_m, stress_pa } = bending(&plan, &FOAM).unwrap();
+        let note = |strength_pa: f64, limit_mm: f64| {
+            let limits = Limits { deflection_mm: limit_mm, ..Limits::of(OperationKind::Drill) };
+            bending_note(&plan, "foam", &BendingProperties { strength_pa, ..FOAM }, &limits)
+        };
+        // Doubling and halving are exact.
+        let limit_mm = 2.0 * (deflection_m * 1e3);
+        assert_eq!(note(stress_pa, limit_mm), None);
+        assert!(note(0.999 * stress_pa, limit_mm).unwrap().starts_with("the board breaks"));
+        assert!(note(stress_pa, 0.999 * limit_mm).unwrap().starts_with("the board bends"));
+    }
+
+    #[test]
     fn a_note_states_bending_or_breaking_and_a_stiff_board_has_none() {
         let limits = Limits::of(OperationKind::Drill);
         let note = |thickness_m: f64, force_n: f64| {

@@ -147,3 +147,91 @@ fn largest_wrench(hand: &HandModel, pair: &PadPair) -> Vector6<f64> {
 fn scaled_bounds(force_n: f64, moment_nm: f64) -> Vector6<f64> {
     Vector6::new(force_n, force_n, force_n, moment_nm, moment_nm, moment_nm).component_div(&wrench_units())
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::statics::{
+        load_factor::LoadFactorOutcome,
+        patch::mean_distance_from_centre_m,
+        solvers::units::LENGTH_UNIT_M,
+        tests::{FRICTION, GRIP_N, HALF_SIDES_M, LEVER_M, pinch},
+        workspace::StabilityWorkspace,
+    };
+
+    /// The program of a pinch under a newton along x, and its dual vector.
+    fn solved() -> (ContactModel, ConeProgram, DualVector) {
+        let model = pinch(Vector3::x());
+        let outcome = StabilityWorkspace::new().load_factor(&model).unwrap();
+        let LoadFactorOutcome::Solved(found) = outcome else { panic!("{outcome:?}") };
+        (model.clone(), ConeProgram::load(&model, ProgramKind::Load), found.dual)
+    }
+
+    /// `fn <= 2 F`, the others by friction and the pad's size in its units; the hand's wrench is at most that of both pads.
+    #[test]
+    fn variables_are_bounded_by_grip_force_friction_and_size() {
+        let (mut model, program, _) = solved();
+        // Beside O, where the lever of a pad is not its place.
+        let shift_m = Vector3::new(0.2, -0.1, 0.0);
+        model.hands[0].grasp_point_o += shift_m;
+        model.hands[0].pads_mut().iter_mut().for_each(|pad| pad.x_op.translation.vector += shift_m);
+        let normal = 2.0 * GRIP_N / FORCE_UNIT_N;
+        let sliding = FRICTION * normal;
+        let of_pad = [sliding, sliding, normal, normal, normal, sliding];
+        let force_n = 2.0 * (2.0 * GRIP_N) * (1.0 + FRICTION);
+        let own_nm =
+            2.0 * GRIP_N * (HALF_SIDES_M[0] + HALF_SIDES_M[1] + FRICTION * mean_distance_from_centre_m(HALF_SIDES_M));
+        let moment_nm = force_n * LEVER_M + 2.0 * own_nm;
+        let (force, moment) = (force_n / FORCE_UNIT_N, moment_nm / (FORCE_UNIT_N * LENGTH_UNIT_M));
+        let mut expected = [of_pad, of_pad, [force, force, force, moment, moment, moment]].concat();
+        expected.push(MAX_LOAD_FACTOR / FORCE_UNIT_N);
+        let found = largest_variables(&model, &program);
+        assert_eq!(found.len(), expected.len());
+        assert!(
+            found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12 * b),
+            "{found:?}, expected {expected:?}"
+        );
+    }
+
+    /// An optimal vector lies on the boundary of the cone, so what is outside of it comes back to where it was.
+    #[test]
+    fn a_vector_outside_of_the_dual_cone_is_projected() {
+        let (model, program, dual) = solved();
+        let bound = dual.upper_bound(&model).unwrap();
+        // `2 mu F` of a newton.
+        assert!((bound / (2.0 * FRICTION * GRIP_N) - 1.0).abs() < 1e-4, "{bound}");
+        let mut outside = dual.clone();
+        let mut row = 0;
+        for cone in program.layout.cones() {
+            match cone {
+                SupportedConeT::ZeroConeT(rows) => row += rows,
+                SupportedConeT::NonnegativeConeT(rows) => {
+                    outside.z[row..row + rows].iter_mut().filter(|z| **z < 1e-6).for_each(|z| *z = -1.0);
+                    row += rows;
+                }
+                SupportedConeT::SecondOrderConeT(rows) => {
+                    outside.z[row] = -1.0;
+                    row += rows;
+                }
+                _ => unreachable!("a load program has no other cones"),
+            }
+        }
+        assert_eq!(row, outside.z.len());
+        // The solver's tolerance, 1e-7, times the largest variables.
+        assert!((outside.upper_bound(&model).unwrap() - bound).abs() < 1e-4 * bound);
+    }
+
+    #[test]
+    fn the_zero_vector_proves_nothing() {
+        let (model, program, dual) = solved();
+        let zero = DualVector { z: vec![0.0; program.b.len()], ..dual.clone() };
+        assert!(!zero.proves_infeasible(&model).unwrap());
+        // Its bound is the cap.
+        assert_eq!(zero.upper_bound(&model).unwrap(), MAX_LOAD_FACTOR);
+        let short = DualVector { z: vec![0.0], ..dual };
+        assert!(!short.proves_infeasible(&model).unwrap());
+        assert_eq!(short.upper_bound(&model).unwrap(), f64::INFINITY);
+    }
+}

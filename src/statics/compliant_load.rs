@@ -5,7 +5,10 @@ use super::{
     equilibrium::{CompliantResponse, Equilibrium, EquilibriumOutcome},
     limit_crossing::LimitCrossing,
     load_factor::LoadFactorOutcome,
-    solvers::{cone_program::MAX_LOAD_FACTOR, energy::HandEnergy},
+    solvers::{
+        cone_program::{CAP_MARGIN, MAX_LOAD_FACTOR},
+        energy::HandEnergy,
+    },
     welded::WeldedStiffness,
     workspace::StabilityWorkspace,
 };
@@ -97,7 +100,8 @@ impl Search<'_> {
             return Err(low.crossing);
         }
         // Slightly inside: at the end the feasible set has no interior and the solver is unreliable.
-        let end = if last < MAX_LOAD_FACTOR { last - TOLERANCE / 2.0 * last.max(1.0) } else { last };
+        let is_capped = last >= MAX_LOAD_FACTOR - CAP_MARGIN;
+        let end = if is_capped { MAX_LOAD_FACTOR } else { last - TOLERANCE / 2.0 * last.max(1.0) };
         let mut high = None;
         let guess = welded_crossing(self.model, self.limits, &unloaded);
         for load_factor in [guess - self.tolerance(guess) / 3.0, guess + self.tolerance(guess) / 3.0, end] {
@@ -115,7 +119,7 @@ impl Search<'_> {
         }
         match high {
             Some(high) => Ok(self.close(&unloaded, low, high)),
-            None if last >= MAX_LOAD_FACTOR => Ok((MAX_LOAD_FACTOR, None)),
+            None if is_capped => Ok((MAX_LOAD_FACTOR, None)),
             None => Ok((low.load_factor, Some(LimitCrossing::NoEquilibrium { binding }))),
         }
     }
@@ -199,4 +203,16 @@ fn welded_crossing(model: &ContactModel, limits: &Limits, unloaded: &Equilibrium
         }
     }
     first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_residual_is_bounded_and_zero_at_the_limit() {
+        let residual = |ratio: f64| Probe { load_factor: 1.0, ratio, crossing: LimitCrossing::Deflection }.residual();
+        let expected = [(0.0, -1.0), (1.0, 0.0), (3.0, 0.5), (f64::INFINITY, 1.0)];
+        expected.into_iter().for_each(|(ratio, value)| assert_eq!(residual(ratio), value, "{ratio}"));
+    }
 }

@@ -143,7 +143,7 @@ fn check_hand(hand: &HandModel) -> Result<(), ContactModelError> {
     }
     hand.effort_nm.iter().try_for_each(|&effort| positive("effort", effort))?;
     hand.stiffness_nm_rad.iter().try_for_each(|&stiffness| positive("stiffness", stiffness))?;
-    if expected > 0 && hand.stiffness_factor().is_none() {
+    if hand.stiffness_factor().is_none() {
         return Err(ContactModelError::TooSoft(hand.name.clone()));
     }
     hand.pads().iter().try_for_each(|pad| check_pad(hand, pad))

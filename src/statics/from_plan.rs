@@ -178,3 +178,19 @@ fn face_pose(centre_o: &Vector3<f64>, rotation: &UnitQuaternion<f64>) -> Isometr
     let x_p = x_p * Vector3::x();
     Isometry2::new(Vector2::new(centre_o.x, centre_o.y), x_p.y.atan2(x_p.x))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A gripper that is tilted about its own y axis still has its pads flat on the faces.
+    #[test]
+    fn a_pad_lies_flat_below_a_tilted_gripper() {
+        for normal_o in [Vector3::z(), -Vector3::z()] {
+            let rotation = pad_rotation(&Vector3::new(0.6, 0.0, 0.8), &normal_o);
+            // Rounding of unit vectors.
+            assert!((rotation * Vector3::z() - normal_o).norm() < 1e-15);
+            assert!((rotation * Vector3::x() - Vector3::x()).norm() < 1e-15);
+        }
+    }
+}

@@ -136,3 +136,20 @@ fn work_per_normal_force(pad: &PadModel, radius_m: f64, twist: &Twist) -> f64 {
     let friction = v.x.hypot(v.y).hypot(radius_m * w.z);
     v.z + pad.friction * friction + b * w.x.abs() + a * w.y.abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A margin for rounding only: a demand that is met proves nothing, whatever its size.
+    #[test]
+    fn a_demand_that_is_met_is_no_excess() {
+        for size_j in [0.0, 1.0, 1e6] {
+            assert!(!is_excess(size_j, size_j));
+            assert!(!is_excess(size_j * (1.0 + 1e-10), size_j));
+        }
+        for size_j in [1e-3, 1.0, 1e6] {
+            assert!(is_excess(size_j * (1.0 + 1e-8), size_j));
+        }
+    }
+}

@@ -198,3 +198,41 @@ fn soft_terms(place: &PadLayout, raw: &RawSolution<'_>) -> [f64; 3] {
     let tilt: f64 = raw.z[place.pressure_rows..place.pressure_rows + 4].iter().sum();
     [share(1) + share(2), share(3), raw.x[place.variables + 2] * tilt]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::frames::Pose;
+
+    /// The terms of a pad with this normal force, N, of a grip force of 30 N, for multipliers and slacks made up.
+    fn terms(normal_n: f64) -> Vec<(f64, PadLimit)> {
+        let pad = PadModel {
+            name: "upper".into(),
+            x_op: Pose::identity(),
+            half_sides_m: [0.02, 0.018],
+            friction: 0.5,
+            stiffness_n_m: None,
+        };
+        let place = PadLayout { variables: 0, pressure_rows: 0, friction_rows: 4 };
+        let x = [0.0, 0.0, normal_n / FORCE_UNIT_N, 0.0, 0.0, 0.0];
+        // Four of the pressure, then four of the friction cone: the normal force, two of sliding, one of torsion.
+        let z = [0.1, 0.2, 0.3, 0.4, 2.0, -0.3, 0.4, 0.5];
+        let s = [0.0, 0.0, 0.0, 0.0, 9.0, 1.0, -2.0, -3.0];
+        let raw = RawSolution { status: SolverStatus::Solved, x: &x, z: &z, s: &s };
+        pad_terms(30.0, &pad, &place, &raw).into_iter().filter(|(term, _)| *term != 0.0).collect()
+    }
+
+    /// `d lambda* / d ln(limit)`: `-z . s` of the parts of the cone, `fn` times the multipliers of the pressure; of a pad below 5 %
+    /// of its grip force `F (mu z_0 + sum z)`.
+    #[test]
+    fn terms_are_derivatives_by_the_limits_of_a_pad() {
+        let close = |found: &[(f64, PadLimit)], expected: &[(f64, PadLimit)]| {
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            let same = |(a, b): (&(f64, PadLimit), &(f64, PadLimit))| a.1 == b.1 && (a.0 - b.0).abs() < 1e-12;
+            assert!(found.iter().zip(expected).all(same), "{found:?}");
+        };
+        let held = [(0.3 + 0.8, PadLimit::Friction), (1.5, PadLimit::Torsion), (0.16 * 1.0, PadLimit::Tilt)];
+        close(&terms(1.6), &held);
+        close(&terms(1.4), &[(3.0 * (0.5 * 2.0 + 1.0), PadLimit::Grip)]);
+    }
+}

@@ -29,7 +29,7 @@ use super::{
     load_factor::{LoadFactorOutcome, NAMED_SHARE},
     solvers::{
         clarabel::{new_solver, solve_conclusively},
-        cone_program::{Columns, ConeProgram, MAX_LOAD_FACTOR, hand_wrench},
+        cone_program::{CAP_MARGIN, Columns, ConeProgram, MAX_LOAD_FACTOR, hand_wrench},
         layout::ProgramKind,
         units::wrench_units,
     },
@@ -37,9 +37,6 @@ use super::{
     workspace::StabilityWorkspace,
 };
 use crate::model::wrench::Wrench;
-
-/// A load factor this near to the cap counts as the cap: far above the solver's tolerance.
-const CAP_MARGIN: f64 = 1e-3;
 
 /// A load, friction and grip force in place of the contact model's own.
 #[derive(Clone, Copy, Debug, PartialEq)]

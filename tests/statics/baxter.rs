@@ -105,6 +105,18 @@ fn a_pad_that_overhangs_the_edge_counts_with_what_is_on_the_board() {
             assert!((pad.x_op.translation.y.abs() - (0.2 - 0.0231 / 2.0)).abs() < 1e-12);
         }
     }
+    // 10 mm short of the corner along x, the pad reaches beyond that edge, too.
+    let mut beside = shifted.clone();
+    for (arm, hand) in beside.iter_mut().zip(&hold.hands) {
+        arm.x_og.translation.vector.x += 0.24 - hand.pads()[0].x_op.translation.x;
+    }
+    for hand in &contact_model(&robot, &beside, object, operation, 0.6).unwrap().hands {
+        for pad in hand.pads() {
+            assert!((pad.half_sides_m[0] - (0.0202 + 0.01) / 2.0).abs() < 1e-12, "{:?}", pad.half_sides_m);
+            assert!((pad.half_sides_m[1] - 0.0231 / 2.0).abs() < 1e-12, "{:?}", pad.half_sides_m);
+            assert!((pad.x_op.translation.x - (0.25 - (0.0202 + 0.01) / 2.0)).abs() < 1e-12);
+        }
+    }
     let gone: Vec<_> = arms.iter().map(|arm| shift(arm, 0.05)).collect();
     let error = contact_model(&robot, &gone, object, operation, 0.6).unwrap_err();
     assert!(matches!(error, ContactModelError::PadOffBoard { .. }), "{error}");

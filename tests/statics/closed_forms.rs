@@ -215,6 +215,12 @@ fn errors_of_invalid_models_name_the_place() {
         message(&|hold| hold.hands[0].effort_nm = DVector::zeros(3)),
         "left hand: found 3 entries of effort, expected one for each of 6 joints"
     );
+    for (value, shown) in [(0.0, "0"), (-1.0, "-1"), (f64::INFINITY, "inf"), (f64::NAN, "NaN")] {
+        let effort = message(&|hold| hold.hands[0].effort_nm[2] = value);
+        assert_eq!(effort, format!("left hand: found effort {shown}, expected more than 0"));
+        let stiffness = message(&|hold| hold.hands[1].stiffness_nm_rad[5] = value);
+        assert_eq!(stiffness, format!("right hand: found stiffness {shown}, expected more than 0"));
+    }
     let soft = message(&|hold| hold.hands[0].gravity_stiffness_nm_rad[(2, 2)] = -1e3);
     assert_eq!(soft, "left hand: the joints' springs are too soft for the arm's own weight");
 }

@@ -5,6 +5,7 @@ use benchdog::{
         lateral::LateralPush,
         load::Load,
         operation::{Operation, OperationKind},
+        scenario::{Limits, StabilityKind},
         wrench::Wrench,
     },
     statics::{ContactModel, HandModel, LoadCases, LoadFactorOutcome, StabilityWorkspace},
@@ -137,4 +138,57 @@ fn a_scaled_load_has_a_scaled_push() {
     let hold = pinch(1.0, hand());
     let doubled = StabilityWorkspace::new().least_load_factor(&cases(&hold, 0.5).scaled(2.0)).unwrap().1;
     approx::assert_abs_diff_eq!(2.0 * doubled.load_factor().unwrap(), least(&hold, 0.5), epsilon = 36.0 * TOLERANCE);
+}
+
+/// A case is the operation's force and the push to a corner of the polygon about the circle of pushes.
+#[test]
+fn each_case_has_its_own_load() {
+    let hold = pinch(10.0, hand());
+    let cases = cases(&hold, 0.3);
+    let mut found = 0;
+    while let Some(push) = cases.push(found) {
+        let load = cases.clone().into_case(found).load;
+        let aside_n = load.force_n - hold.load.force_n;
+        assert!((aside_n - Vector3::from(push.force_o_n) * outward()).norm() < 1e-12, "{push}");
+        approx::assert_relative_eq!(Vector3::from(push.force_o_n).norm(), 3.0, max_relative = 1e-12);
+        assert_eq!(cases.case_of(Some(&push)), found);
+        found += 1;
+    }
+    assert_eq!(found, 16);
+    assert_eq!(cases.case_of(None), 0);
+    assert_eq!(cases.clone().into_case(found).load, cases.into_case(0).load);
+}
+
+/// The case that uses most of its limits is the worst of the cases alone, the first of equals.
+#[test]
+fn the_worst_case_is_that_of_all_cases_alone() {
+    let mut workspace = StabilityWorkspace::new();
+    let kinds = [StabilityKind::Paper, StabilityKind::Compliant];
+    for (hold, kind) in held().into_iter().flat_map(|hold| kinds.map(|kind| (hold.clone(), kind))) {
+        let cases = cases(&hold, 0.2);
+        let of_case = |workspace: &mut StabilityWorkspace, case| {
+            workspace.utilisation(&cases.clone().into_case(case), &limits(), kind).unwrap()
+        };
+        let alone: Vec<f64> = (0..16).map(|case| of_case(&mut workspace, case)).collect();
+        let largest = alone.iter().copied().fold(0.0, f64::max);
+        let found = workspace.assess(&cases, &limits(), kind).unwrap();
+        assert_eq!(found.response.is_some(), kind == StabilityKind::Compliant && largest.is_finite());
+        if largest.is_infinite() {
+            assert_eq!(
+                (found.utilisation, found.case),
+                (largest, alone.iter().position(|of| of.is_infinite()).unwrap())
+            );
+        } else {
+            // The solvers' last digits depend on what was solved before.
+            approx::assert_relative_eq!(found.utilisation, largest, max_relative = 1e-6);
+            approx::assert_relative_eq!(alone[found.case], largest, max_relative = 1e-6);
+        }
+    }
+    let without_load = Limits { load_factor: 0.0, ..limits() };
+    let found = workspace.assess(&cases(&pinch(1.0, hand()), 0.2), &without_load, StabilityKind::Paper).unwrap();
+    assert_eq!((found.utilisation, found.case), (0.0, 0));
+    // Nor do loads of nothing differ.
+    let idle = cases(&pinch(1.0, hand()), 0.2).scaled(0.0);
+    let (case, found) = workspace.least_compliant_load_factor(&idle, &limits()).unwrap();
+    assert_eq!((case, found.load_factor, found.first_limit), (0, 100.0, None));
 }

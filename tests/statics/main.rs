@@ -3,11 +3,15 @@
 mod baxter;
 mod closed_forms;
 mod compliance;
+mod criteria;
 mod fixtures;
 mod independent;
 mod lateral;
+mod local;
 mod measured;
+mod mechanisms;
 mod pad_compliance;
 mod properties;
 mod robust;
 mod sensitivity;
+mod springs;

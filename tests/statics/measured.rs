@@ -267,4 +267,29 @@ fn invalid_limits_and_stiffnesses_are_told() {
         message(&|measured| measured.stiffness = Some(Vector6::repeat(-1.0))),
         "left gripper: found stiffness -1, expected more than 0"
     );
+    assert_eq!(
+        message(&|measured| measured.stiffness = Some(Vector6::new(1.0, 1.0, 1.0, 1.0, 1.0, 0.0))),
+        "left gripper: found stiffness 0, expected more than 0"
+    );
+}
+
+/// The ratio is that of the largest component to its limit, in the gripper's axes; pads have none.
+#[test]
+fn a_measured_hand_knows_its_share_of_the_limits() {
+    let mut limits = WrenchLimits::symmetric(LimitShape::Box, Wrench::from([100.0, 50.0, 20.0, 10.0, 5.0, 2.0]));
+    limits.low.force_n.z = -10.0;
+    // z_G is along x_O.
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2);
+    let hold = one_hand(Vector3::zeros(), turn, limits, Wrench::default());
+    let ratio = |wrench: [f64; 6]| hold.hands[0].grip_ratio(&HandWrench::Measured(Wrench::from(wrench)));
+    for (wrench, expected) in [
+        ([5.0, 0.0, 0.0, 0.0, 0.0, 0.0], 5.0 / 20.0),
+        ([-5.0, 0.0, 0.0, 0.0, 0.0, 0.0], 5.0 / 10.0),
+        ([0.0, 30.0, 40.0, 0.0, 0.0, 0.0], 30.0 / 50.0),
+        ([5.0, 0.0, 0.0, 1.5, 0.0, 0.0], 1.5 / 2.0),
+    ] {
+        approx::assert_relative_eq!(ratio(wrench), expected, max_relative = 1e-12);
+    }
+    let pads = strong_hand("left", Vector3::zeros(), Vector3::z(), Vector3::x(), 30.0, 0.6, 0.03);
+    assert_eq!(pads.grip_ratio(&HandWrench::Pads([Wrench::from([1e3; 6]); 2])), 0.0);
 }

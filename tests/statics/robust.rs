@@ -7,7 +7,7 @@ use benchdog::{
         Variation, WeldedStiffness,
     },
 };
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -186,6 +186,50 @@ fn hands_share_an_alternating_load_by_their_stiffness() {
     let found = robust(&hold, &loose, InternalForces::Adapt);
     approx::assert_relative_eq!(found.load_factor, 36.0, max_relative = TOLERANCE);
     assert_eq!(found.limiting, [1]);
+}
+
+#[test]
+fn at_the_cap_no_variation_limits() {
+    let hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::x() * 0.1));
+    let idle = Variation { load: Wrench::default(), friction_ratio: 1.0, grip_force_ratio: 1.0 };
+    let light = Variation { load: hold.load, ..idle };
+    for internal_forces in [InternalForces::Adapt, InternalForces::Fixed] {
+        // 72 N of friction are 720 times the load.
+        let found = robust(&hold, &[idle, light], internal_forces);
+        approx::assert_relative_eq!(found.load_factor, 100.0, max_relative = TOLERANCE);
+        assert_eq!(found.limiting, [] as [usize; 0]);
+        // A hundredth of the friction is 7.2 times it.
+        let slippery = Variation { friction_ratio: 0.01, ..light };
+        let found = robust(&hold, &[idle, slippery, light], internal_forces);
+        approx::assert_relative_eq!(found.load_factor, 7.2, max_relative = 1e2 * TOLERANCE);
+        assert_eq!(found.limiting, [1]);
+    }
+    // The first of two that are the same.
+    let twice = [Variation { friction_ratio: 0.01, ..light }; 2];
+    assert_eq!(robust(&hold, &twice, InternalForces::Adapt).limiting, [0]);
+}
+
+/// One hand has no internal force that could be fixed, so its stiffness does not matter.
+#[test]
+fn one_hand_that_is_rigid_has_a_robust_load_factor() {
+    let mut hold = two_strong_hands(Wrench::default(), Wrench::from_force(Vector3::x()));
+    hold.hands.truncate(1);
+    for hand in &mut hold.hands {
+        hand.joints.truncate(2);
+        hand.jacobian_o = hand.jacobian_o.columns(0, 2).into_owned();
+        for values in [&mut hand.gravity_torque_nm, &mut hand.effort_nm, &mut hand.stiffness_nm_rad] {
+            *values = values.rows(0, 2).into_owned();
+        }
+        hand.gravity_stiffness_nm_rad = DMatrix::zeros(2, 2);
+    }
+    let planned = Variation { load: hold.load, friction_ratio: 1.0, grip_force_ratio: 1.0 };
+    // 36 N of friction at the hand, whose torsion holds no lever.
+    hold.load = Wrench::from_force(Vector3::x()).about(&hold.hands[0].grasp_point_o);
+    let at_hand = Variation { load: hold.load, ..planned };
+    for internal_forces in [InternalForces::Adapt, InternalForces::Fixed] {
+        let found = robust(&hold, &[at_hand], internal_forces);
+        approx::assert_relative_eq!(found.load_factor, 36.0, max_relative = TOLERANCE);
+    }
 }
 
 #[test]

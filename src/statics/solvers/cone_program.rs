@@ -46,6 +46,9 @@ use crate::{
 /// The largest load factor that the load program returns.
 pub const MAX_LOAD_FACTOR: f64 = 100.0;
 
+/// A load factor this near to the cap counts as the cap: far above the solver's tolerance.
+pub const CAP_MARGIN: f64 = 1e-3;
+
 /// Builds a sparse matrix column by column.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {

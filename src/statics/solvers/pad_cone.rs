@@ -184,6 +184,16 @@ mod tests {
         prop::collection::vec(-1.0..1.0_f64, count)
     }
 
+    #[test]
+    fn a_step_along_the_boundary_has_no_limit() {
+        assert_eq!(longest_step(&unit(), &Slack::zeros()), f64::INFINITY);
+        // Along one row of the pressure, inward and outward.
+        let mut step = Slack::zeros();
+        step[2] = 1.0;
+        assert_eq!(longest_step(&unit(), &step), f64::INFINITY);
+        assert_eq!(longest_step(&unit(), &(step * -4.0)), 0.25);
+    }
+
     proptest! {
         #[test]
         fn the_scaling_takes_slack_and_multiplier_to_one_point(s in numbers(8), z in numbers(8), u in numbers(8)) {
