@@ -362,8 +362,8 @@ fn the_program_still_computes_the_committed_results() {
     }
 }
 
-/// The rows of an operation equal those of the committed tables; failing loads are empty with `--quick`, which has three of the
-/// random planner's seeds.
+/// The rows of an operation equal those of the committed tables; failing loads are empty with `--quick`, which has the first of the
+/// random planner's seeds: three, or one as printed.
 fn committed_rows_agree(again: &Path, committed: &Path, operation: &str) {
     let of_operation = format!("{operation},");
     let rows = |folder: &Path, name: &str| {
@@ -374,7 +374,9 @@ fn committed_rows_agree(again: &Path, committed: &Path, operation: &str) {
     for name in ["plans.csv", "postures.csv", "best_case.csv"] {
         assert_eq!(rows(again, name), rows(committed, name), "{update}");
     }
-    assert_eq!(rows(again, "random.csv"), rows(committed, "random.csv")[..3], "{update}");
+    let seeds = rows(again, "random.csv");
+    assert!([1, 3].contains(&seeds.len()));
+    assert_eq!(seeds, rows(committed, "random.csv")[..seeds.len()], "{update}");
     let effort = rows(committed, "effort.csv");
     for row in rows(again, "effort.csv") {
         assert!(effort.contains(&row), "{row}: {update}");

@@ -63,11 +63,10 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let with_circle = !args.quick && args.filter.is_empty();
     let jobs = natural_jobs.0.jobs.len() + printed_jobs.0.jobs.len();
     progress.expect(jobs + with_fronts.len() + usize::from(with_circle));
-    let left_out = left_out(args, &natural_jobs.1, natural.len());
     let results = threads::with_threads(args.jobs, || {
         Ok::<_, CliError>(Results {
-            natural: evaluate(natural_jobs, &of_natural, left_out.clone())?,
-            printed: evaluate(printed_jobs, &of_printed, left_out)?,
+            natural: evaluate(natural_jobs, natural.len(), &of_natural, args)?,
+            printed: evaluate(printed_jobs, printed.len(), &of_printed, args)?,
             fronts: fronts(with_fronts, &of_natural)?,
             circle: if with_circle { Some(of_natural.circle()?) } else { None },
         })
@@ -85,11 +84,12 @@ const PRINTED: &str = "printed";
 /// Runs the jobs of one evaluation.
 fn evaluate(
     (schedule, scope): (Schedule, Scope),
+    operations: usize,
     runner: &JobRunner<'_>,
-    left_out: Option<String>,
+    args: &ReproduceArgs,
 ) -> Result<Reproduction, CliError> {
     let rows = run_jobs(runner, &schedule.jobs)?;
-    Ok(schedule.reproduction(rows, &scope, left_out))
+    Ok(schedule.reproduction(rows, &scope, left_out(args, &scope, operations)))
 }
 
 /// The fronts of both comforts, one per operation.
@@ -166,7 +166,7 @@ fn left_out(args: &ReproduceArgs, scope: &Scope, operations: usize) -> Option<St
     if args.quick {
         let seeds = scope.random_seeds;
         parts.push(format!(
-            "{seeds} seeds of the random planner; no failing loads, sensitivity analysis, fronts and whole circle (`--quick`)"
+            "seeds of the random planner: {seeds}; no failing loads, sensitivity analysis, fronts and whole circle (`--quick`)"
         ));
     }
     if operations < paper::CUTS + paper::DRILLS {

@@ -6,10 +6,11 @@
 //! on the posture alone. The map sorts postures by those numbers; in each cell the most promising come first: comfortable,
 //! and with the tool far from the body.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, ops::Range};
 
 use nalgebra::{Point3, Vector3};
 use rand_pcg::Pcg64;
+use rayon::prelude::*;
 
 use super::direction::{direction_cell, direction_cells};
 use crate::{
@@ -29,6 +30,15 @@ use crate::{
 pub const MEDIUM_POINTS: usize = BODY_POINTS / 4;
 /// The first points of the medium set, spread over the body, are the coarse set.
 pub const COARSE_POINTS: usize = MEDIUM_POINTS / 4;
+
+/// Joints of the person's arm.
+const JOINTS: usize = 7;
+
+/// A drawn posture: its rank, joint angles, rad, pose of the tool tip in the body frame, and regularised muscular comfort.
+type Ranked = (f64, ArmAngles, Pose, f64);
+
+/// Draws that a thread makes in a row.
+const DRAWN_AT_ONCE: usize = 5_000;
 
 /// A posture of the person's arm.
 #[derive(Clone, Copy, Debug)]
@@ -84,31 +94,18 @@ impl PostureMap {
         let mut map =
             Self { roll_is_free: load.roll_is_free, cells: Vec::new(), ranked: Vec::new(), has_natural: false };
         let mut found = vec![Vec::new(); map.cell_count()];
-        let mut random = Pcg64::new(u128::from(seed), 0);
         let draws = if human.posture().is_natural() { budget.natural_postures } else { budget.postures };
         let counter = Counter::new(watch, Phase::Postures, draws);
-        for _ in 0..draws {
-            if counter.is_stopped() {
-                break;
-            }
-            counter.advance();
-            let q_h_rad = human.arm().ranges.at_shares([(); 7].map(|()| uniform(&mut random, 0.0, 1.0)));
-            let x_bt = human.tool_pose_b(&q_h_rad);
-            if !human.arm().permits_shoulder(&q_h_rad) || human.work_violation(&x_bt, &load.normal_t).is_some() {
-                continue;
-            }
-            map.has_natural = true;
-            let muscular = posture_muscular(human, &q_h_rad, &x_bt, &load.wrench_t, objective);
-            if !within_strength(&muscular) {
-                continue;
-            }
-            let Some(cell) = map.cell(&x_bt, 0.0) else { continue };
-            // The robot is where the board is: a long reach keeps the bodies apart.
-            let rank = objective.weight_muscular * muscular.regularised
-                + objective.weight_peripersonal * x_bt.translation.vector.xy().norm();
-            found[cell].push((rank, q_h_rad, x_bt, muscular.regularised));
+        let firsts: Vec<_> = (0..draws).step_by(DRAWN_AT_ONCE).collect();
+        let part = |&first: &usize| {
+            map.drawn(human, load, objective, seed, (first..draws.min(first + DRAWN_AT_ONCE), &counter))
+        };
+        let parts: Vec<_> = firsts.par_iter().map(part).collect();
+        for (has_natural, kept) in parts {
+            map.has_natural |= has_natural;
+            kept.into_iter().for_each(|(cell, posture)| found[cell].push(posture));
         }
-        let posture = |(_, q_h_rad, x_bt, muscular): &(f64, ArmAngles, Pose, f64)| {
+        let posture = |(_, q_h_rad, x_bt, muscular): &Ranked| {
             let points = human.body_points_w(&Pose::identity(), q_h_rad);
             // A permutation of 0 to 15 in which the first four are far apart.
             let spread = |place: usize| 4 * (place % COARSE_POINTS) + place / COARSE_POINTS;
@@ -128,6 +125,44 @@ impl PostureMap {
         map.ranked = ranked.into_iter().map(|(_, place)| place).collect();
         map.cells = found.iter().map(|cell| cell.iter().map(posture).collect()).collect();
         map
+    }
+
+    /// The draws with these numbers: whether one is within the limits of a natural posture, and those that are kept with their cells.
+    /// They are the same whatever is drawn at once.
+    fn drawn(
+        &self,
+        human: &Human,
+        load: &PostureLoad,
+        objective: &ComfortSettings,
+        seed: u64,
+        (numbers, counter): (Range<usize>, &Counter<'_>),
+    ) -> (bool, Vec<(usize, Ranked)>) {
+        let mut random = Pcg64::new(u128::from(seed), 0);
+        random.advance((JOINTS * numbers.start) as u128);
+        let mut has_natural = false;
+        let mut kept = Vec::new();
+        for _ in numbers {
+            if counter.is_stopped() {
+                break;
+            }
+            counter.advance();
+            let q_h_rad = human.arm().ranges.at_shares([(); JOINTS].map(|()| uniform(&mut random, 0.0, 1.0)));
+            let x_bt = human.tool_pose_b(&q_h_rad);
+            if !human.arm().permits_shoulder(&q_h_rad) || human.work_violation(&x_bt, &load.normal_t).is_some() {
+                continue;
+            }
+            has_natural = true;
+            let muscular = posture_muscular(human, &q_h_rad, &x_bt, &load.wrench_t, objective);
+            if !within_strength(&muscular) {
+                continue;
+            }
+            let Some(cell) = self.cell(&x_bt, 0.0) else { continue };
+            // The robot is where the board is: a long reach keeps the bodies apart.
+            let rank = objective.weight_muscular * muscular.regularised
+                + objective.weight_peripersonal * x_bt.translation.vector.xy().norm();
+            kept.push((cell, (rank, q_h_rad, x_bt, muscular.regularised)));
+        }
+        (has_natural, kept)
     }
 
     /// The postures of all cells, the most promising first.

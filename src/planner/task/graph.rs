@@ -134,12 +134,35 @@ pub enum Found {
     Nothing { served: usize },
 }
 
-/// A state of the search: the next piece, the hold, and whether a motion is under way.
+/// A state of the search: the next piece, the hold, and whether a motion is under way. Small, for there are many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct State {
-    piece: usize,
-    hold: usize,
+    piece: u32,
+    hold: u32,
     moving: bool,
+}
+
+impl State {
+    fn new(piece: usize, hold: usize, moving: bool) -> Self {
+        Self { piece: piece as u32, hold: hold as u32, moving }
+    }
+
+    fn piece(self) -> usize {
+        self.piece as usize
+    }
+
+    fn hold(self) -> usize {
+        self.hold as usize
+    }
+
+    /// The step that leads here from the state before.
+    fn step_from(self, before: Self) -> Step {
+        let kind = if self.moving { ArcKind::Move } else { ArcKind::Regrasp };
+        match self.piece == before.piece {
+            true => Step::Go { from: before.hold(), to: self.hold(), kind },
+            false => Step::Serve { hold: before.hold() },
+        }
+    }
 }
 
 /// An entry of the queue.
@@ -150,8 +173,8 @@ struct Entry {
     /// Counts entries: of equal ones the first comes first.
     number: usize,
     state: State,
-    /// How it was reached: the state before and the step; `None` at the start.
-    from: Option<(State, Step, f64)>,
+    /// How it was reached: the state before and its cost; `None` at the start.
+    from: Option<(State, f64)>,
     /// True if the step is exact.
     exact: bool,
 }
@@ -175,6 +198,36 @@ impl Ord for Entry {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_total = other.total.total_cmp(&self.total);
         by_total.then(self.state.piece.cmp(&other.state.piece)).then(other.number.cmp(&self.number))
+    }
+}
+
+/// A hold from which the next piece is served at a cost.
+#[derive(Clone, Copy)]
+struct ToServe {
+    cost: f64,
+    hold: usize,
+    moving: bool,
+}
+
+impl PartialEq for ToServe {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for ToServe {}
+
+impl PartialOrd for ToServe {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for ToServe {
+    /// The cheapest is the greatest, as [`BinaryHeap`] needs it. Equally cheap ones may come in any order: what they lead to is the
+    /// same.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.cost.total_cmp(&self.cost)
     }
 }
 
@@ -217,16 +270,12 @@ impl<'a> Graph<'a> {
 
     /// The least costs of a layer from those of serving at once (Dijkstra's algorithm).
     fn relaxed(&self, mut values: Vec<[f64; 2]>, backward: &[Vec<(usize, Arc)>]) -> Vec<[f64; 2]> {
-        let mut queue: BinaryHeap<Entry> = BinaryHeap::new();
-        let push = |queue: &mut BinaryHeap<Entry>, hold: usize, moving: bool, cost: f64| {
-            let state = State { piece: 0, hold, moving };
-            queue.push(Entry { total: cost, cost, number: hold, state, from: None, exact: true });
-        };
+        let mut queue: BinaryHeap<ToServe> = BinaryHeap::new();
         for (hold, costs) in values.iter().enumerate().filter(|(_, costs)| costs[0].is_finite()) {
-            push(&mut queue, hold, false, costs[0]);
-            push(&mut queue, hold, true, costs[1]);
+            queue.push(ToServe { cost: costs[0], hold, moving: false });
+            queue.push(ToServe { cost: costs[1], hold, moving: true });
         }
-        while let Some(Entry { cost, state: State { hold, moving, .. }, .. }) = queue.pop() {
+        while let Some(ToServe { cost, hold, moving }) = queue.pop() {
             if cost > values[hold][usize::from(moving)] {
                 continue;
             }
@@ -236,7 +285,7 @@ impl<'a> Graph<'a> {
                     let better = cost + of_arc;
                     if moves == moving && better < values[*from][usize::from(was_moving)] {
                         values[*from][usize::from(was_moving)] = better;
-                        push(&mut queue, *from, was_moving, better);
+                        queue.push(ToServe { cost: better, hold: *from, moving: was_moving });
                     }
                 }
             }
@@ -284,7 +333,7 @@ impl<'a> Graph<'a> {
         };
         let holds = start.hold.map_or(0..self.holds(), |hold| hold..hold + 1);
         for hold in holds {
-            search.push(State { piece: start.piece, hold, moving: false }, 0.0, None, true);
+            search.push(State::new(start.piece, hold, false), 0.0, None, true);
         }
         while let Some(entry) = search.queue.pop() {
             if exact.is_stopped() {
@@ -325,8 +374,8 @@ fn next_part(steps: &[Step]) -> usize {
     first + steps[first..].iter().take_while(|step| serves(step)).count()
 }
 
-/// How a state was reached at its least cost.
-type Reached = Option<Option<(State, Step)>>;
+/// From which state one was reached at its least cost.
+type Reached = Option<Option<State>>;
 
 struct Search<'a> {
     graph: Graph<'a>,
@@ -340,12 +389,12 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn index(&self, State { piece, hold, moving }: State) -> usize {
-        (piece * self.graph.holds() + hold) * 2 + usize::from(moving)
+    fn index(&self, state: State) -> usize {
+        (state.piece() * self.graph.holds() + state.hold()) * 2 + usize::from(state.moving)
     }
 
-    fn push(&mut self, state: State, cost: f64, from: Option<(State, Step, f64)>, exact: bool) {
-        let total = cost + self.to_end[state.piece][state.hold][usize::from(state.moving)];
+    fn push(&mut self, state: State, cost: f64, from: Option<(State, f64)>, exact: bool) {
+        let total = cost + self.to_end[state.piece()][state.hold()][usize::from(state.moving)];
         if total.is_finite() && self.reached[self.index(state)].is_none() {
             self.number += 1;
             self.queue.push(Entry { total, cost, number: self.number, state, from, exact });
@@ -354,10 +403,11 @@ impl Search<'_> {
 
     /// The next piece before an entry's step and the step, if it is to be tested and has not been computed.
     fn unknown(&self, entry: &Entry, exact: &impl Exact) -> Option<(usize, Step)> {
-        let (before, step, _) = entry.from.filter(|_| !entry.exact)?;
-        let is_tested = before.piece < self.tested && !matches!(step, Step::Go { kind: ArcKind::Move, .. });
+        let (before, _) = entry.from.filter(|_| !entry.exact)?;
+        let (piece, step) = (before.piece(), entry.state.step_from(before));
+        let is_tested = piece < self.tested && !matches!(step, Step::Go { kind: ArcKind::Move, .. });
         let is_asked = is_tested && self.reached[self.index(entry.state)].is_none();
-        (is_asked && !exact.is_known(before.piece, &step)).then_some((before.piece, step))
+        (is_asked && !exact.is_known(piece, &step)).then_some((piece, step))
     }
 
     /// Computes the step of the cheapest entry together with those of the cheapest ones after it: most of these are taken, too.
@@ -381,13 +431,13 @@ impl Search<'_> {
         if self.reached[index].is_some() {
             return None;
         }
-        if let Some((before, step, cost_before)) = from.filter(|_| !is_exact) {
-            self.make_exact(state, before, step, cost_before, cost, exact);
+        if let Some(from) = from.filter(|_| !is_exact) {
+            self.make_exact(state, from, cost, exact);
             return None;
         }
-        self.reached[index] = Some(from.map(|(before, step, _)| (before, step)));
-        self.served = self.served.max(state.piece);
-        if state.piece == self.graph.pieces() {
+        self.reached[index] = Some(from.map(|(before, _)| before));
+        self.served = self.served.max(state.piece());
+        if state.piece() == self.graph.pieces() {
             return Some(self.steps_to(state));
         }
         self.expand(state, cost);
@@ -395,23 +445,16 @@ impl Search<'_> {
     }
 
     /// Computes the last step of an entry and puts it back with its exact cost if it exists.
-    fn make_exact(
-        &mut self,
-        state: State,
-        before: State,
-        step: Step,
-        cost_before: f64,
-        cost: f64,
-        exact: &mut impl Exact,
-    ) {
-        let is_tested = before.piece < self.tested;
-        let cost = match step {
+    fn make_exact(&mut self, state: State, (before, cost_before): (State, f64), cost: f64, exact: &mut impl Exact) {
+        let piece = before.piece();
+        let is_tested = piece < self.tested;
+        let cost = match state.step_from(before) {
             Step::Serve { hold } if is_tested => {
                 // What was found may be better than the bound by rounding, or by a search that began elsewhere.
-                let bound = self.graph.serving[hold][before.piece];
-                exact.serving(hold, before.piece).map(|found| cost_before + found.max(bound))
+                let bound = self.graph.serving[hold][piece];
+                exact.serving(hold, piece).map(|found| cost_before + found.max(bound))
             }
-            Step::Serve { hold } => exact.may_serve(hold, before.piece).then_some(cost),
+            Step::Serve { hold } => exact.may_serve(hold, piece).then_some(cost),
             Step::Go { from, to, kind } => {
                 let exists = |arc: &&Arc| match kind {
                     ArcKind::Regrasp if is_tested => exact.exists(from, arc),
@@ -421,29 +464,26 @@ impl Search<'_> {
             }
         };
         if let Some(cost) = cost {
-            self.push(state, cost, Some((before, step, cost_before)), true);
+            self.push(state, cost, Some((before, cost_before)), true);
         }
     }
 
     fn expand(&mut self, state: State, cost: f64) {
-        let State { piece, hold, moving } = state;
-        let served = State { piece: piece + 1, hold, moving: false };
+        let (piece, hold) = (state.piece(), state.hold());
         let serving = self.graph.serving[hold][piece];
-        self.push(served, cost + serving, Some((state, Step::Serve { hold }, cost)), false);
+        self.push(State::new(piece + 1, hold, false), cost + serving, Some((state, cost)), false);
         let graph = self.graph;
         for arc in &graph.arcs[hold] {
-            let (of_arc, moves) = graph.arc_cost(arc, moving);
-            let next = State { piece, hold: arc.to, moving: moves };
-            let step = Step::Go { from: hold, to: arc.to, kind: arc.kind };
-            self.push(next, cost + of_arc, Some((state, step, cost)), false);
+            let (of_arc, moves) = graph.arc_cost(arc, state.moving);
+            self.push(State::new(piece, arc.to, moves), cost + of_arc, Some((state, cost)), false);
         }
     }
 
     fn steps_to(&self, end: State) -> Vec<Step> {
         let mut steps = Vec::new();
         let mut here = end;
-        while let Some(Some((before, step))) = self.reached[self.index(here)] {
-            steps.push(step);
+        while let Some(Some(before)) = self.reached[self.index(here)] {
+            steps.push(here.step_from(before));
             here = before;
         }
         steps.reverse();

@@ -199,19 +199,12 @@ fn timed_moves(
     holds: &Holds<'_>,
     steps: &[Step],
 ) -> Option<Vec<TimedMove>> {
-    let mut moves = Vec::new();
-    let mut all_found = true;
-    for in_a_row in steps.chunk_by(|a, b| is_move(a) && is_move(b)).filter(|steps| is_move(&steps[0])) {
-        let pairs: Vec<_> = in_a_row.iter().filter_map(Step::between).collect();
-        match timed_move(search, holds, &pairs) {
-            Some(found) => moves.push(found),
-            None => {
-                pairs.iter().for_each(|&[from, to]| transitions.exclude_move(from, to));
-                all_found = false;
-            }
-        }
-    }
-    all_found.then_some(moves)
+    let in_rows = steps.chunk_by(|a, b| is_move(a) && is_move(b)).filter(|steps| is_move(&steps[0]));
+    let rows: Vec<Vec<_>> = in_rows.map(|row| row.iter().filter_map(Step::between).collect()).collect();
+    let moves: Vec<_> = rows.par_iter().map(|pairs| timed_move(search, holds, pairs)).collect();
+    let without = rows.iter().zip(&moves).filter(|(_, found)| found.is_none()).flat_map(|(pairs, _)| pairs);
+    without.for_each(|&[from, to]| transitions.exclude_move(from, to));
+    moves.into_iter().collect()
 }
 
 /// A motion over these pairs of holds: straight to the end if that is possible, else over the holds in between.
@@ -247,7 +240,7 @@ impl Builder<'_, '_, '_> {
 
     fn go(&mut self, (path, Timed { time_s, q, .. }): &TimedMove) {
         let robot = self.search.robot;
-        let person = self.person_during(path.iter().map(|grasp| (robot.link_poses(&grasp.arms), grasp)));
+        let person = self.person_during(path, |grasp| (robot.link_poses(&grasp.arms), grasp.x_wo));
         let mut first_joint = 0;
         let of_arm = |arm: &GraspingArm| {
             let joints = first_joint..first_joint + arm.chain.dof();
@@ -267,7 +260,7 @@ impl Builder<'_, '_, '_> {
             arms[arm] = ArmGrasp { grasp: after.arms[arm].grasp, q_rad: q_rad.clone() };
             arms
         };
-        let person = self.person_during(path.iter().map(|q_rad| (robot.link_poses(&with(q_rad)), before)));
+        let person = self.person_during(&path, |q_rad| (robot.link_poses(&with(q_rad)), before.x_wo));
         let problem = self.transitions.problem.of_piece(0);
         let hold = plan_arms(problem, &Candidate::without_person(after)).swap_remove(arm);
         self.stages.push(Stage::Regrasp(RegraspStage {
@@ -279,13 +272,14 @@ impl Builder<'_, '_, '_> {
         }));
     }
 
-    /// What the person does while links and board are at these poses: they stay if nothing comes near them.
-    fn person_during<'g>(&self, mut poses: impl Iterator<Item = (Vec<Pose>, &'g BoardGrasp)>) -> PersonDuring {
+    /// What the person does during the steps of a path with these poses of links and board: they stay if nothing comes near them.
+    fn person_during<S: Sync>(&self, path: &[S], poses: impl Fn(&S) -> (Vec<Pose>, Pose) + Sync) -> PersonDuring {
         let Some((piece, posture)) = self.last else { return PersonDuring::StepsBack };
         let problem = self.transitions.problem.of_piece(piece);
         let person = problem.human.capsules_w(&posture.x_wb, &posture.q_h_rad).map(PersonPart::from);
-        let touched = poses.any(|(link_poses, grasp)| {
-            let scene = Scene { person: &person, ..problem.robot.scene(&link_poses, grasp.x_wo) };
+        let touched = path.par_iter().any(|step| {
+            let (link_poses, x_wo) = poses(step);
+            let scene = Scene { person: &person, ..problem.robot.scene(&link_poses, x_wo) };
             problem.robot.collision.first_violation_of_person(&scene).is_some()
         });
         if touched { PersonDuring::StepsBack } else { PersonDuring::Stays }
