@@ -64,8 +64,9 @@ def test_a_test_runs_for_each_plan_and_fails_with_check_time_and_recording(
 def test_two_plans_of_one_name_are_refused(pytester: pytest.Pytester, folder: Path, plan: Dict[str, Any]) -> None:
     (folder / "plans" / "table.json").write_text(json.dumps(plan))
     result = pytester.runpytest_subprocess("--benchdog-plans", "plans")
-    result.stderr.fnmatch_lines(["*table*plan.json: found the plan table twice, expected one; the other is *table.json"])
-    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["*table*plan.json: found the plan table twice, expected one; the other is *table.json"])
+    assert "Traceback" not in result.stdout.str() and "pytest_plugin.py" not in result.stdout.str()
 
 
 def test_recordings_go_into_the_folder_that_is_asked_for(pytester: pytest.Pytester, folder: Path) -> None:

@@ -88,7 +88,7 @@ def plan_files(folder: Path) -> Dict[str, Path]:
     files += [(path.parent.name, path) for path in sorted(folder.glob("*/plan.json"))]
     for name, path in files:
         if name in named:
-            raise pytest.UsageError(f"{path}: found the plan {name} twice, expected one; the other is {named[name]}")
+            raise pytest.Collector.CollectError(f"{path}: found the plan {name} twice, expected one; the other is {named[name]}")
         named[name] = path
     return named
 
@@ -118,7 +118,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     else:
         plans = plan_files(folder)
         if not plans:
-            raise pytest.UsageError(f"{folder}: found no plan, expected *.json or */plan.json")
+            raise pytest.Collector.CollectError(f"{folder}: found no plan, expected *.json or */plan.json")
         parameters = [pytest.param(path, id=name) for name, path in plans.items()]
     metafunc.parametrize("benchdog_plan", parameters)
 
