@@ -36,7 +36,7 @@ pub struct Ends {
     pub towards: WayOff,
 }
 
-/// The way off the board from a grasp `own` of an arm, while the others hold the board as in `from`; `None` if there is none.
+/// The way off the board from a grasp `own` of an arm, while the others hold the board as in `from`; `None` without one.
 pub fn way_off(robot: &GraspingRobot, from: &BoardGrasp, own: &ArmGrasp, arm: usize) -> Option<WayOff> {
     FreeArm::new(robot, from, arm).withdrawn(own).map(Arc::from)
 }
