@@ -8,7 +8,17 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use benchdog::{cache::BuiltinWriter, planner::Planner, robot::BUILTIN, scenario};
+use benchdog::{
+    cache::BuiltinWriter,
+    model::scenario::{PlannerKind, Scenario},
+    planner::Planner,
+    reproduce::{
+        paper::Evaluation,
+        schedule::{Schedule, Scope},
+    },
+    robot::BUILTIN,
+    scenario,
+};
 use tempfile::TempDir;
 
 use crate::{
@@ -248,6 +258,15 @@ fn an_empty_name_of_the_folder_keeps_nothing() {
     only_map(&home.path().join(".cache/benchdog"));
 }
 
+/// What `benchdog reproduce` plans with warm starts.
+fn scenarios_of_the_paper() -> Vec<Scenario> {
+    let jobs = Evaluation::ALL.into_iter().flat_map(|evaluation| {
+        let operations: Vec<_> = evaluation.operations().iter().map(|operation| operation.load().unwrap()).collect();
+        Schedule::new(&operations, &Scope::quick(evaluation)).jobs
+    });
+    jobs.map(|job| job.scenario).filter(|scenario| scenario.planner.kind != PlannerKind::Random).collect()
+}
+
 /// The maps that come with the program are those that it makes. `BENCHDOG_WRITE_MAPS=1 cargo test --release --test cli
 /// maps_of_the_program` writes them again after a change of the planner that is meant.
 #[test]
@@ -258,12 +277,16 @@ fn the_maps_of_the_program_are_those_that_it_makes() {
     }
     let writer = Arc::new(BuiltinWriter::default());
     for robot in BUILTIN {
-        for name in ["quickstart", "cut-rim"] {
+        let loaded = ["quickstart", "cut-rim"].map(|name| {
             let path = root().join(format!("scenarios/{name}.toml"));
             let text = fs::read_to_string(&path).unwrap();
             let text = text.replace("\n[operation]", &format!("\n[robot]\ndescription = \"{robot}\"\n\n[operation]"));
-            let loaded = scenario::load_text(&path, &text).unwrap();
-            Planner::with_store(&loaded.robot, writer.clone()).prepare(&loaded.scenario).unwrap();
+            scenario::load_text(&path, &text).unwrap()
+        });
+        let planner = Planner::with_store(&loaded[0].robot, writer.clone());
+        let of_paper = if *robot == "baxter" { scenarios_of_the_paper() } else { Vec::new() };
+        for scenario in loaded.iter().map(|loaded| &loaded.scenario).chain(&of_paper) {
+            planner.prepare(scenario).unwrap();
         }
     }
     let path = root().join("assets/maps/builtin.maps");
