@@ -181,7 +181,12 @@ struct PlacedLink<'a> {
     radius_m: f64,
 }
 
-impl PlacedLink<'_> {
+impl<'a> PlacedLink<'a> {
+    /// A link at a pose, with its placed primitives.
+    fn new(link: &LinkShapes, pieces: &'a [Placed<'a>], x_wl: &Pose) -> Self {
+        Self { pieces, centre_w: point_w(x_wl, &link.centre_l), radius_m: link.radius_m }
+    }
+
     /// Distance to another link if it is at most `required_m`, m.
     fn too_close_to(&self, other: &Self, required_m: f64) -> Option<f64> {
         let reach_m = self.radius_m + other.radius_m + required_m;
@@ -250,9 +255,7 @@ impl CollisionModel {
         self.fingers[arm].iter().all(|&link| {
             let (shapes, x_wl) = (&self.links[link], &scene.link_poses[link]);
             let pieces: Vec<_> = place_all(&shapes.pieces, x_wl).collect();
-            let centre_w = point_w(x_wl, &shapes.centre_l);
-            let placed = PlacedLink { pieces: &pieces, centre_w, radius_m: shapes.radius_m };
-            placed.too_close(&board, self.board_clearance_m(link, scene.clearance_m)).is_none()
+            self.link_board(scene, link, &PlacedLink::new(shapes, &pieces, x_wl), &board).is_none()
         })
     }
 
@@ -353,7 +356,7 @@ impl CollisionModel {
         let place = |(link, x_wl): (&LinkShapes, &Pose)| {
             let (pieces, rest) = placed.split_at(link.pieces.len());
             placed = rest;
-            PlacedLink { pieces, centre_w: point_w(x_wl, &link.centre_l), radius_m: link.radius_m }
+            PlacedLink::new(link, pieces, x_wl)
         };
         self.links.iter().zip(poses).map(place).collect()
     }
@@ -367,11 +370,21 @@ impl CollisionModel {
     }
 
     fn robot_board(&self, scene: &Scene<'_>, links: &[PlacedLink<'_>], board: &Placed<'_>) -> Option<Violation> {
-        (0..links.len()).filter(|&link| !self.may_touch_board(scene, link)).find_map(|link| {
-            let required_m = self.board_clearance_m(link, scene.clearance_m);
-            let distance_m = links[link].too_close(board, required_m)?;
-            Some(Violation { bodies: [Body::Link(link), Body::Board], required_m, distance_m })
-        })
+        let mut links = links.iter().enumerate().filter(|(link, _)| !self.may_touch_board(scene, *link));
+        links.find_map(|(link, placed)| self.link_board(scene, link, placed, board))
+    }
+
+    /// The violation of a link's clearance from the board.
+    fn link_board(
+        &self,
+        scene: &Scene<'_>,
+        link: usize,
+        placed: &PlacedLink<'_>,
+        board: &Placed<'_>,
+    ) -> Option<Violation> {
+        let required_m = self.board_clearance_m(link, scene.clearance_m);
+        let distance_m = placed.too_close(board, required_m)?;
+        Some(Violation { bodies: [Body::Link(link), Body::Board], required_m, distance_m })
     }
 }
 

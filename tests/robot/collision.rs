@@ -16,6 +16,8 @@ use parry3d_f64::{
     shape::SharedShape,
 };
 use proptest::prelude::*;
+use rand::SeedableRng as _;
+use rand_pcg::Pcg64;
 
 use crate::common::baxter;
 
@@ -141,6 +143,32 @@ fn only_the_fingers_of_a_holding_gripper_may_touch_the_board() {
     // Pushed in until its edge meets the palm, which is no finger.
     let too_deep = model.first_violation(&scene(&poses, &[left], x_wg * x_go(-0.12), &[])).unwrap();
     assert_eq!(too_deep.bodies, [Body::Link(robot.arms[left].gripper.palm_link), Body::Board]);
+}
+
+/// What is free with one hand at the board and with fingers off is what is free with no hand at it.
+#[test]
+fn fingers_that_are_off_are_as_other_links() {
+    let robot = baxter();
+    let model = CollisionModel::new(robot);
+    let left = robot.arm_index("left").unwrap();
+    let poses = link_poses(robot, &NEUTRAL_RAD, &NEUTRAL_RAD);
+    let hand_w = poses[robot.arms[left].gripper.frame_link];
+    let mut random = Pcg64::seed_from_u64(1);
+    let mut drawn = |most: f64| Vector3::from_fn(|_, _| random.random_range(-most..most));
+    let mut counts = [[0; 2]; 2];
+    for _ in 0..2_000 {
+        // Its edge, 0.2 m from its centre, before the fingers, between them or at the palm.
+        let x_go = Isometry3::new(Vector3::new(0.0, 0.0, 0.15) + drawn(0.08), drawn(0.3));
+        let turned = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+        let x_wo = hand_w * x_go * turned;
+        let is_free = |holding: &[usize]| model.first_violation(&scene(&poses, holding, x_wo, &[])).is_none();
+        let are_off = model.fingers_are_off(&scene(&poses, &[left], x_wo, &[]), left);
+        let at_board = is_free(&[left]);
+        assert_eq!(is_free(&[]), at_board && are_off);
+        counts[usize::from(at_board)][usize::from(are_off)] += 1;
+    }
+    // Free with fingers at the board and off it, and not free.
+    assert!(counts[1].iter().all(|count| *count > 50) && counts[0][0] > 50, "{counts:?}");
 }
 
 /// A primitive in W, converted independently of the library.

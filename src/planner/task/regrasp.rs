@@ -69,8 +69,9 @@ struct FreeArm<'a> {
     robot: &'a GraspingRobot,
     from: &'a BoardGrasp,
     arm: usize,
-    /// The robot's arms that hold the board, and all of them.
+    /// The robot's other arms, which hold the board.
     others: Vec<usize>,
+    /// All arms of the robot.
     all: Vec<usize>,
     open_m: [f64; 2],
 }
