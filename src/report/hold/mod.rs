@@ -142,11 +142,8 @@ impl<'a> Crossing<'a> {
         let value = if name.is_least() { values.reduce(f64::min) } else { values.reduce(f64::max) };
         let value =
             value.map_or_else(String::new, |value| format!(" {}{unit}", beside(value, *limit, unit.is_empty())));
-        let between = match name {
-            CheckKind::Clearance | CheckKind::PersonOverlap => self.event().map(|event| format!(" ({})", event.what)),
-            _ => None,
-        };
-        let between = between.unwrap_or_default();
+        let what = self.event().map_or("", |event| event.what.as_str());
+        let between = if is_between_bodies(*name) && !what.is_empty() { format!(" ({what})") } else { String::new() };
         format!("{} at {:.2} s: {name}{value}{between}, {bound} {limit}{unit}", verdict.verdict, self.failure.time_s)
     }
 
@@ -159,7 +156,7 @@ impl<'a> Crossing<'a> {
     /// `None` for bodies that meet elsewhere.
     fn close_up<'b>(&self, holding: &Holding<'b>) -> Option<(String, CloseUp<'b>)> {
         let SimulatedHold { trace, measures, .. } = self.hold;
-        if [CheckKind::Clearance, CheckKind::PersonOverlap].contains(&self.failure.check) {
+        if is_between_bodies(self.failure.check) {
             return None;
         }
         let what = self.event().map_or("", |event| event.what.as_str());
@@ -174,6 +171,11 @@ impl<'a> Crossing<'a> {
         let close_up = CloseUp::new(object, holding.robot, trace, index, samples)?;
         Some((trace.arms[index].name.clone(), close_up))
     }
+}
+
+/// True for a check of bodies that may meet anywhere, not in a hand.
+fn is_between_bodies(check: CheckKind) -> bool {
+    matches!(check, CheckKind::Clearance | CheckKind::PersonOverlap)
 }
 
 /// A value with as many digits as tell it from a limit, four at most: at least two of a ratio and beside a limit below 1, otherwise one.
