@@ -31,7 +31,7 @@ pub const MEDIUM_POINTS: usize = BODY_POINTS / 4;
 /// The first points of the medium set, spread over the body, are the coarse set.
 pub const COARSE_POINTS: usize = MEDIUM_POINTS / 4;
 
-/// Joints of the person's arm.
+/// Joints of the person's arm: so many numbers are drawn for a posture.
 const JOINTS: usize = 7;
 
 /// A drawn posture: its rank, joint angles, rad, pose of the tool tip in the body frame, and regularised muscular comfort.
